@@ -1,0 +1,5 @@
+"""`python -m frbcli` is `frb`."""
+
+from frbcli.cli.main import main
+
+main()

@@ -1,0 +1,233 @@
+"""Events of a run, found from its signals alone: critical speed, onset and offset of sub-synchronous motion, contact.
+
+The motion x + iy is read at even steps of the rotor's angle, where the synchronous motion turns once per revolution
+whatever the speed does. A Hann window of R revolutions that turns with order q (times the rotor speed) then gives the
+amplitude of that order, and is blind to the orders q + j/R for |j| >= 2. With R = 4 the window for half the rotor
+speed sees 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance (order 1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import find_peaks, oaconvolve
+from scipy.signal.windows import hann
+
+Values = NDArray[np.float64]
+Motion = NDArray[np.complex128]
+Kind = Literal["critical-speed", "onset", "offset", "contact"]
+
+SAMPLES_PER_REVOLUTION = 32  # a rotor's natural frequency then lies below the limit of sampling from some 10 Hz upwards
+SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
+WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
+WHIRL_BAND = (0.2, 0.8)  # orders in which the dominating frequency is sought
+FREQUENCY_REVOLUTIONS = 16  # window for that frequency: lines 1/16 apart, and short against a ramp of some 10 s
+FREQUENCY_PADDING = 16  # interpolation between these lines
+WHIRL_BEGINS = 0.05  # amplitude relative to the clearance; unbalance and noise of a quiet run stay below in that order
+WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one whirl
+SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies sooner is a transient
+
+START_s = 0.3  # the rotor falls from its starting position to its place in the first tenths of a second
+START_REVOLUTIONS = 5.0
+
+CRITICAL_REVOLUTIONS = 8  # a resonance is passed in many more; twice the whirl's window halves the noise
+ORDER_WITHOUT_MOTION = 1.5  # neither whirl nor unbalance nor its harmonics: what is seen there is the background
+CRITICAL_PROMINENCE = 0.25  # share of its height by which a peak stands out of the higher of its two sides
+CRITICAL_OVER_BACKGROUND = 5.0
+CRITICAL_FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a rotor without unbalance
+
+CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact begins
+CONTACT_PAUSE_s = 0.1  # a journal that bounces touches many times in one contact
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened at t_s, at rotor speed speed_Hz. film: the bearing's name, None where there is but one.
+
+    frequency_Hz, frequency_ratio (to the rotor speed): of the motion, where it has one.
+    """
+
+    kind: Kind
+    film: str | None
+    t_s: float
+    speed_Hz: float
+    frequency_Hz: float | None
+    frequency_ratio: float | None
+
+
+class RunLike(Protocol):
+    """What is read of a run: its signals by name, lengths in m to compare them with, how it ended."""
+
+    @property
+    def signals(self) -> Iterable[str]: ...
+    @property
+    def references(self) -> dict[str, float]: ...
+    @property
+    def status(self) -> str: ...
+    def __getitem__(self, name: str) -> Values: ...
+
+
+@dataclass(frozen=True)
+class Revolutions:
+    """Even steps of the rotor's angle: revolution (m,), the time (m,) when each is reached and the speed (m,) there."""
+
+    revolution: Values
+    time_s: Values
+    speed_Hz: Values
+
+
+def find_events(run: RunLike) -> tuple[Event, ...]:
+    """The events of a run, in the order of time.
+
+    Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (the names followed
+    by _ and the bearing's name if there are several) and the reference clearance_m, one for all or one per bearing;
+    uses disk_x_m, disk_y_m where there are any.
+    """
+    time_s, speed = run["time_s"], run["speed_Hz"]
+    if len(time_s) < 2:
+        return ()
+    events: list[Event] = []
+    turns = _revolutions(time_s, speed)
+    films = list(_suffixes(run.signals, "journal_x_m"))
+    for suffix in films:
+        clearance = run.references.get("clearance_m" + suffix, run.references.get("clearance_m"))
+        if clearance is not None:
+            motion = _by_angle(run, "journal", suffix, turns) / clearance
+            events += _whirl(motion, turns, suffix[1:] or None, run.status == "contact")
+    events += _critical_speed(run, turns, films, min((e.t_s for e in events), default=np.inf))
+    for suffix in _suffixes(run.signals, "eccentricity"):
+        ended = run.status == "contact" and len(films) < 2
+        limit = run.references.get("contact_eccentricity", CONTACT_ECCENTRICITY)
+        events += _contacts(time_s, speed, run["eccentricity" + suffix] >= limit, suffix[1:] or None, ended)
+    return tuple(sorted(events, key=lambda event: event.t_s))
+
+
+def order_amplitude(motion: Motion, order: float, revolutions: int) -> Values:
+    """Amplitude of the forward motion of an order: `motion` (n,) at even angles -> (n - w + 1,), w samples per window.
+
+    Value i belongs to the middle of the window, sample i + w // 2; empty if the motion is shorter than a window.
+    """
+    width = revolutions * SAMPLES_PER_REVOLUTION
+    if len(motion) < width:
+        return np.empty(0)
+    window = hann(width, sym=False)
+    turning = window / window.sum() * np.exp(2j * np.pi * order * np.arange(width) / SAMPLES_PER_REVOLUTION)
+    return np.asarray(np.abs(oaconvolve(motion, turning, mode="valid")), dtype=np.float64)
+
+
+def _revolutions(time_s: Values, speed: Values) -> Revolutions:
+    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time_s)
+    revolution = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 0.0))])
+    even = np.arange(0.0, revolution[-1], 1.0 / SAMPLES_PER_REVOLUTION)
+    time_even = np.interp(even, revolution, time_s)
+    return Revolutions(even, time_even, np.interp(time_even, time_s, speed))
+
+
+def _by_angle(run: RunLike, node: str, suffix: str, turns: Revolutions) -> Motion:
+    motion = run[f"{node}_x_m{suffix}"] + 1j * run[f"{node}_y_m{suffix}"]
+    return np.asarray(np.interp(turns.time_s, run["time_s"], motion))
+
+
+def _suffixes(names: Iterable[str], stem: str) -> Iterator[str]:
+    """What follows `stem` in the names of the signals: "" or "_name" of a bearing."""
+    return (name[len(stem) :] for name in names if name == stem or name.startswith(stem + "_"))
+
+
+def _settled(turns: Revolutions) -> int:
+    """The first sample after the start of the run."""
+    by_angle = np.searchsorted(turns.revolution, START_REVOLUTIONS)
+    by_time = np.searchsorted(turns.time_s, (turns.time_s[0] if len(turns.time_s) else 0.0) + START_s)
+    return int(max(by_angle, by_time))
+
+
+def _whirl(motion: Motion, turns: Revolutions, film: str | None, ends_in_contact: bool) -> Iterator[Event]:
+    """Onsets and offsets; motion (m,): of the journal, relative to the clearance."""
+    amplitude = order_amplitude(motion, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)
+    middle = WHIRL_REVOLUTIONS * SAMPLES_PER_REVOLUTION // 2
+    settled = _settled(turns) - middle
+    sustained = round(SUSTAINED_REVOLUTIONS * SAMPLES_PER_REVOLUTION)
+    for first, last in _stretches(amplitude, WHIRL_BEGINS, WHIRL_ENDS, sustained):
+        lasts = last == len(amplitude)
+        if last - max(first, settled) < sustained and not (lasts and ends_in_contact):
+            continue
+        if first > max(settled, 0):
+            yield _whirl_event("onset", motion, turns, first + middle, film)
+        if not lasts:
+            yield _whirl_event("offset", motion, turns, last + middle, film)
+
+
+def _stretches(amplitude: Values, begins: float, ends: float, pause: int) -> Iterator[tuple[int, int]]:
+    """First and one past the last sample of each stretch above `begins`, where dips shorter than `pause` do not count.
+
+    A stretch must fall below `ends` to be over, and counts to where it last was above `begins`.
+    """
+    above = np.flatnonzero(amplitude >= begins)
+    if len(above) == 0:
+        return
+    low = np.concatenate([[0], np.cumsum(amplitude < ends)])
+    gaps = np.diff(above)
+    breaks = np.flatnonzero((gaps > pause) & (low[above[1:]] > low[above[:-1]]))
+    firsts, lasts = above[np.concatenate([[0], breaks + 1])], above[np.concatenate([breaks, [len(above) - 1]])]
+    for first, last in zip(firsts, lasts, strict=True):
+        still_there = low[-1] == low[last]
+        yield int(first), len(amplitude) if still_there else int(last) + 1
+
+
+def _whirl_event(kind: Kind, motion: Motion, turns: Revolutions, sample: int, film: str | None) -> Event:
+    """The event at a sample; its frequency is that of the window just after an onset, just before an offset."""
+    sample = min(sample, len(motion) - 1)
+    width = FREQUENCY_REVOLUTIONS * SAMPLES_PER_REVOLUTION
+    begin = sample if kind == "onset" else sample - width
+    begin = max(0, min(begin, len(motion) - width))
+    seen = motion[begin : begin + width]
+    padded = FREQUENCY_PADDING * width
+    lines = np.abs(np.fft.fft((seen - seen.mean()) * hann(len(seen)), padded))
+    orders = np.fft.fftfreq(padded, 1.0 / SAMPLES_PER_REVOLUTION)
+    band = (orders >= WHIRL_BAND[0]) & (orders <= WHIRL_BAND[1])
+    ratio = float(orders[band][np.argmax(lines[band])])
+    speed = float(turns.speed_Hz[sample])
+    return Event(kind, film, float(turns.time_s[sample]), speed, ratio * speed, ratio)
+
+
+def _critical_speed(run: RunLike, turns: Revolutions, films: list[str], before_s: float) -> Iterator[Event]:
+    """The resonance with the unbalance, if the run passes one before the time of its first whirl."""
+    nodes = [("disk", suffix) for suffix in _suffixes(run.signals, "disk_x_m")] or [("journal", s) for s in films]
+    middle = CRITICAL_REVOLUTIONS * SAMPLES_PER_REVOLUTION // 2
+    settled = _settled(turns) + middle
+    until = int(np.searchsorted(turns.time_s, before_s)) - middle
+    clearances = [length for name, length in run.references.items() if name.startswith("clearance_m")]
+    floor = CRITICAL_FLOOR * min(clearances, default=0.0)
+    best: tuple[float, int] | None = None
+    for node, suffix in nodes:
+        motion = _by_angle(run, node, suffix, turns)[settled - middle : until + middle]
+        if len(motion) <= 2 * middle:
+            continue
+        amplitude = order_amplitude(motion, 1.0, CRITICAL_REVOLUTIONS)
+        background = float(np.median(order_amplitude(motion, ORDER_WITHOUT_MOTION, CRITICAL_REVOLUTIONS)))
+        peaks, found = find_peaks(amplitude, prominence=max(floor, CRITICAL_OVER_BACKGROUND * background))
+        clear = found["prominences"] >= CRITICAL_PROMINENCE * amplitude[peaks]
+        for peak, prominence in zip(peaks[clear], found["prominences"][clear], strict=True):
+            if best is None or prominence > best[0]:
+                best = (float(prominence), settled + int(peak))
+    if best is not None:
+        speed = float(turns.speed_Hz[best[1]])
+        yield Event("critical-speed", None, float(turns.time_s[best[1]]), speed, speed, 1.0)
+
+
+def _contacts(
+    time_s: Values, speed: Values, touches: NDArray[np.bool_], film: str | None, ended: bool
+) -> Iterator[Event]:
+    """The first touch of each contact; `ended`: the run stopped because of one, which then is its last sample."""
+    if ended:
+        touches = touches.copy()
+        touches[-1] = True
+    samples = np.flatnonzero(touches)
+    if len(samples) == 0:
+        return
+    first = np.concatenate([[True], np.diff(time_s[samples]) > CONTACT_PAUSE_s])
+    for sample in samples[first]:
+        yield Event("contact", film, float(time_s[sample]), float(speed[sample]), None, None)

@@ -1,0 +1,179 @@
+"""The bearings of a case: one film, or a floating ring between two films; how oil comes in and leaves.
+
+Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are those of the
+whole bearing, both symmetric halves.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
+from pydantic_core import CoreSchema
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import (
+    Angle,
+    Clearance,
+    Count,
+    Expansion,
+    Fraction,
+    Identifier,
+    Inertia,
+    Length,
+    Mass,
+    OpeningAngle,
+    Position,
+    Pressure,
+    Temperature,
+    Viscosity,
+)
+
+ROOM_TEMPERATURE = 293.15
+
+
+class NoSupply(Model):
+    """Oil comes from the ends only."""
+
+    kind: Literal["none"] = "none"
+
+
+class CircumferentialGroove(Model):
+    """A groove around the bearing in its middle, which makes two films of half the width."""
+
+    kind: Literal["circumferential-groove"]
+    pressure: Pressure
+
+
+class AxialGrooves(Model):
+    """Grooves along the axis in the shell, evenly spaced."""
+
+    kind: Literal["axial-grooves"]
+    count: Annotated[int, Count(1, 24, 1)] = 1
+    position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
+    opening_angle: OpeningAngle = Field(description="angle that one groove takes")
+    pressure: Pressure
+
+
+class Bores(Model):
+    """Holes of one diameter around the shell or the journal, evenly spaced."""
+
+    kind: Literal["bores"]
+    count: Annotated[int, Count(1, 100, 6)]
+    diameter: Length
+    axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
+    position: Angle = Field(default=0.0, description="phi of the first bore")
+    on: Literal["shell", "journal"] = Field(default="shell", description="the surface that the bores are in")
+    pressure: Pressure
+
+
+class Pocket(Model):
+    """A pocket in the shell, in the middle of the width."""
+
+    kind: Literal["pocket"]
+    position: Angle = Field(description="phi of the middle of the pocket")
+    opening_angle: OpeningAngle
+    width: Length
+    pressure: Pressure
+
+
+Supply = Annotated[NoSupply | CircumferentialGroove | AxialGrooves | Bores | Pocket, Field(discriminator="kind")]
+
+
+class ColdClearance(Model):
+    """A clearance at the reference temperature and what widens or narrows it when warm, equation (4.24)."""
+
+    cold: Clearance = Field(description="radial clearance at the reference temperature")
+    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="where `cold` was measured")
+    shell_temperature: Temperature
+    journal_temperature: Temperature
+    shell_expansion: Expansion
+    journal_expansion: Expansion
+
+    def warm(self, diameter: float) -> float:
+        """The warm radial clearance [m] of a bearing of `diameter` [m]."""
+        growth = self.shell_expansion * (self.shell_temperature - self.reference_temperature)
+        growth -= self.journal_expansion * (self.journal_temperature - self.reference_temperature)
+        return self.cold + 0.5 * diameter * growth
+
+
+def _clearance_form(given: object) -> str:
+    return "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"
+
+
+AnyClearance = Annotated[
+    Annotated[Clearance, Tag("(warm)")] | Annotated[ColdClearance, Tag("(cold)")], Discriminator(_clearance_form)
+]
+
+
+class FilmGeometry(Model):
+    """The geometry of one film and what surrounds it."""
+
+    width: Length = Field(description="axial width of the whole bearing")
+    diameter: Length
+    given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
+    ends: Literal["free-to-air", "oil-bath"] = "free-to-air"
+    supply: Supply = NoSupply()
+    viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
+    temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
+
+    @property
+    def clearance(self) -> float:
+        """The warm radial clearance [m]."""
+        given = self.given_clearance
+        return given.warm(self.diameter) if isinstance(given, ColdClearance) else given
+
+
+class SingleFilmBearing(FilmGeometry):
+    """A journal in a shell with one film between them."""
+
+    kind: Literal["single-film"]
+    name: Identifier = ""
+    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
+
+
+class Ring(Model):
+    """The floating ring itself."""
+
+    mass: Mass
+    inertia: Inertia = Field(description="about the axis of rotation")
+
+
+class FloatingRingBearing(Model):
+    """A ring that floats between an inner film around the journal and an outer film in the shell."""
+
+    kind: Literal["floating-ring"]
+    name: Identifier = ""
+    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
+    ring: Ring
+    inner: FilmGeometry
+    outer: FilmGeometry
+
+
+Bearing = Annotated[SingleFilmBearing | FloatingRingBearing, Field(discriminator="kind")]
+
+
+class _OneOrMany:
+    """Lets editors know that [bearing] and [[bearing]] are both fine."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return handler(source)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        many = handler(schema)
+        return {"anyOf": [many["items"], many]}
+
+
+def _as_list(given: object) -> object:
+    """One table as a list of one; several without names are numbered, for results carry the names."""
+    if isinstance(given, dict):
+        return [given]
+    if isinstance(given, list) and len(given) > 1:
+        return [
+            {"name": str(number), **table} if isinstance(table, dict) else table
+            for number, table in enumerate(given, start=1)
+        ]
+    return given
+
+
+Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_as_list), _OneOrMany()]

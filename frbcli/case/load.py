@@ -1,0 +1,148 @@
+"""From a file to a Case, or to every fault of the file at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from frbcli.case import lines
+from frbcli.case.checks import Breach, breaches
+from frbcli.case.faults import objections, with_nearest_kinds
+from frbcli.case.schema import Case
+from frbcli.case.settings import with_setting
+from frbcli.case.shipped import find_shipped, nearest, shipped_names
+from frbcli.case.toml import TomlFault, parse, to_toml
+from frbcli.errors import Fault, InputError
+
+LARGEST_FILE = 262_144  # bytes; a case has some thousand
+LONGEST_SHOWN = 150  # characters of a value or a path in a fault
+LARGEST_SHOWN = 200  # bits of a whole number in a fault
+
+
+def load_case(source: str | Path, settings: Sequence[str] = ()) -> Case:
+    """The case in the file `source`, or the shipped case of that name, with `settings` ("key.path=value") applied.
+
+    Raises InputError with every fault of file and settings.
+    """
+    text = _read(Path(source))
+    if text is None:
+        text = _shipped(str(source))
+    return load_case_text(text, settings, name=Path(source).name.removesuffix(".toml"), source=str(source))
+
+
+def load_case_text(text: str, settings: Sequence[str] = (), name: str = "case", source: str = "") -> Case:
+    """The case in the TOML `text` with `settings` applied.
+
+    name: what the case is called if the text does not say; source: what errors call the text, `name` if not given.
+    Raises InputError with every fault of text and settings.
+    """
+    source = source or name
+    try:
+        data = parse(text)
+    except TomlFault as error:
+        raise InputError(source, (error.fault,)) from None
+    data, overridden, faults = _apply(data, settings)
+    data = data if "name" in data else {"name": _printable(name), **data}
+    case, found = _validate(data)
+    if found:
+        faults += _located(found, data, overridden, text)
+    if faults or case is None:
+        raise InputError(source, tuple(sorted(faults, key=lambda fault: (fault.line or LARGEST_FILE, fault.key))))
+    return case.with_source_text(to_toml(data))
+
+
+def _read(path: Path) -> str | None:
+    """The text of the regular file `path`, None if there is none. Raises InputError if it cannot be a case."""
+    try:
+        if not path.is_file():
+            return None
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            raise _unreadable(path, f"is larger than {LARGEST_FILE // 1024} KiB.", "Name a case file.")
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        problem = f"is not UTF-8 text (at byte {error.start})."
+        raise _unreadable(path, problem, "Name a case file, or save it as UTF-8.") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise _unreadable(path, f"cannot be read: {reason}.", "Check path and permissions.") from None
+
+
+def _shipped(source: str) -> str:
+    name = source.removesuffix(".toml")
+    if name in shipped_names():
+        return find_shipped(name)
+    if Path(source).exists():
+        raise _unreadable(source, "is not a file.", f"Name a case file. {nearest(name)}")
+    raise _unreadable(source, "is neither a file nor a shipped case.", nearest(name))
+
+
+def _unreadable(source: str | Path, problem: str, remedy: str) -> InputError:
+    shown = _printable(str(source))
+    return InputError(shown, (Fault("CASE", shown, None, problem, remedy),))
+
+
+def _apply(data: dict[str, Any], settings: Sequence[str]) -> tuple[dict[str, Any], list[lines.Path], list[Fault]]:
+    """`data` with the settings, the paths they set, and the faults of the settings themselves."""
+    overridden: list[lines.Path] = []
+    faults: list[Fault] = []
+    for setting in settings:
+        try:
+            data, path = with_setting(data, setting)
+            overridden.append(path)
+        except TomlFault as error:
+            faults.append(error.fault)
+    return data, overridden, faults
+
+
+def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
+    """The case in `data`, None if the models object to it, and everything that is wrong."""
+    case, guess = None, data
+    found: dict[lines.Path, Breach] = {}  # one per key: the first says why the value cannot be taken at all
+    try:
+        case = Case.model_validate(data)
+    except ValidationError as error:
+        guess = with_nearest_kinds(error, data)
+        found |= {breach.path: breach for breach in objections(error, data)}
+    if guess != data:
+        try:
+            Case.model_validate(guess)
+        except ValidationError as error:
+            found = {breach.path: breach for breach in objections(error, guess)} | found
+    found = {breach.path: breach for breach in breaches(guess)} | found
+    return case, list(found.values())
+
+
+def _located(found: Sequence[Breach], data: dict[str, Any], overridden: Sequence[lines.Path], text: str) -> list[Fault]:
+    """The breaches as faults with the lines of their keys; what came from a setting has no line."""
+    known = lines.key_lines(text)
+    faults = []
+    for breach in found:
+        from_setting = any(breach.path[: len(path)] == path for path in overridden)
+        line = None if from_setting else known.get(breach.path)
+        key = ".".join(map(str, breach.path))
+        faults.append(Fault(key, _shown(data, breach.path), line, breach.problem, breach.remedy))
+    return faults
+
+
+def _shown(data: Any, path: lines.Path) -> str:
+    """The value at `path` as text for a fault; nothing for what is absent, a table or a list."""
+    for element in path:
+        try:
+            data = data[element]
+        except (KeyError, IndexError, TypeError):
+            return ""
+    if isinstance(data, dict | list) or (isinstance(data, int) and data.bit_length() > LARGEST_SHOWN):
+        return ""
+    shown = f'"{data}"' if isinstance(data, str) else str(data).lower() if isinstance(data, bool) else str(data)
+    return _printable(shown)
+
+
+def _printable(text: str) -> str:
+    """`text` on one line, and not longer than a screen."""
+    shown = "".join(character if character.isprintable() else "?" for character in text[: LONGEST_SHOWN + 1])
+    return shown if len(shown) <= LONGEST_SHOWN else f"{shown[:LONGEST_SHOWN]}..."

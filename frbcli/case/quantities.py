@@ -1,0 +1,152 @@
+"""The kinds of values a case is made of. Each reads what the user wrote and holds SI.
+
+A value that does not fit raises ValueFault, which says what is wrong and what to write.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity
+
+_NUMBER_AND_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*\S.*$"
+_NUMBER_ONLY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*%?\s*$"
+LABEL_LENGTH = 200
+# No length, mass or viscosity in SI is outside of this; a slip of the unit prefix by far is, and overflows later.
+LARGEST = 1e15
+SMALLEST = 1e-15
+
+
+def _reader(read: Callable[[object], Any]) -> CoreSchema:
+    return core_schema.no_info_plain_validator_function(read)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A float in SI. unit: as in `frbcli.units.quantity`; above, below: exclusive; least, most: inclusive bounds."""
+
+    unit: str
+    example: str
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    most: float | None = None
+
+    def read(self, given: object) -> float:
+        """The SI value of `given`. Raises ValueFault if it is no such quantity or out of bounds."""
+        value = quantity(given, self.unit, self.example)
+        if value and not SMALLEST <= abs(value) <= LARGEST:
+            raise ValueFault(f"is {display(value, self.unit)}, beyond what any machine has.", self.as_remedy())
+        for bad, words, bound in (
+            (self.above is not None and value <= self.above, "greater than", self.above),
+            (self.least is not None and value < self.least, "at least", self.least),
+            (self.below is not None and value >= self.below, "less than", self.below),
+            (self.most is not None and value > self.most, "at most", self.most),
+        ):
+            if bad and bound is not None:
+                problem = f"is {display(value, self.unit)}, but must be {words} {display(bound, self.unit)}."
+                raise ValueFault(problem, self.as_remedy())
+        return value
+
+    def as_remedy(self) -> str:
+        """What to write instead, by example."""
+        return f"Write e.g. {self.written_example()}."
+
+    def written_example(self) -> str:
+        """The example as it stands in a case file."""
+        return self.example if self.unit == NUMBER else f'"{self.example}"'
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
+        return _reader(self.read)
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        bare = self.unit == NUMBER
+        unit = "K" if self.unit == TEMPERATURE_DIFFERENCE else self.unit
+        number: dict[str, Any] = {"type": "number", "description": "without unit" if bare else f"in {unit}"}
+        bounds = {"exclusiveMinimum": self.above, "minimum": self.least,
+                  "exclusiveMaximum": self.below, "maximum": self.most}  # fmt: skip
+        number |= {key: bound for key, bound in bounds.items() if bound is not None}
+        text = {
+            "type": "string",
+            "description": "a number, or per cent" if bare else f"number and unit, taken to {unit}",
+            "pattern": _NUMBER_ONLY if bare else _NUMBER_AND_UNIT,
+            "examples": [self.example],
+        }
+        return {"description": "a plain number" if bare else f"a quantity in {unit}", "anyOf": [number, text]}
+
+
+@dataclass(frozen=True)
+class Count:
+    """A whole number from `least` to `most`."""
+
+    least: int
+    most: int
+    example: int
+
+    def read(self, given: object) -> int:
+        if isinstance(given, int) and not isinstance(given, bool) and self.least <= given <= self.most:
+            return given
+        raise ValueFault(f"is not a whole number from {self.least} to {self.most}.", f"Write e.g. {self.example}.")
+
+    def written_example(self) -> str:
+        return str(self.example)
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
+        return _reader(self.read)
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "integer", "minimum": self.least, "maximum": self.most, "examples": [self.example]}
+
+
+def _printable(text: str) -> str:
+    if len(text) > LABEL_LENGTH or not text.isprintable():
+        raise ValueFault(f"is not one line of at most {LABEL_LENGTH} printable characters.", "Shorten it.")
+    return text
+
+
+def _identifier(text: str) -> str:
+    if not re.fullmatch(r"[A-Za-z0-9_-]{0,40}", text):
+        raise ValueFault("is no name for a column.", "Use letters, digits, - and _, 40 at most.")
+    return text
+
+
+Label = Annotated[str, AfterValidator(_printable)]
+Identifier = Annotated[str, AfterValidator(_identifier)]
+
+Length = Annotated[float, Quantity("m", "20 mm", above=0)]
+Clearance = Annotated[float, Quantity("m", "35 um", above=0)]
+Position = Annotated[float, Quantity("m", "80 mm")]
+InnerDiameter = Annotated[float, Quantity("m", "8 mm", least=0)]
+Mass = Annotated[float, Quantity("kg", "6 kg", above=0)]
+JournalMass = Annotated[float, Quantity("kg", "100 g", above=0)]
+Inertia = Annotated[float, Quantity("kg*m^2", "20 kg*mm^2", least=0)]
+Unbalance = Annotated[float, Quantity("kg*m", "3 g*mm", least=0)]
+Stiffness = Annotated[float, Quantity("N/m", "5000 N/mm", above=0)]
+Damping = Annotated[float, Quantity("N*s/m", "1 N*s/m", least=0)]
+Acceleration = Annotated[float, Quantity("m/s^2", "9.81 m/s^2", least=0)]
+Force = Annotated[float, Quantity("N", "29.9 N", above=0)]
+Pressure = Annotated[float, Quantity("Pa", "1 bar", above=0)]
+Modulus = Annotated[float, Quantity("Pa", "210 GPa", above=0)]
+Viscosity = Annotated[float, Quantity("Pa*s", "12 mPa*s", above=0)]
+Density = Annotated[float, Quantity("kg/m^3", "850 kg/m^3", above=0)]
+Temperature = Annotated[float, Quantity("K", "100 degC", above=0)]
+TemperatureDifference = Annotated[float, Quantity(TEMPERATURE_DIFFERENCE, "900 K")]
+Expansion = Annotated[float, Quantity("1/K", "1.2e-5 1/K", least=0, below=1e-2)]
+Angle = Annotated[float, Quantity(ANGLE, "15 deg")]
+OpeningAngle = Annotated[float, Quantity(ANGLE, "15 deg", above=0, below=6.28)]
+Speed = Annotated[float, Quantity(SPEED, "300 Hz", least=0)]
+FirstSpeed = Annotated[float, Quantity(SPEED, "0 Hz", least=0)]
+SignedSpeed = Annotated[float, Quantity(SPEED, "20 Hz")]
+Duration = Annotated[float, Quantity("s", "10 s", above=0)]
+Hold = Annotated[float, Quantity("s", "0.5 s", least=0)]
+Eccentricity = Annotated[float, Quantity(NUMBER, "0.5", least=0, below=1)]
+Displacement = Annotated[float, Quantity(NUMBER, "-0.5", above=-1, below=1)]
+Fraction = Annotated[float, Quantity(NUMBER, "0.5", least=0, most=1)]
+OpenFraction = Annotated[float, Quantity(NUMBER, "0.99", above=0, below=1)]
+Ratio = Annotated[float, Quantity(NUMBER, "0.1", least=0)]

@@ -1,0 +1,89 @@
+"""The rotors of a case: rigid (2.3), Jeffcott (2.4) and turbocharger."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import (
+    Acceleration,
+    Angle,
+    Count,
+    Damping,
+    Density,
+    Fraction,
+    Inertia,
+    InnerDiameter,
+    JournalMass,
+    Label,
+    Length,
+    Mass,
+    Modulus,
+    Position,
+    Ratio,
+    Stiffness,
+    Unbalance,
+)
+
+GRAVITY = 9.81
+
+
+class RigidRotor(Model):
+    """A rigid rotor that does not tilt, carried by two equal bearings."""
+
+    kind: Literal["rigid"]
+    mass: Mass = Field(description="mass of the whole rotor")
+    unbalance: Unbalance = Field(default=0.0, description="mass times radius")
+    external_damping: Damping = Field(default=0.0, description="damping of the rotor against the ground")
+    gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
+
+
+class JeffcottRotor(Model):
+    """A disk on a massless elastic shaft with a journal at each end, carried by two equal bearings."""
+
+    kind: Literal["jeffcott"]
+    mass: Mass = Field(description="mass of the disk")
+    journal_mass: JournalMass = Field(description="mass of both journals together")
+    shaft_stiffness: Stiffness = Field(description="stiffness between disk and journals")
+    unbalance: Unbalance = Field(default=0.0, description="mass times radius, at the disk")
+    external_damping: Damping = Field(default=0.0, description="damping of the disk against the ground")
+    shaft_damping: Damping = Field(default=0.0, description="damping between disk and journals")
+    gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
+
+
+class TurbochargerRotor(Model):
+    """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
+
+    kind: Literal["turbocharger"]
+    modes: Annotated[int, Count(1, 200, 6)] = Field(default=6, description="modes kept in each plane")
+    modal_damping: Fraction = Field(default=0.0, description="damping ratio of every elastic mode")
+    external_damping: Damping = Field(default=0.0, description="damping of each disk against the ground")
+    gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
+
+
+Rotor = Annotated[RigidRotor | JeffcottRotor | TurbochargerRotor, Field(discriminator="kind")]
+
+
+class ShaftSection(Model):
+    """One cylindrical section of a turbocharger's shaft; the sections follow each other along z."""
+
+    length: Length
+    diameter: Length
+    inner_diameter: InnerDiameter = Field(default=0.0, description="of a hollow shaft")
+    density: Density = Field(default=7850.0, description="of the material")
+    youngs_modulus: Modulus = 210e9
+    poisson_ratio: Ratio = 0.3
+
+
+class Disk(Model):
+    """A wheel, a nut or a thrust disk on a turbocharger's shaft."""
+
+    name: Label = ""
+    position: Position = Field(description="along the shaft, from the start of its first section")
+    mass: Mass
+    polar_inertia: Inertia = Field(default=0.0, description="about the axis of rotation")
+    diametral_inertia: Inertia = Field(default=0.0, description="about a diameter")
+    unbalance: Unbalance = Field(default=0.0, description="mass times radius")
+    phase: Angle = Field(default=0.0, description="angle of the unbalance on the rotor")

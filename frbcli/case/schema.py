@@ -1,0 +1,232 @@
+"""A case: everything that a user says about a machine and a run, frozen, in SI.
+
+Keys of the file that are no Python words have other attribute names: `from` and `to` of [speed] are `start` and `end`,
+`two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `bearings`, [[disk]] is `disks`. `clearance` and
+`viscosity` may be given as a law: the attributes of these names are its value.
+Rules that tie several keys together are in `checks.py`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, PrivateAttr, model_validator
+
+from frbcli.case.bearing import Bearings, FilmGeometry
+from frbcli.case.model import Model, with_default
+from frbcli.case.quantities import (
+    Angle,
+    Count,
+    Density,
+    Displacement,
+    Duration,
+    Eccentricity,
+    FirstSpeed,
+    Force,
+    Hold,
+    Label,
+    Modulus,
+    OpenFraction,
+    Pressure,
+    Quantity,
+    Ratio,
+    SignedSpeed,
+    Speed,
+    Stiffness,
+    Temperature,
+    TemperatureDifference,
+    Viscosity,
+)
+from frbcli.case.rotor import Disk, Rotor, ShaftSection
+from frbcli.units import NUMBER
+
+ATMOSPHERE = 1e5
+DEFAULT_HOLD = 0.5
+OUTPUT_STEP = 5e-5  # resolves 10 kHz
+CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; the films are computed up to here
+STEPS_PER_REVOLUTION = 40
+
+Theory = Literal["auto", "short", "finite"]
+Cavitation = Literal["sommerfeld", "half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase"]
+
+
+class Vogel(Model):
+    """Vogel's law (3.12), viscosity(T) = eta_0 exp(A / (T + C)), T in kelvin."""
+
+    eta_0: Viscosity
+    A: TemperatureDifference
+    C: TemperatureDifference = Field(description="about -180 K; for a fit in Celsius, its C less 273.15 K")
+
+    def at(self, temperature: float) -> float:
+        """The dynamic viscosity [Pa s] at `temperature` [K]; infinite below the pole of the law."""
+        if temperature + self.C <= 0:
+            return math.inf
+        exponent = self.A / (temperature + self.C)
+        return self.eta_0 * math.exp(exponent) if exponent < 700 else math.inf
+
+
+class Oil(Model):
+    """The lubricant: a viscosity, or Vogel's coefficients and a temperature."""
+
+    given_viscosity: Viscosity | None = Field(default=None, alias="viscosity", description="dynamic viscosity, warm")
+    vogel: Vogel | None = None
+    temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law")
+    density: Density = 850.0
+    ambient_pressure: Pressure = ATMOSPHERE
+    cavitation_pressure: Pressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _cavitates_at_ambient_pressure(cls, data: object) -> object:
+        return with_default(data, "cavitation_pressure", "ambient_pressure")
+
+    @property
+    def viscosity(self) -> float:
+        """The dynamic viscosity [Pa s], given or by Vogel's law."""
+        if self.given_viscosity is not None:
+            return self.given_viscosity
+        if self.vogel is None or self.temperature is None:  # the checks of a case file do not let this pass
+            return math.nan
+        return self.vogel.at(self.temperature)
+
+
+class Penalty(Model):
+    """Penalty model (3.31): on the absolute pressure of (3.9), or on the dimensionless one of (3.19)."""
+
+    pressure: Literal["absolute", "dimensionless"] = "absolute"
+
+
+class Peeken(Model):
+    """Peeken's model."""
+
+    bunsen: Ratio = Field(default=0.1, description="Bunsen's coefficient, the share of dissolved gas")
+
+
+class Elrod(Model):
+    """Elrod's model."""
+
+    bulk_modulus: Modulus = 1e9
+
+
+class TwoPhase(Model):
+    """The mass-conserving two-phase model."""
+
+    steepness: OpenFraction = Field(default=0.99, description="x_1")
+    form: Literal["conservative", "published"] = "conservative"
+    diffusion: Literal["consistent", "streamline", "none"] = "consistent"
+
+
+class FilmModel(Model):
+    """How the films are computed."""
+
+    theory: Theory = "auto"
+    cavitation: Cavitation = "half-sommerfeld"
+    penalty: Penalty = Penalty()
+    peeken: Peeken = Peeken()
+    elrod: Elrod = Elrod()
+    two_phase: TwoPhase = Field(default=TwoPhase(), alias="two-phase")
+
+
+class SpeedProfile(Model):
+    """Rotor speed [Hz]: linear from `start` to `end` in `duration`; a run-down holds it and goes back."""
+
+    start: FirstSpeed = Field(alias="from")
+    end: Speed = Field(alias="to")
+    duration: Duration
+    hold: Hold = Field(default=DEFAULT_HOLD, description="at the end speed, before a run-down")
+    down_duration: Duration = Field(default=math.nan, description="of a run-down; the duration if not given")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _down_as_fast_as_up(cls, data: object) -> object:
+        return with_default(data, "down_duration", "duration")
+
+
+class Motion(Model):
+    """A kinematic bearing test: the journal is moved as given here."""
+
+    eccentricity: Eccentricity | None = None
+    angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
+    load: Force | None = Field(default=None, description="in place of the displacement: a resting position")
+    speed: SignedSpeed | None = Field(default=None, description="of the journal")
+    frequency: Speed | None = Field(default=None, description="of squeeze or whirl")
+    periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = 3.0
+
+
+class Start(Model):
+    """Where the journal is when a run starts."""
+
+    position: Literal["centre", "resting"] = "centre"
+    displacement: tuple[Displacement, Displacement] | None = Field(default=None, description="x, y over clearance")
+
+
+class Contact(Model):
+    """What happens when the journal reaches the shell."""
+
+    policy: Literal["stop", "elastic"] = "stop"
+    eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, below=1)] = CONTACT_BEGINS
+    stiffness: Stiffness | None = Field(default=None, description="of the surfaces, for the elastic policy")
+
+
+class Accuracy(Model):
+    """How exact the answer has to be: one target, or mesh and tolerance by hand."""
+
+    target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = 1e-3
+    mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
+        default=None, description="elements along the axis and around the circumference"
+    )
+    tolerance: Annotated[float, Quantity(NUMBER, "1e-6", above=0, most=0.1)] | None = Field(
+        default=None, description="of the time integration, relative to the clearance"
+    )
+    steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = STEPS_PER_REVOLUTION
+
+
+class Output(Model):
+    """What a run writes."""
+
+    step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = OUTPUT_STEP
+
+
+class Case(Model):
+    """One machine and one run, as the user wrote them."""
+
+    name: Label = Field(default="", description="short name for results; the file's name if not given")
+    title: Label = ""
+    rotor: Rotor
+    shaft: tuple[ShaftSection, ...] = ()
+    disks: tuple[Disk, ...] = Field(default=(), alias="disk")
+    bearings: Bearings = Field(alias="bearing")
+    oil: Oil
+    film: FilmModel = FilmModel()
+    speed: SpeedProfile
+    motion: Motion | None = None
+    start: Start = Start()
+    contact: Contact = Contact()
+    accuracy: Accuracy = Accuracy()
+    output: Output = Output()
+    _source_text: str = PrivateAttr("")
+
+    @property
+    def source_text(self) -> str:
+        """The case as TOML text, all overrides included; loading it gives this case again."""
+        return self._source_text
+
+    def with_source_text(self, text: str) -> Case:
+        """This case, which came from `text`."""
+        case = self.model_copy()
+        case._source_text = text
+        return case
+
+    def viscosity(self, film: FilmGeometry) -> float:
+        """The dynamic viscosity [Pa s] in `film`: its own, by its own temperature, or that of the oil."""
+        if film.viscosity is not None:
+            return film.viscosity
+        if film.temperature is not None and self.oil.vogel is not None:
+            return self.oil.vogel.at(film.temperature)
+        return self.oil.viscosity
+
+
+def json_schema() -> dict[str, Any]:
+    """The JSON Schema of a case file."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Case.model_json_schema(by_alias=True)}

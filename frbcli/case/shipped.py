@@ -1,0 +1,46 @@
+"""The cases that come along with frb."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from frbcli.errors import Fault, InputError
+
+
+def shipped_cases() -> dict[str, str]:
+    """The names of the shipped cases, sorted, with their titles."""
+    return {name: str(tomllib.loads(_text(name)).get("title", "")) for name in shipped_names()}
+
+
+def find_shipped(name: str) -> str:
+    """The text of the shipped case `name`. Raises InputError, which suggests the nearest name, if there is none."""
+    if name not in shipped_names():
+        raise InputError(name, (Fault("CASE", name, None, "is no shipped case.", nearest(name)),))
+    return _text(name)
+
+
+def shipped_names() -> tuple[str, ...]:
+    """The names of the shipped cases, sorted."""
+    files_there = (entry.name for entry in _home().iterdir())
+    return tuple(sorted(name.removesuffix(".toml") for name in files_there if name.endswith(".toml")))
+
+
+def nearest(name: str) -> str:
+    """A remedy for a name that is not there."""
+    close = difflib.get_close_matches(name, shipped_names(), n=1, cutoff=0.5)
+    return f'Did you mean the shipped case "{close[0]}"?' if close else "`frb cases` lists the shipped cases."
+
+
+def _text(name: str) -> str:
+    return _home().joinpath(f"{name}.toml").read_text(encoding="utf-8")
+
+
+def _home() -> Traversable:
+    """Inside of an installed package; beside the package in a checkout or an editable installation."""
+    package = files("frbcli")
+    installed = package.joinpath("shipped_cases")
+    return installed if installed.is_dir() else Path(str(package)).parent / "cases"

@@ -1,0 +1,1 @@
+"""The command line: one thin command per file. click and rich live here and nowhere else."""

@@ -1,0 +1,144 @@
+"""What every command shares: CASE with --set, --json and --quiet, and the terminal they speak to.
+
+A command is written as
+
+    @click.command()
+    @case_argument
+    @output_options
+    def command(case: Case, terminal: Terminal) -> int | None: ...
+
+and returns its exit code (None is 0). Errors are raised as FrbError; `frbcli.cli.main` reports them.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from frbcli.case.schema import Case
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_JSON = "frbcli.json"
+_SETTINGS = "frbcli.settings"
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """Where a command speaks: text for people to stderr, one JSON document to stdout.
+
+    json: --json was given; quiet: --quiet was given.
+    """
+
+    json: bool = False
+    quiet: bool = False
+
+    @property
+    def live(self) -> bool:
+        """Whether somebody watches: progress may move on the screen."""
+        return not self.quiet and sys.stderr.isatty()
+
+    def console(self) -> Console:
+        """A rich console on stderr; silent with --quiet."""
+        from rich.console import Console
+
+        return Console(stderr=True, quiet=self.quiet, highlight=False, markup=False, emoji=False)
+
+    def say(self, text: str = "") -> None:
+        """Print `text` for people, as it is."""
+        if not self.quiet:
+            click.echo(text, err=True)
+
+    def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+        """Print a table for people. rows: as many cells as columns each; cells are shown by str()."""
+        if self.quiet:
+            return
+        from rich import box
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+        for column in columns:
+            table.add_column(column, overflow="fold")
+        for row in rows:
+            table.add_row(*(Text(str(cell)) for cell in row))
+        self.console().print(table)
+
+    def emit(self, document: Mapping[str, object]) -> None:
+        """Print the command's one JSON document on stdout if --json was given; NaN and infinities become null."""
+        if self.json:
+            click.echo(json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def case_argument(function: Function) -> Function:
+    """Give a command the argument CASE and the option --set; it receives the loaded `case: Case`."""
+    settings = click.option(
+        "--set",
+        multiple=True,
+        metavar="KEY=VALUE",
+        is_eager=True,  # CASE is loaded with the settings, so they come first
+        expose_value=False,
+        callback=_remember_settings,
+        help="Set a key of the case, e.g. --set bearing.clearance='40 um'. Repeatable.",
+    )
+    case = click.argument("case", metavar="CASE", callback=_load)
+    return case(settings(function))
+
+
+def output_options(function: Function) -> Function:
+    """Give a command the options --json and --quiet; it receives `terminal: Terminal`."""
+    as_json = click.option(
+        "--json",
+        is_flag=True,
+        is_eager=True,  # the terminal is made of both options, in the callback of --quiet
+        expose_value=False,
+        callback=_remember_json,
+        help="One JSON document on stdout.",
+    )
+    quiet = click.option("--quiet", "terminal", is_flag=True, callback=_terminal, help="No text for people.")
+    return as_json(quiet(function))
+
+
+def _remember_settings(context: click.Context, _: click.Parameter, settings: tuple[str, ...]) -> None:
+    context.meta[_SETTINGS] = settings
+
+
+def _remember_json(context: click.Context, _: click.Parameter, as_json: bool) -> None:
+    context.meta[_JSON] = as_json
+
+
+def _terminal(context: click.Context, _: click.Parameter, quiet: bool) -> Terminal:
+    return Terminal(json=bool(context.meta.get(_JSON)), quiet=quiet)
+
+
+def _load(context: click.Context, _: click.Parameter, source: str) -> Case:
+    from frbcli.case.load import load_case
+
+    return load_case(source, context.meta.get(_SETTINGS, ()))
+
+
+def _plain(value: object) -> object:
+    """`value` as JSON knows it: arrays as lists, paths as text, what is not finite as null."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, str | int):
+        return value
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, PurePath):
+        return str(value)
+    if hasattr(value, "tolist"):  # arrays and scalars of numpy, without importing it
+        return _plain(value.tolist())
+    if isinstance(value, Iterable):
+        return [_plain(item) for item in value]
+    raise TypeError(f"no JSON for {type(value).__name__}")

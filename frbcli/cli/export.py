@@ -1,0 +1,54 @@
+"""`frb export`: the signals of a run as a table for other programs."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import click
+
+from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.runs import OUTPUT, RUN, beside
+
+
+@click.command()
+@click.argument("run_file", metavar="RUN.h5", type=RUN)
+@click.option(
+    "--format",
+    "table_format",
+    type=click.Choice(["csv", "parquet", "mat"]),
+    default="csv",
+    show_default=True,
+    help="parquet needs the extra frbcli[parquet].",
+)
+@click.option("-o", "--output", metavar="FILE", type=OUTPUT, help='The file; "-" writes CSV to stdout. [RUN.FORMAT]')
+@output_options
+def command(run_file: Path, table_format: str, output: Path | None, terminal: Terminal) -> None:
+    """Write the signals of RUN.h5, one column each."""
+    from frbcli.results.export import export_run, write_csv
+    from frbcli.results.store import read_run
+
+    to_stdout = output == Path("-")
+    if to_stdout and (table_format != "csv" or terminal.json):
+        raise click.UsageError("Only CSV goes to stdout, and not together with --json.")
+    run = read_run(run_file)
+    if to_stdout:
+        try:
+            write_csv(run, sys.stdout)
+            sys.stdout.flush()
+        except BrokenPipeError:  # the reader has seen enough, as `head` does; nothing more can be said there
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return
+    target = export_run(run, output or beside(run_file, f".{table_format}"), table_format)
+    terminal.say(f"{len(run)} samples of {len(run.signals)} signals: {target}")
+    terminal.emit(
+        {
+            "command": "export",
+            "run": run_file,
+            "output": target,
+            "format": table_format,
+            "samples": len(run),
+            "columns": list(run.signals),
+        }
+    )

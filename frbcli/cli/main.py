@@ -1,0 +1,110 @@
+"""`frb`: the table of commands, and the one place where errors become exit codes.
+
+Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+
+import click
+
+from frbcli import __version__
+from frbcli.cli.common import Terminal
+from frbcli.errors import Fault, FrbError, InputError, NotConverged
+
+# name: (module, one line of help); the module is imported when its command is called
+COMMANDS = {
+    "check": ("frbcli.cli.check", "Validate a case; show its SI values and what will be modelled."),
+    "runup": ("frbcli.cli.runup", "Run a rotor up and write the run to a file."),
+    "rundown": ("frbcli.cli.rundown", "Run a rotor up, hold it, run it down."),
+    "waterfall": ("frbcli.cli.waterfall", "Draw the spectra of a run over time or rotor speed."),
+    "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits or displacements of runs."),
+    "compare": ("frbcli.cli.compare", "Run one case with several models and compare them."),
+    "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
+    "export": ("frbcli.cli.export", "Write the signals of a run as CSV, Parquet or MAT."),
+    "cases": ("frbcli.cli.cases", "List, show or copy the cases that come with frb."),
+    "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),
+}
+
+INTERRUPTED = 130
+
+
+class LazyGroup(click.Group):
+    """A group that knows its commands by name and imports only the one that is called."""
+
+    def list_commands(self, _ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, _ctx: click.Context, name: str) -> click.Command | None:
+        if name not in COMMANDS:
+            return None
+        module, summary = COMMANDS[name]
+        command: click.Command = importlib.import_module(module).command
+        command.name = name
+        command.help = command.help or summary
+        return command
+
+    def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="frb", message="%(prog)s %(version)s")
+def frb() -> None:
+    """Rotordynamics of light, fast rotors in fluid film bearings.
+
+    Describe rotor, bearings and oil in one TOML file (CASE: a file, or the name of a shipped case), run it up, and look
+    at the waterfall.
+    """
+
+
+def main() -> None:
+    """The console script."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run `frb` with `arguments` and return its exit code. What is neither FrbError nor click's is a bug and passes."""
+    try:
+        code = frb.main(list(arguments), prog_name="frb", standalone_mode=False)
+    except click.Abort:  # click turns KeyboardInterrupt into it
+        click.echo("interrupted", err=True)
+        return INTERRUPTED
+    except click.exceptions.NoArgsIsHelpError as nothing_asked:
+        nothing_asked.show()
+        return nothing_asked.exit_code
+    except click.ClickException as wrong_usage:
+        wrong_usage.show()
+        _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
+        return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
+    except FrbError as error:
+        click.echo(f"frb: {error}", err=True)
+        _emit_error(arguments, error)
+        return error.exit_code
+    return code if isinstance(code, int) else 0
+
+
+def _usage_fault(error: click.ClickException) -> Fault:
+    context = getattr(error, "ctx", None)
+    path = "frb" if context is None else context.command_path
+    return Fault("command line", "", None, error.format_message(), f"See `{path} --help`.")
+
+
+def _emit_error(arguments: Sequence[str], error: FrbError) -> None:
+    """With --json an error, too, is one JSON document on stdout."""
+    if "--json" not in arguments:
+        return
+    document: dict[str, object] = {"command": next((word for word in arguments if word in COMMANDS), None)}
+    if isinstance(error, InputError):
+        faults = [
+            {"key": f.key, "value": f.value, "line": f.line, "problem": f.problem, "remedy": f.remedy}
+            for f in error.faults
+        ]
+        document |= {"status": "input-error", "source": error.source, "faults": faults}
+    else:
+        document |= {"status": "not-converged" if isinstance(error, NotConverged) else "error", "message": str(error)}
+    Terminal(json=True).emit(document)

@@ -1,0 +1,25 @@
+"""`frb runup`: run a rotor up and write the run to a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.transient import run_options, transient
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+
+
+@click.command()
+@case_argument
+@run_options
+@output_options
+def command(case: Case, output: Path | None, resume: bool, picture: bool, terminal: Terminal) -> int:
+    """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
+    from frbcli.solve.run import runup
+
+    return transient("runup", runup, case, output, resume, picture, terminal)

@@ -1,0 +1,154 @@
+"""`frb stability`: resting positions, linear coefficients, eigenvalues over speed, threshold speed."""
+
+from __future__ import annotations
+
+import math
+import re
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.runs import OUTPUT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from frbcli.analysis.stability import RestingFilm, Stability, StabilityPoint
+    from frbcli.case.schema import Case
+
+LONGEST_TABLE = 20  # rows for people; JSON and the picture have every speed
+MODES = 2  # the slowest oscillating motions, shown with frequency and damping
+COLUMNS = ("Hz", "eps", "attitude", *("mode Hz", "damping") * MODES, "growth 1/s")
+
+
+class RotorSpeed(click.ParamType[float]):
+    """A rotor speed with a unit, "25 Hz" or "1500 rpm"; a bare number is in Hz. Greater than zero."""
+
+    name = "speed"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        from frbcli.units import SPEED, quantity
+
+        with suppress(ValueError):  # then it has a unit
+            value = float(str(value))
+        try:
+            speed = quantity(value, SPEED, "25 Hz")
+        except ValueError as fault:
+            self.fail(f"{value!r} {fault}", param, ctx)
+        if speed <= 0.0:
+            self.fail(f'{value!r} is not greater than 0. Write e.g. "25 Hz".', param, ctx)
+        return speed
+
+
+@click.command()
+@case_argument
+@click.option("--speed", "speeds", multiple=True, type=RotorSpeed(), metavar="SPEED",
+              help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [60 over the range of the case]')  # fmt: skip
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
+@click.option("--no-picture", is_flag=True, help="No Campbell diagram.")
+@output_options
+def command(
+    case: Case, speeds: tuple[float, ...], output: Path | None, no_picture: bool, terminal: Terminal
+) -> int | None:
+    """Where CASE rests at each speed, how stiff its films are there, and from which speed on a whirl grows."""
+    from frbcli.analysis.stability import stability
+    from frbcli.errors import NotConverged
+    from frbcli.plot.campbell import campbell_figure
+    from frbcli.plot.style import check_picture, save_figure
+
+    if no_picture and output is not None:
+        raise click.UsageError("-o names the picture that --no-picture leaves out.")
+    picture = None if no_picture else output or Path(_file_name(case.name) + "-campbell.png")
+    if picture is not None:
+        check_picture(picture)
+    found = stability(case, speeds or None)
+    if picture is not None:
+        save_figure(campbell_figure(found), picture)
+    _tell(terminal, found, picture)
+    terminal.emit(
+        {
+            "command": "stability",
+            "case": case.name,
+            "points": [_point(point) for point in found.points],
+            "threshold": _threshold(found),
+            "note": found.note,
+            "picture": picture,
+        }
+    )
+    return None if any(point.films for point in found.points) else NotConverged.exit_code
+
+
+def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
+    every = math.ceil(len(found.points) / LONGEST_TABLE)
+    shown = found.points[every - 1 :: every]
+    title = found.case.title or found.case.name
+    terminal.table(title, COLUMNS, [_cells(point) for point in shown])
+    if every > 1:
+        terminal.say(f"{len(shown)} of {len(found.points)} speeds; --json gives all, --speed exactly those you want.")
+    for problem in (point.problem for point in found.points if point.problem):
+        terminal.say(problem)
+    terminal.say(_sentence(found))
+    if picture is not None:
+        terminal.say(f"Campbell diagram: {picture}")
+
+
+def _sentence(found: Stability) -> str:
+    threshold = found.threshold
+    if threshold is None:
+        return found.note
+    return (
+        f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, at first with "
+        f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed."
+    )
+
+
+def _cells(point: StabilityPoint) -> Sequence[str]:
+    """A row of the table. Damping: share of the critical damping, negative where the motion grows."""
+    if not point.films:
+        return (f"{point.speed_Hz:.4g}", "none", *[""] * (len(COLUMNS) - 2))
+    modes: list[str] = []
+    for value in point.oscillating[:MODES]:
+        modes += [f"{value.imag / (2 * math.pi):.1f}", f"{-value.real / abs(value):.4f}"]
+    modes += [""] * (2 * MODES - len(modes))
+    eccentricity = ", ".join(f"{film.eccentricity:.4f}" for film in point.films)
+    attitude = ", ".join("-" if math.isnan(film.attitude_deg) else f"{film.attitude_deg:.1f}°" for film in point.films)
+    return (f"{point.speed_Hz:.4g}", eccentricity, attitude, *modes, f"{point.growth:.1f}")
+
+
+def _point(point: StabilityPoint) -> dict[str, object]:
+    """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
+    document: dict[str, object] = {"speed_Hz": point.speed_Hz, "status": point.status}
+    films = [_film(film) for film in point.films]
+    document |= films[0] if films else dict.fromkeys(_FILM_KEYS)
+    if len(films) > 1:
+        document["films"] = films
+    if point.problem:
+        document["problem"] = point.problem
+    return document | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
+
+
+_FILM_KEYS = ("displacement", "eccentricity", "attitude_deg", "stiffness_N_m", "damping_N_s_m")
+
+
+def _film(film: RestingFilm) -> dict[str, object]:
+    values = (film.displacement, film.eccentricity, film.attitude_deg, film.stiffness, film.damping)
+    return dict(zip(_FILM_KEYS, values, strict=True))
+
+
+def _threshold(found: Stability) -> dict[str, float] | None:
+    threshold = found.threshold
+    if threshold is None:
+        return None
+    return {
+        "speed_Hz": threshold.speed_Hz,
+        "frequency_Hz": threshold.frequency_Hz,
+        "whirl_ratio": threshold.whirl_ratio,
+    }
+
+
+def _file_name(name: str) -> str:
+    """A case's name with what file names do not bear replaced."""
+    return re.sub(r"[^\w.-]+", "-", name) or "case"

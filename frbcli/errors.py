@@ -1,0 +1,52 @@
+"""The errors of frb. Whatever frb raises on purpose derives from FrbError; anything else is a bug."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+class FrbError(Exception):
+    """Base class. `exit_code` is what the command line ends with."""
+
+    exit_code = 1
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault of an input.
+
+    key: dotted path of the key, e.g. "bearing.clearance"; value: what was found, as text; line: 1-based line in the
+    case file, or None where the key comes from --set or is absent; problem: what is wrong; remedy: what to write.
+    """
+
+    key: str
+    value: str
+    line: int | None
+    problem: str
+    remedy: str
+
+    def __str__(self) -> str:
+        where = "" if self.line is None else f" (line {self.line})"
+        value = "" if self.value == "" else f" = {self.value}"
+        return f"{self.key}{value}{where}: {self.problem} {self.remedy}".rstrip()
+
+
+class InputError(FrbError):
+    """The input is wrong. Carries every fault found; nothing was run."""
+
+    exit_code = 2
+
+    def __init__(self, source: str, faults: tuple[Fault, ...]) -> None:
+        self.source = source
+        self.faults = faults
+        super().__init__(source + "".join(f"\n  {fault}" for fault in faults))
+
+
+class RunFileError(InputError):
+    """A run file cannot be read or does not hold what is asked of it."""
+
+
+class NotConverged(FrbError):
+    """A numerical method found no solution; says what was tried and what to change."""
+
+    exit_code = 3

@@ -1,0 +1,89 @@
+"""Grids of the developed gap: quadratic elements on a rectangle, periodic in phi (section 3.4.2).
+
+scikit-fem owns the meshes, the elements and the assembled operators; the compiled solvers run on what it assembles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AxialModes:
+    """The axial half of the separated problem on quadratic elements.
+
+    eigenvalues: (k,) of K_z phi = lambda M_z phi, pressure zero at both ends; loads: (k,) integral of each mode over
+    z (its share of a load that does not depend on z); shapes: (k, n) values at the n axial nodes; nodes: (n,) in [0, 1].
+    Modes without a share in such a load (the odd ones) are left out: they stay zero.
+    """
+
+    eigenvalues: Array
+    loads: Array
+    shapes: Array
+    nodes: Array
+
+    def at(self, z: Array) -> Array:
+        """(k, m) values of the modes at the axial positions z (m,), by the elements' own shape functions."""
+        return self.shapes @ quadratic_interpolation(self.nodes, z)
+
+
+def ring_vertices(elements: int, contraction: float = 1.0) -> Array:
+    """(elements,) angles of the element boundaries over one turn, denser around Theta = pi, the narrowest gap.
+
+    The angles follow tan((Theta - pi)/2) = c tan((gamma - pi)/2) with gamma equidistant. c = 1 is equidistant;
+    c = sqrt((1 - eps)/(1 + eps)) is Sommerfeld's substitution, which makes H and the pressure smooth at any eps.
+    """
+    half_angle = np.pi * (np.arange(elements) / elements - 0.5)
+    return np.pi + 2.0 * np.arctan2(contraction * np.sin(half_angle), np.cos(half_angle))
+
+
+def quadratic_interpolation(nodes: Array, points: Array) -> Array:
+    """(n, m) values of the n quadratic shape functions (element ends at even indices, middles at odd) at m points."""
+    ends = nodes[::2]
+    element = np.clip(np.searchsorted(ends, points, side="right") - 1, 0, len(ends) - 2)
+    xi = (points - ends[element]) / (ends[element + 1] - ends[element])
+    values = np.zeros((len(nodes), len(points)))
+    column = np.arange(len(points))
+    values[2 * element, column] = (1 - xi) * (1 - 2 * xi)
+    values[2 * element + 1, column] = 4 * xi * (1 - xi)
+    values[2 * element + 2, column] += xi * (2 * xi - 1)
+    return values
+
+
+def axial_vertices(elements: int) -> Array:
+    """(elements + 1,) element boundaries over the width of a section, denser at the edges, where the pressure of a
+    narrow gap has its steepest fall (Chebyshev's spacing)."""
+    return 0.5 * (1.0 - np.cos(np.pi * np.arange(elements + 1) / elements))
+
+
+def axial_modes(vertices: Array) -> AxialModes:
+    """Generalised eigenvectors of the axial stiffness and mass on quadratic elements of [0, 1] between the vertices."""
+    from scipy.linalg import eigh
+    from skfem import Basis, BilinearForm, ElementLineP2, MeshLine, asm
+
+    basis = Basis(MeshLine(vertices), ElementLineP2(), intorder=4)
+
+    @BilinearForm
+    def stiffness(u, v, _):  # type: ignore[no-untyped-def]
+        return u.grad[0] * v.grad[0]
+
+    @BilinearForm
+    def mass(u, v, _):  # type: ignore[no-untyped-def]
+        return u * v
+
+    order = np.argsort(basis.doflocs[0])
+    nodes = basis.doflocs[0][order]
+    k_z = asm(stiffness, basis).toarray()[np.ix_(order, order)]
+    m_z = asm(mass, basis).toarray()[np.ix_(order, order)]
+    inner = slice(1, -1)
+    eigenvalues, vectors = eigh(k_z[inner, inner], m_z[inner, inner])
+    shapes = np.zeros((len(eigenvalues), len(nodes)))
+    shapes[:, inner] = vectors.T
+    loads = shapes @ m_z.sum(axis=1)
+    excited = np.abs(loads) > 1e-10 * np.abs(loads).max()
+    return AxialModes(eigenvalues[excited], loads[excited], shapes[excited], nodes)

@@ -1,0 +1,157 @@
+"""The Reynolds equation of a rectangular film, fast: axial modes times periodic quadratic elements in phi.
+
+On a rectangular film H depends on phi alone. The generalised eigenvectors of the axial element matrices then split the
+two-dimensional problem exactly into one small problem per mode k,
+
+    d/dphi(H^3 dP_k/dphi) - (R/b)^2 lambda_k H^3 P_k = c_k (w . n),      P(phi, z) = sum_k P_k(phi) Z_k(z),
+
+on the same quadratic elements. The middle nodes are condensed, the ends form a cyclic tridiagonal system.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from frbcli.film.grid import Array
+
+GAUSS_POINTS = np.array([0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15)])
+GAUSS_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
+SHAPE = np.stack([(1 - GAUSS_POINTS) * (1 - 2 * GAUSS_POINTS), 4 * GAUSS_POINTS * (1 - GAUSS_POINTS),
+                  GAUSS_POINTS * (2 * GAUSS_POINTS - 1)])  # (node, point)
+SLOPE = np.stack([4 * GAUSS_POINTS - 3, 4 - 8 * GAUSS_POINTS, 4 * GAUSS_POINTS - 1])
+
+
+@njit(cache=True, error_model="numpy")
+def gauss_angles(vertices: Array) -> Array:
+    """(m, 3) angles of the quadrature points of the m elements between the vertices (m,) of one turn."""
+    m = vertices.shape[0]
+    angles = np.empty((m, 3))
+    for e in range(m):
+        end = vertices[e + 1] if e + 1 < m else vertices[0] + 2 * math.pi
+        for g in range(3):
+            angles[e, g] = vertices[e] + (end - vertices[e]) * GAUSS_POINTS[g]
+    return angles
+
+
+@njit(cache=True, error_model="numpy")
+def element_lengths(vertices: Array) -> Array:
+    """(m,) lengths of the elements between the vertices of one turn."""
+    m = vertices.shape[0]
+    lengths = np.empty(m)
+    for e in range(m):
+        lengths[e] = (vertices[e + 1] if e + 1 < m else vertices[0] + 2 * math.pi) - vertices[e]
+    return lengths
+
+
+@njit(cache=True, error_model="numpy")
+def _element(length, cube, decay, local):  # type: ignore[no-untyped-def]
+    """local (3, 3) <- matrix of d/dphi(H^3 d/dphi) - decay H^3 on one element; cube: H^3 at its three points."""
+    for i in range(3):
+        for j in range(3):
+            entry = 0.0
+            for g in range(3):
+                entry += GAUSS_WEIGHTS[g] * cube[g] * (
+                    SLOPE[i, g] * SLOPE[j, g] / length + decay * length * SHAPE[i, g] * SHAPE[j, g])
+            local[i, j] = entry
+
+
+@njit(cache=True, error_model="numpy")
+def solve_ring(lengths, cube, decay, load):  # type: ignore[no-untyped-def]
+    """Solve -d/dphi(H^3 dP/dphi) + decay H^3 P = load on the ring of m quadratic elements.
+
+    lengths: (m,); cube: (m, 3) H^3 at the quadrature points; load: (r, m, 3) r right-hand sides at the element nodes
+    (first end, middle, second end), already integrated. Returns (r, 2 m): ends at even indices, middles at odd.
+    """
+    m, r = lengths.shape[0], load.shape[0]
+    middle = np.empty((m, 3))  # the middle row of each element, divided by its diagonal
+    diagonal, upper = np.zeros(m), np.zeros(m)
+    condensed = np.zeros((m, r))
+    local = np.empty((3, 3))
+    for e in range(m):
+        _element(lengths[e], cube[e], decay, local)
+        n = e + 1 if e + 1 < m else 0
+        a, b = local[1, 0] / local[1, 1], local[1, 2] / local[1, 1]
+        middle[e, 0], middle[e, 1], middle[e, 2] = a, 1.0 / local[1, 1], b
+        diagonal[e] += local[0, 0] - local[0, 1] * a
+        diagonal[n] += local[2, 2] - local[2, 1] * b
+        upper[e] += local[0, 2] - local[0, 1] * b
+        for k in range(r):
+            condensed[e, k] += load[k, e, 0] - a * load[k, e, 1]
+            condensed[n, k] += load[k, e, 2] - b * load[k, e, 1]
+    # Cyclic tridiagonal, symmetric: the corner is split off by one rank (Sherman-Morrison).
+    corner = upper[m - 1]
+    gamma = -diagonal[0]
+    diagonal[0] -= gamma
+    diagonal[m - 1] -= corner * corner / gamma
+    cut = np.zeros(m)
+    cut[0], cut[m - 1] = gamma, corner
+    for e in range(1, m):
+        factor = upper[e - 1] / diagonal[e - 1]
+        diagonal[e] -= factor * upper[e - 1]
+        cut[e] -= factor * cut[e - 1]
+        for k in range(r):
+            condensed[e, k] -= factor * condensed[e - 1, k]
+    for e in range(m - 1, -1, -1):
+        if e < m - 1:
+            cut[e] -= upper[e] * cut[e + 1]
+            for k in range(r):
+                condensed[e, k] -= upper[e] * condensed[e + 1, k]
+        cut[e] /= diagonal[e]
+        for k in range(r):
+            condensed[e, k] /= diagonal[e]
+    pressure = np.empty((r, 2 * m))
+    scale = 1.0 / (1.0 + cut[0] + corner * cut[m - 1] / gamma)
+    for k in range(r):
+        part = (condensed[0, k] + corner * condensed[m - 1, k] / gamma) * scale
+        for e in range(m):
+            pressure[k, 2 * e] = condensed[e, k] - part * cut[e]
+        for e in range(m):
+            n = 2 * (e + 1) if e + 1 < m else 0
+            pressure[k, 2 * e + 1] = (middle[e, 1] * load[k, e, 1] - middle[e, 0] * pressure[k, 2 * e]
+                                      - middle[e, 2] * pressure[k, n])
+    return pressure
+
+
+@njit(cache=True, error_model="numpy")
+def unit_fields(vertices, eccentricity, decays, mode_loads):  # type: ignore[no-untyped-def]
+    """Pressure of a unit radial and a unit tangential w, and their derivatives by the eccentricity, mode by mode.
+
+    Frame of the line of centres: H = 1 + eps cos(Theta), right-hand sides cos(Theta) and sin(Theta), see (3.26).
+    vertices: (m,); decays: (k,) (R/b)^2 lambda_k; mode_loads: (k,).
+    Returns (4, k, 2 m): P_r, P_t, dP_r/deps, dP_t/deps.
+    """
+    m, modes = vertices.shape[0], decays.shape[0]
+    lengths, angles = element_lengths(vertices), gauss_angles(vertices)
+    cube, change = np.empty((m, 3)), np.empty((m, 3))
+    load = np.zeros((2, m, 3))
+    for e in range(m):
+        for g in range(3):
+            cosine, sine = math.cos(angles[e, g]), math.sin(angles[e, g])
+            gap = 1.0 + eccentricity * cosine
+            cube[e, g] = gap**3
+            change[e, g] = 3.0 * gap * gap * cosine
+            for i in range(3):
+                weight = GAUSS_WEIGHTS[g] * lengths[e] * SHAPE[i, g]
+                load[0, e, i] -= weight * cosine
+                load[1, e, i] -= weight * sine
+    fields = np.empty((4, modes, 2 * m))
+    local = np.empty((3, 3))
+    for k in range(modes):
+        solution = solve_ring(lengths, cube, decays[k], load * mode_loads[k])
+        # K' P + K P' = 0: the load does not depend on the eccentricity.
+        defect = np.zeros((2, m, 3))
+        for e in range(m):
+            _element(lengths[e], change[e], decays[k], local)
+            n = 2 * (e + 1) if e + 1 < m else 0
+            for s in range(2):
+                for i in range(3):
+                    defect[s, e, i] = -(local[i, 0] * solution[s, 2 * e] + local[i, 1] * solution[s, 2 * e + 1]
+                                        + local[i, 2] * solution[s, n])
+        derivative = solve_ring(lengths, cube, decays[k], defect)
+        for s in range(2):
+            fields[s, k] = solution[s]
+            fields[2 + s, k] = derivative[s]
+    return fields

@@ -1,0 +1,85 @@
+"""The Campbell diagram: eigenfrequencies over rotor speed, and how fast the least damped of them grows or dies."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from frbcli.analysis.stability import Stability, StabilityPoint, Threshold
+from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
+
+Values = NDArray[np.float64]
+
+ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode
+DOT = 15.0  # pt^2
+GROWTH_FLOOR = 1.0  # 1/s, smallest half height of the growth panel: round-off is no news
+
+
+def campbell_figure(stability: Stability) -> Figure:
+    """Damped eigenfrequencies of all oscillating motions over the swept speeds, and the growth of the critical one.
+
+    Overdamped motions have no frequency and are left out; motions faster than the frequency axis as well.
+    """
+    points = [point for point in stability.sweep if point.films]
+    case = stability.case
+    with styled():
+        figure = new_figure(case.title or case.name, "eigenvalues about the resting position", height=5.8)
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
+        _draw_frequencies(above, points)
+        _draw_growth(below, points)
+        if stability.threshold is not None:
+            _mark_threshold((above, below), stability.threshold)
+        figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+def _draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
+    pairs = [(point.speed_Hz, value) for point in points for value in point.oscillating]
+    speeds, values = np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs])
+    frequencies, grows = values.imag / (2 * np.pi), values.real > 0.0
+    fastest = max((point.speed_Hz for point in points), default=1.0)
+    critical = [point.critical.imag / (2 * np.pi) for point in points if len(point.oscillating)]
+    top = max(fastest, ABOVE_LOWEST * max(critical, default=0.0))
+    ends = np.array([0.0, fastest])
+    for label, order, dashes in (("rotor speed", 1.0, (0, (5, 3))), ("half of it", 0.5, (0, (1, 2)))):
+        axes.plot(ends, order * ends, color=GREY, linestyle=dashes, linewidth=1.1, label=label, zorder=1.5)
+    axes.scatter(
+        speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="dies out"
+    )
+    axes.scatter(speeds[grows], frequencies[grows], DOT, color=VERMILION, label="grows", zorder=3)
+    axes.set_xlim(0.0, fastest)
+    axes.set_ylim(0.0, top)
+    axes.set_ylabel("damped frequency in Hz")
+
+
+def _draw_growth(axes: Axes, points: list[StabilityPoint]) -> None:
+    speeds = np.array([point.speed_Hz for point in points])
+    growth = np.array([point.growth for point in points])
+    axes.plot(speeds, growth, color=BLACK)
+    for sign, colour, alpha in ((1.0, VERMILION, 0.3), (-1.0, BLUE, 0.15)):
+        part = sign * growth > 0.0
+        axes.fill_between(speeds, growth, 0.0, where=part, interpolate=True, color=colour, alpha=alpha, linewidth=0)
+    axes.axhline(0.0, color=BLACK, linewidth=0.8)
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -GROWTH_FLOOR), max(high, GROWTH_FLOOR))
+    axes.set_xlabel("rotor speed in Hz")
+    axes.set_ylabel("growth in 1/s")
+
+
+def _mark_threshold(panels: tuple[Axes, Axes], threshold: Threshold) -> None:
+    above, _ = panels
+    for axes in panels:
+        axes.axvline(threshold.speed_Hz, color=BLACK, linewidth=0.9, linestyle=(0, (4, 3)))
+    above.plot(threshold.speed_Hz, threshold.frequency_Hz, marker="D", color=BLACK, markersize=5, zorder=4)
+    left = threshold.speed_Hz > 0.5 * above.get_xlim()[1]
+    above.annotate(
+        f"threshold {threshold.speed_Hz:.1f} Hz\nwhirl {threshold.frequency_Hz:.1f} Hz = {threshold.whirl_ratio:.3f} ω",
+        (threshold.speed_Hz, above.get_ylim()[1]),
+        xytext=(-5 if left else 5, -4),
+        textcoords="offset points",
+        ha="right" if left else "left",
+        va="top",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85},
+    )

@@ -1,0 +1,41 @@
+"""Displacement over time, of one run or of several."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+from frbcli.plot.signals import MICRO, cut, heading, labels, motion, suffixes, thin, times
+from frbcli.plot.style import legend_below, new_figure, styled
+from frbcli.results.store import Run
+
+
+def displacement_figure(
+    runs: Sequence[Run],
+    signal: str | None = None,
+    from_time: float | None = None,
+    to_time: float | None = None,
+) -> Figure:
+    """x and y over time, the runs overlaid, from from_time to to_time in s.
+
+    signal: "disk", "journal" or "journal_NAME" of a bearing; None takes the disk where every run has one.
+    Raises RunFileError if a run lacks the signal.
+    """
+    node = signal or ("disk" if all(suffixes(run, "disk_x_m") for run in runs) else "journal")
+    title, subtitle = heading(runs)
+    what = f"displacement of the {node.replace('_', ' ')}"
+    with styled():
+        figure = new_figure(title, ", ".join(text for text in (subtitle, what) if text), height=5.0)
+        panels = figure.subplots(2, 1, sharex=True)
+        for run, label in zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True):
+            shown = cut(run, from_time, to_time)
+            for axes, values in zip(panels, motion(run, node), strict=True):
+                thinned = thin(times(run)[shown], values[shown] * MICRO)
+                axes.plot(*thinned, label=label, alpha=1.0 if len(runs) == 1 else 0.75)
+        for axes, name in zip(panels, "xy", strict=True):
+            axes.set_ylabel(f"{name} in µm")
+            axes.margins(x=0.0)
+        panels[1].set_xlabel("time in s")
+        legend_below(figure, panels[0])
+    return figure

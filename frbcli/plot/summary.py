@@ -1,0 +1,73 @@
+"""One picture that tells a run: eccentricity with its events, waterfall, rotor speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from frbcli.plot.eccentricity import draw_eccentricity
+from frbcli.plot.signals import events, heading, suffixes, thin, times
+from frbcli.plot.style import BLACK, GREY, mark_times, new_figure, styled
+from frbcli.plot.waterfall import draw_levels, run_spectra
+from frbcli.results.store import Run
+
+WINDOW_s = 0.2
+WINDOWS = 4  # a run shorter than this many windows gets shorter ones
+FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
+
+NAMES = {"critical-speed": "critical speed", "onset": "onset of whirl", "offset": "end of whirl", "contact": "contact"}
+
+
+def summary_figure(run: Run) -> Figure:
+    """Eccentricity with the events marked, waterfall of the journal and rotor speed over one time axis.
+
+    Raises RunFileError if the run holds no samples.
+    """
+    time_s = times(run)
+    with styled():
+        figure = new_figure(*heading([run]), height=7.6)
+        above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
+        draw_eccentricity(above, [run])
+        above.set_xlim(time_s[0], time_s[-1])
+        if len(above.get_lines()) > 1:
+            above.legend(loc="upper right")
+        if len(time_s) >= FEWEST_SAMPLES:
+            window = min(WINDOW_s, float(time_s[-1] - time_s[0]) / WINDOWS)
+            signal = "journal" + (suffixes(run, "journal_x_m") or [""])[0]
+            mesh = draw_levels(middle, run, run_spectra(run, signal, window, "x"), "time")
+            bar = figure.colorbar(mesh, ax=[above, middle, below], location="bottom", shrink=0.6, pad=0.02,
+                                  extend="both", aspect=40)  # fmt: skip
+            bar.set_label("amplitude of the journal relative to the clearance in dB")
+            bar.outline.set_visible(False)
+        _draw_speed(below, run)
+        for axes in (above, middle):
+            axes.set_xlabel("")
+        found = events(run)
+        mark_times((above, middle), [event["t_s"] for event in found], [_words(event) for event in found])
+    return figure
+
+
+def _draw_speed(axes: Axes, run: Run) -> None:
+    axes.plot(*thin(times(run), run["speed_Hz"]), color=BLACK, label="rotor")
+    rings = suffixes(run, "ring_speed_Hz")
+    for suffix in rings:
+        name = ", ".join(word for word in ("ring", suffix[1:]) if word)
+        axes.plot(*thin(times(run), run["ring_speed_Hz" + suffix]), color=GREY, label=name)
+    if rings:
+        axes.legend(loc="upper left")
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("time in s")
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.set_ylabel("speed in Hz")
+
+
+def _words(event: dict[str, Any]) -> str:
+    """An event for people: what, at which speed, with which frequency."""
+    name = NAMES.get(event["kind"], event["kind"])
+    film = f" {event['film']}" if event.get("film") else ""
+    ratio = event.get("frequency_ratio")
+    share = f", {ratio:.2f} ω" if ratio is not None and ratio != 1.0 else ""
+    return f"{name}{film}\n{event['speed_Hz']:.1f} Hz{share}"

@@ -1,0 +1,151 @@
+"""The waterfall: spectra of a run over time or rotor speed."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, ScalarFormatter
+from numpy.typing import NDArray
+
+from frbcli.analysis.spectrum import Direction, Spectrogram
+from frbcli.analysis.spectrum import waterfall as spectra
+from frbcli.plot.cascade import draw_cascade
+from frbcli.plot.signals import clearance, heading, motion, suffixes, times
+from frbcli.plot.style import LEVEL_MAP, new_figure, styled
+from frbcli.results.container import refuse
+from frbcli.results.store import Run
+
+Over = Literal["time", "speed"]
+Values = NDArray[np.float64]
+
+LEVELS_dB = (-60.0, 0.0)  # a thousandth of the clearance, and the clearance
+ABOVE_SYNCHRONOUS = 1.2  # how far the frequency axis goes, relative to the highest rotor speed
+LOWEST_LOG_Hz = 10.0
+FEWEST_LINES = 8  # lines of an unpadded spectrum that the frequency axis shows of a rotor that hardly turns
+TURNING = 1e-3  # share of the highest speed per window that is a change of speed
+
+
+def waterfall_figure(
+    run: Run,
+    over: Over = "time",
+    signal: str = "journal",
+    cascade: bool = False,
+    window_s: float = 0.2,
+    direction: Direction = "x",
+    log: bool = False,
+) -> Figure:
+    """Levels in dB relative to the clearance, with the rotor speed and its half (or the ring's) drawn in.
+
+    over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
+    "journal_NAME" of a bearing; cascade: one curve per spectrum, behind each other; window_s and direction as in
+    `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency.
+
+    Raises InputError if the run does not have the signal or is shorter than a window.
+    """
+    found = run_spectra(run, signal, window_s, direction)
+    parts = _parts(run, found) if over == "speed" else [("", found)]
+    what = f"{'forward motion' if direction == 'forward' else direction} of the {signal.replace('_', ' ')}"
+    title, subtitle = heading([run])
+    with styled():
+        figure = new_figure(title, ", ".join(text for text in (subtitle, what) if text), height=4.0 + 0.6 * len(parts))
+        panels = figure.subplots(1, len(parts), squeeze=False, sharey=not cascade)[0]
+        for axes, (name, part) in zip(panels, parts, strict=True):
+            axes.set_title(name)
+            if cascade:
+                draw_cascade(axes, part, over, LEVELS_dB, _orders(run, part))
+            else:
+                mesh = draw_levels(axes, run, part, over, log)
+        if not cascade:
+            bar = figure.colorbar(mesh, ax=list(panels), pad=0.02, extend="both")
+            bar.set_label("amplitude relative to the clearance in dB")
+            bar.outline.set_visible(False)
+    return figure
+
+
+def run_spectra(run: Run, signal: str, window_s: float, direction: Direction) -> Spectrogram:
+    """The spectra of a run up to the frequency that its pictures show."""
+    x, y = motion(run, signal)
+    highest = max(ABOVE_SYNCHRONOUS * float(np.max(run["speed_Hz"])), FEWEST_LINES / max(window_s, 1e-9))
+    suffix = signal.partition("_")[2]
+    length = clearance(run, f"_{suffix}" if suffix else "")
+    return spectra(
+        times(run), x, y, run["speed_Hz"], length, window_s, max_frequency_Hz=highest, direction=direction
+    )
+
+
+def draw_levels(axes: Axes, run: Run, found: Spectrogram, over: Over, log: bool = False) -> QuadMesh:
+    """The map of levels with its lines, on axes of a figure."""
+    across = found.time_s if over == "time" else found.speed_Hz
+    mesh = axes.pcolormesh(
+        across,
+        found.frequency_Hz,
+        found.level_dB,
+        cmap=LEVEL_MAP,
+        vmin=LEVELS_dB[0],
+        vmax=LEVELS_dB[1],
+        shading="nearest" if len(across) > 1 else "auto",
+        rasterized=True,
+    )
+    bottom = LOWEST_LOG_Hz if log else 0.0
+    axes.set_ylim(bottom, float(found.frequency_Hz[-1]))
+    if log:
+        axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(ScalarFormatter())
+    for label, frequency in _orders(run, found):
+        axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
+        _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
+    axes.grid(False)
+    axes.set_xlabel("time in s" if over == "time" else "rotor speed in Hz")
+    axes.set_ylabel("frequency in Hz")
+    return mesh
+
+
+def _orders(run: Run, found: Spectrogram) -> list[tuple[str, Values]]:
+    """The lines an engineer looks for: synchronous, and what the oil films whirl with."""
+    lines = [("ω", found.speed_Hz)]
+    rings = suffixes(run, "ring_speed_Hz")
+    if not rings:
+        return [*lines, ("ω/2", found.speed_Hz / 2)]
+    ring = np.interp(found.time_s, run["time_s"], run["ring_speed_Hz" + rings[0]])
+    return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
+
+
+def _label_line(axes: Axes, across: Values, frequency: Values, label: str, limits: tuple[float, float]) -> None:
+    """Write the name of a line beside it, where it is highest yet well inside the picture."""
+    span = abs(across[-1] - across[0])
+    middle = np.abs(across - 0.5 * (across[0] + across[-1]))
+    inside = (middle < 0.43 * span) & (frequency > limits[0]) & (frequency < limits[1])
+    if not inside.any():
+        return
+    place = int(np.argmax(np.where(inside, frequency, -np.inf)))
+    axes.annotate(
+        label,
+        (across[place], frequency[place]),
+        xytext=(-3, 4),
+        textcoords="offset points",
+        ha="right",
+        va="bottom",
+        color="white",
+        fontsize=9.0,
+    )
+
+
+def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
+    """The spectra while the speed rises and while it falls, each in the order of speed."""
+    change = np.gradient(found.speed_Hz) if len(found.speed_Hz) > 1 else np.zeros(1)
+    least = TURNING * float(np.max(found.speed_Hz))
+    parts = []
+    for name, chosen in (("run-up", change > least), ("run-down", change < -least)):
+        if np.count_nonzero(chosen) > 1:
+            order = np.flatnonzero(chosen)[np.argsort(found.speed_Hz[chosen])]
+            levels, amplitude = found.level_dB[:, order], found.amplitude[:, order]
+            speed = found.speed_Hz[order]
+            parts.append((name, Spectrogram(found.time_s[order], speed, found.frequency_Hz, amplitude, levels)))
+    if not parts:
+        raise refuse(run.path, "was made at constant speed.", "Draw its waterfall over time.")
+    return [("", parts[0][1])] if len(parts) == 1 else parts

@@ -1,0 +1,277 @@
+"""Runs in HDF5, written as they go. Knows no physics.
+
+At each checkpoint the whole file is written anew beside the old one and takes its place in one step, so that a run
+that is killed at any moment leaves a file that opens and holds everything up to its last checkpoint.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.errors import RunFileError
+from frbcli.results.container import USER_BLOCK, check_output, part_file, read_whole, refuse, write_whole
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Header", "Run", "RunWriter", "Signal", "check_output", "read_run"]
+
+Values = NDArray[np.float64]
+
+INTERRUPTED = "interrupted"
+TIME = "time_s"
+TEXTS = ("title", "command", "case_name", "case_text", "status")
+RECORDS = ("versions", "references", "cost", "error", "events")  # kept as JSON text
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One column of a run: values (n,) and their unit as people write it, "" for a ratio."""
+
+    values: Values
+    unit: str
+
+
+@dataclass(frozen=True)
+class Header:
+    """What is known of a run before it starts.
+
+    units: name of each signal -> its unit; references: lengths and the like that pictures refer to, in SI, e.g.
+    {"clearance_m": 35e-6}; versions: program -> version.
+    """
+
+    title: str
+    command: str
+    case_name: str
+    case_text: str
+    units: Mapping[str, str]
+    versions: Mapping[str, str] = field(default_factory=dict)
+    references: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run as its file tells it. `run["eccentricity"]` gives the values (n,) of a signal, in the unit of its name.
+
+    checkpoint: the state from which the run can go on, or None; checkpoint_samples: how many samples there were then.
+    """
+
+    path: Path
+    title: str
+    command: str
+    case_name: str
+    case_text: str
+    versions: dict[str, str]
+    signals: dict[str, Signal]
+    status: str
+    t_end_s: float
+    events: list[dict[str, Any]]
+    cost: dict[str, Any]
+    error: dict[str, Any]
+    references: dict[str, float]
+    checkpoint: dict[str, NDArray[Any]] | None
+    checkpoint_samples: int = 0
+
+    def __getitem__(self, name: str) -> Values:
+        if name not in self.signals:
+            raise refuse(self.path, f'has no signal "{name}".', f"It has: {', '.join(self.signals)}.")
+        return self.signals[name].values
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.signals
+
+    def __len__(self) -> int:
+        """The number of samples."""
+        return min((len(signal.values) for signal in self.signals.values()), default=0)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The signals as a table with one column each, named as the signals are."""
+        import pandas as pd
+
+        return pd.DataFrame({name: signal.values for name, signal in self.signals.items()})
+
+
+class RunWriter:
+    """Collects a run in memory; writes it whole at each checkpoint. The caller decides when.
+
+    The file exists as soon as the writer does, and says "interrupted" until `finish`.
+    """
+
+    def __init__(self, path: str | Path, header: Header) -> None:
+        """Raises RunFileError if `path` cannot be written or is a file that frb did not write."""
+        self.path = Path(path)
+        check_output(self.path)
+        part_file(self.path).unlink(missing_ok=True)  # left by a run that was killed while writing
+        self._header = header
+        self._chunks: dict[str, list[Values]] = {name: [] for name in header.units}
+        self._state: dict[str, NDArray[Any]] | None = None
+        self._state_samples = 0
+        self._cost: dict[str, Any] = {}
+        self._error: dict[str, Any] = {}
+        self._t_end_s = 0.0
+        self._write(INTERRUPTED, [])
+
+    @classmethod
+    def resume(cls, path: str | Path) -> RunWriter:
+        """A writer that goes on from the last checkpoint of an interrupted run.
+
+        Samples after the checkpoint are dropped: the run computes them again. Raises RunFileError if the file is no
+        run, or its run has ended.
+        """
+        run = read_run(path)
+        if run.status != INTERRUPTED:
+            raise refuse(run.path, f'cannot be resumed: its status is "{run.status}".', "Start a new run.")
+        units = {name: signal.unit for name, signal in run.signals.items()}
+        header = Header(run.title, run.command, run.case_name, run.case_text, units, run.versions, run.references)
+        writer = cls.__new__(cls)
+        writer.path, writer._header = run.path, header
+        writer._state, writer._state_samples = run.checkpoint, run.checkpoint_samples
+        writer._chunks = {name: [run[name][: run.checkpoint_samples]] for name in run.signals}
+        writer._cost, writer._error, writer._t_end_s = run.cost, run.error, run.t_end_s
+        part_file(run.path).unlink(missing_ok=True)
+        return writer
+
+    @property
+    def samples(self) -> int:
+        """The number of samples taken so far."""
+        return min((sum(map(len, chunks)) for chunks in self._chunks.values()), default=0)
+
+    def append(self, chunk: Mapping[str, Values]) -> None:
+        """Take the next samples, one array (m,) for each signal of the header. Raises ValueError if they do not fit."""
+        if set(chunk) != set(self._chunks):
+            raise ValueError(f"signals {sorted(chunk)} given, {sorted(self._chunks)} announced")
+        values = {name: np.array(column, dtype=np.float64) for name, column in chunk.items()}
+        if len({column.shape for column in values.values()}) > 1 or any(c.ndim != 1 for c in values.values()):
+            raise ValueError("all signals of a chunk need the same shape (m,)")
+        for name, column in values.items():
+            self._chunks[name].append(column)
+
+    def checkpoint(
+        self, state: Mapping[str, NDArray[Any]], cost: Mapping[str, Any], error: Mapping[str, Any], t: float
+    ) -> None:
+        """Write the file with all samples so far and the state at time t (s) from which the run can go on."""
+        self._state = {name: np.array(values) for name, values in state.items()}
+        self._state_samples = self.samples
+        self._cost, self._error, self._t_end_s = dict(cost), dict(error), float(t)
+        self._write(INTERRUPTED, [])
+
+    def finish(
+        self,
+        status: str,
+        cost: Mapping[str, Any],
+        error: Mapping[str, Any],
+        events: Sequence[dict[str, Any]],
+        t: float | None = None,
+    ) -> Run:
+        """Write the file for the last time; t (s) is where the run ended, by default its last sample."""
+        self._cost, self._error = dict(cost), dict(error)
+        times = self._joined().get(TIME)
+        if t is not None:
+            self._t_end_s = float(t)
+        elif times is not None and len(times):
+            self._t_end_s = float(times[-1])
+        self._write(status, list(events))
+        return self.so_far(status, events)
+
+    def so_far(self, status: str = INTERRUPTED, events: Sequence[dict[str, Any]] = ()) -> Run:
+        """The run with the samples taken so far, without a look at the disk: to find its events, say."""
+        header = self._header
+        return Run(
+            path=self.path,
+            title=header.title,
+            command=header.command,
+            case_name=header.case_name,
+            case_text=header.case_text,
+            versions=dict(header.versions),
+            signals={name: Signal(values, header.units[name]) for name, values in self._joined().items()},
+            status=status,
+            t_end_s=self._t_end_s,
+            events=list(events),
+            cost=self._cost,
+            error=self._error,
+            references=dict(header.references),
+            checkpoint=self._state,
+            checkpoint_samples=self._state_samples,
+        )
+
+    def _joined(self) -> dict[str, Values]:
+        for name, chunks in self._chunks.items():
+            if len(chunks) != 1:
+                self._chunks[name] = [np.concatenate([np.empty(0), *chunks])]
+        return {name: chunks[0] for name, chunks in self._chunks.items()}
+
+    def _write(self, status: str, events: list[dict[str, Any]]) -> None:
+        header = self._header
+        texts = {name: getattr(header, name) for name in TEXTS if name != "status"} | {"status": status}
+        records: dict[str, Any] = {"versions": dict(header.versions), "references": dict(header.references)}
+        records |= {"cost": self._cost, "error": self._error, "events": events}
+        texts |= {name: json.dumps(record, default=_plain) for name, record in records.items()}
+        content = io.BytesIO()
+        with h5py.File(content, "w", userblock_size=USER_BLOCK) as file:
+            for name, text in texts.items():
+                file.create_dataset(name, data=text)
+            file.attrs["t_end_s"] = self._t_end_s
+            signals = file.create_group("signals", track_order=True)
+            for name, values in self._joined().items():
+                signals.create_dataset(name, data=values).attrs["unit"] = header.units[name]
+            if self._state is not None:
+                group = file.create_group("checkpoint")
+                group.attrs["samples"] = self._state_samples
+                for name, state in self._state.items():
+                    group.create_dataset(name, data=state)
+        write_whole(self.path, content.getbuffer())
+
+
+def _plain(value: Any) -> Any:
+    """A numpy number as one of Python's own; JSON knows no other."""
+    return value.item() if isinstance(value, np.generic) else str(value)
+
+
+def read_run(path: str | Path) -> Run:
+    """Read a run file. Raises RunFileError for anything that is not a whole run."""
+    path = Path(path)
+    content = read_whole(path)
+    try:
+        with h5py.File(io.BytesIO(content), "r") as file:
+            return _read(path, file)
+    except RunFileError:
+        raise
+    except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError, RecursionError) as error:
+        raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from error
+
+
+def _read(path: Path, file: h5py.File) -> Run:
+    texts = {name: file[name].asstr()[()] for name in TEXTS}
+    records = {name: json.loads(file[name].asstr()[()]) for name in RECORDS}
+    signals = {
+        name: Signal(np.array(dataset[()], dtype=np.float64), str(dataset.attrs["unit"]))
+        for name, dataset in file["signals"].items()
+    }
+    checkpoint, samples = None, 0
+    if "checkpoint" in file:
+        group = file["checkpoint"]
+        checkpoint, samples = {name: np.array(data[()]) for name, data in group.items()}, int(group.attrs["samples"])
+    shapes = {signal.values.shape for signal in signals.values()}
+    if len(shapes) != 1 or len(shapes.pop()) != 1:
+        raise refuse(path, "is not a whole run: its signals are missing or differ in length.", "Run the case again.")
+    for name in RECORDS:
+        if not isinstance(records[name], list if name == "events" else dict):
+            raise refuse(path, f"is not a whole run: {name} has a wrong form.", "Run the case again.")
+    return Run(
+        path=path,
+        signals=signals,
+        t_end_s=float(file.attrs["t_end_s"]),
+        checkpoint=checkpoint,
+        checkpoint_samples=samples,
+        **texts,
+        **records,
+    )

@@ -1,0 +1,45 @@
+"""The prescribed rotor speed: piecewise linear in time, and the angle that belongs to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SpeedProfile:
+    """times: (k,) s, ascending; speeds: (k,) rad/s at these times; angles: (k,) rad."""
+
+    times: Array
+    speeds: Array
+    angles: Array
+
+    @property
+    def end(self) -> float:
+        """Time at the end of the profile, s."""
+        return float(self.times[-1])
+
+    def speed(self, t: Array) -> Array:
+        """Rotor speed in rad/s at the times t (n,)."""
+        return np.interp(t, self.times, self.speeds)
+
+
+def speed_profile(times: list[float], speeds: list[float]) -> SpeedProfile:
+    """Profile through the given speeds (rad/s) at the given times (s), linear in between."""
+    t, omega = np.asarray(times, dtype=float), np.asarray(speeds, dtype=float)
+    angles = np.concatenate([[0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(t))])
+    return SpeedProfile(t, omega, angles)
+
+
+@njit(cache=True, error_model="numpy")
+def rotation(times, speeds, angles, piece, t):  # type: ignore[no-untyped-def]
+    """Angular acceleration, speed and angle at the time t inside the given piece of a profile."""
+    start = t - times[piece]
+    acceleration = (speeds[piece + 1] - speeds[piece]) / (times[piece + 1] - times[piece])
+    speed = speeds[piece] + acceleration * start
+    return acceleration, speed, angles[piece] + start * (speeds[piece] + 0.5 * acceleration * start)

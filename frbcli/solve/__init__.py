@@ -1,0 +1,1 @@
+"""Time integration: joins rotor and films. Depends on: scene, film, rotor, results, errors."""

@@ -1,0 +1,314 @@
+"""Run-up and run-down: from a case to a run file."""
+
+from __future__ import annotations
+
+import math
+import platform
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
+from frbcli.rotor.excitation import SpeedProfile
+from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.system import System, make_system, run_down_profile, run_up_profile
+from frbcli.solve.film_error import SAMPLES, film_force_error
+from frbcli.solve.march import (
+    CONTACT,
+    ERROR_LARGEST,
+    FINISHED,
+    OUTPUTS,
+    REJECTED,
+    RUNNING,
+    SOLVES,
+    STEPS,
+    TIME,
+    TURNS,
+    Array,
+    Control,
+    RotorData,
+    State,
+    advance,
+)
+from frbcli.solve.start import first_state
+from frbcli.solve.tableau import METHODS
+
+BUFFER = 4096  # output samples between two looks at the clock, at least
+BUDGET = 4000  # steps between two looks at the clock: some 20 ms
+LONGEST_STEP = 1e-3  # s; a slow rotor still falls, and its shaft still vibrates
+CHECKPOINT_EVERY_s = 2.0
+CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
+STATUS = {FINISHED: "finished", CONTACT: "contact"}
+PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
+PROGRAM = "frbcli"
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a run tells while it goes on. Times in s, speed in Hz; eccentricity: the largest of all films now."""
+
+    t_s: float
+    end_s: float
+    speed_Hz: float
+    eccentricity: float
+    steps: int
+    steps_per_revolution: float
+    simulated_ms_per_hour: float
+    left_s: float
+
+
+Observer = Callable[[Progress], None]
+
+
+def runup(case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None) -> Run:
+    """Run the rotor of a case up as its [speed] says and write the run to `output` (HDF5) as it goes.
+
+    resume: go on with an interrupted run of the same case in `output`. observe: called some times a second.
+    Raises InputError for a case that cannot be modelled or an output that cannot be written. Any end for a physical or
+    numerical reason is the status of the run: "finished", "contact", "not-converged"; Ctrl-C ends it as "interrupted".
+    """
+    return _run("runup", case, run_up_profile(case), output, resume, observe)
+
+
+def rundown(case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None) -> Run:
+    """Run up, hold, and run down again (section 7.2.2); otherwise as runup."""
+    return _run("rundown", case, run_down_profile(case), output, resume, observe)
+
+
+def _run(
+    command: str, case: Case, profile: SpeedProfile, output: str | Path, resume: bool, observe: Observer | None
+) -> Run:
+    plan = make_plan(case)
+    check_output(Path(output))
+    earlier = _earlier(command, case, Path(output)) if resume else None
+    if earlier is not None and earlier.status != "interrupted":
+        return earlier
+    system = make_system(case, plan)
+    march = _March(case, plan, system, profile)
+    if earlier is not None and earlier.checkpoint is not None:
+        writer = RunWriter.resume(output)
+        march.restore(earlier.checkpoint)
+    else:
+        writer = RunWriter(output, _header(command, case, system))
+    march.compile()
+    return _go(march, writer, observe)
+
+
+def _go(march: _March, writer: RunWriter, observe: Observer | None) -> Run:
+    """March to the end; checkpoints are spaced so that writing takes a small share of the time."""
+    status, saved, pause = RUNNING, time.monotonic(), CHECKPOINT_EVERY_s
+    try:
+        while status == RUNNING:
+            status, signals = march.chunk()
+            writer.append(signals)
+            if observe is not None:
+                observe(march.progress())
+            if status == RUNNING and time.monotonic() - saved > pause:
+                began = time.monotonic()
+                writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
+                saved = time.monotonic()
+                pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
+    except KeyboardInterrupt:
+        # Between two chunks state and samples belong together; inside of one the samples are not yet taken.
+        march.forget_broken_chunk()
+        writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
+        return writer.so_far()
+    from frbcli.analysis.events import find_events  # scipy.signal takes longer to import than a short run
+
+    # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
+    writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
+    ended = STATUS.get(status, "not-converged")
+    events = [asdict(event) for event in find_events(writer.so_far(ended))]
+    return writer.finish(ended, march.cost(), march.error(), events, march.time)
+
+
+class _March:
+    """A run under way: the constant parts, the state, the clock."""
+
+    def __init__(self, case: Case, plan: Plan, system: System, profile: SpeedProfile) -> None:
+        self._case, self._plan, self._system, self._profile = case, plan, system, profile
+        self._rotor = rotor_data(system, profile)
+        self._control = control_of(case, plan)
+        self._tableau = METHODS[plan.method].tableau
+        self._state = first_state(case.start, system, profile)
+        rows = max(BUFFER, 4 * (int(LONGEST_STEP / self._control.output_step) + 2))
+        self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
+        # States at a few fixed output times, at which the films are solved again on a finer mesh.
+        self._sample_every = max(1, int(profile.end / self._control.output_step) // SAMPLES)
+        self._samples = np.empty((0, 2 * system.rotor.size + 1))
+        self._cpu_s = self._wall_s = 0.0
+        self._before = self._state
+        self._dirty = False
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+        return float(self._state.numbers[TIME])
+
+    def compile(self) -> None:
+        """Have the time loop compiled, or found in the cache, before the clock starts."""
+        advance(self._rotor, self._system.films, self._tableau, self._control, self._state, 0, self._q, self._v)
+
+    def chunk(self) -> tuple[int, dict[str, Array]]:
+        """Advance a while. Returns (status, signals of the output times passed)."""
+        cpu, wall = time.process_time(), time.perf_counter()
+        self._before = State(*(part.copy() for part in self._state))
+        self._dirty = True
+        status, rows = advance(
+            self._rotor, self._system.films, self._tableau, self._control, self._state, BUDGET, self._q, self._v
+        )
+        self._cpu_s += time.process_time() - cpu
+        self._wall_s += time.perf_counter() - wall
+        first = int(self._state.numbers[OUTPUTS]) - rows
+        times = (first + np.arange(rows)) * self._control.output_step
+        speeds = self._profile.speed(times)
+        kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
+        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept]])
+        self._samples = np.concatenate([self._samples, fresh])
+        signals = self._signals(times, speeds, self._q[:rows])
+        self._dirty = False
+        return status, signals
+
+    def forget_broken_chunk(self) -> None:
+        """Go back to the state before a chunk whose samples were not handed over."""
+        if self._dirty:
+            self._state = self._before
+
+    def _signals(self, times: Array, speeds: Array, q: Array) -> dict[str, Array]:
+        signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
+        journal = q @ self._system.rotor.journals[0].T
+        signals["eccentricity"] = np.hypot(journal[:, 0], journal[:, 1]) / self._system.clearances[0]
+        for name, pick in self._system.rotor.points:
+            point = q @ pick.T
+            signals[f"{name}_x_m"], signals[f"{name}_y_m"] = point[:, 0], point[:, 1]
+        return signals
+
+    def snapshot(self) -> dict[str, Array]:
+        """All that is needed to go on as if the run had not stopped."""
+        return {**self._state._asdict(), "film_samples": self._samples, "clock": np.array([self._cpu_s, self._wall_s])}
+
+    def restore(self, checkpoint: dict[str, Array]) -> None:
+        """Take up the state of a checkpoint."""
+        self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
+        self._samples = checkpoint["film_samples"].reshape(-1, 2 * self._system.rotor.size + 1)
+        self._cpu_s, self._wall_s = (float(value) for value in checkpoint["clock"])
+
+    def cost(self) -> dict[str, float]:
+        """What the run has cost so far, without compilation and without tabulating the films."""
+        numbers = self._state.numbers
+        wall = max(self._wall_s, 1e-9)
+        return {
+            "cpu_s": self._cpu_s,
+            "wall_s": self._wall_s,
+            "steps": int(numbers[STEPS]),
+            "rejected_steps": int(numbers[REJECTED]),
+            "steps_per_revolution": float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
+            "film_solves": int(numbers[SOLVES]),
+            "ms_per_film_solve": 1e3 * self._cpu_s / max(numbers[SOLVES], 1.0),
+            "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
+        }
+
+    def error(self) -> dict[str, float | None]:
+        """The error of the run as far as it is known."""
+        return {
+            "time_integration": float(self._state.numbers[ERROR_LARGEST]),
+            "film_force_relative": film_force_error(self._plan, self._system, self._samples),
+            "oil_balance_relative": None,  # these films do not balance their oil
+        }
+
+    def progress(self) -> Progress:
+        """For people who wait."""
+        numbers = self._state.numbers
+        t, end = self.time, self._profile.end
+        here = self._system.rotor.journals[0] @ self._state.q
+        rate = t / max(self._wall_s, 1e-9)
+        return Progress(
+            t_s=t,
+            end_s=end,
+            speed_Hz=float(self._profile.speed(np.array([t]))[0]) / (2 * math.pi),
+            eccentricity=float(np.hypot(*here)) / self._system.clearances[0],
+            steps=int(numbers[STEPS]),
+            steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
+            simulated_ms_per_hour=1e3 * 3600.0 * rate,
+            left_s=(end - t) / rate if rate > 0 else math.inf,
+        )
+
+
+def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
+    """The system and its speed as the time loop takes them."""
+    rotor = system.rotor
+    # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
+    observed = np.concatenate([points / system.clearances[0] for _, points in rotor.points])
+    return RotorData(
+        mass=rotor.mass,
+        damping=rotor.damping,
+        gyroscopic=rotor.gyroscopic,
+        stiffness=rotor.stiffness,
+        static_load=rotor.static_load,
+        unbalance_cos=rotor.unbalance_cos,
+        unbalance_sin=rotor.unbalance_sin,
+        journals=rotor.journals,
+        multiplicity=rotor.multiplicity,
+        clearances=np.array(system.clearances),
+        observed=observed,
+        has_gyroscopic=bool(np.any(rotor.gyroscopic)),
+        profile_times=profile.times,
+        profile_speeds=profile.speeds,
+        profile_angles=profile.angles,
+    )
+
+
+def control_of(case: Case, plan: Plan) -> Control:
+    """What the case and its plan allow the time loop to do."""
+    contact = case.contact
+    stiffness = contact.stiffness if contact.policy == "elastic" and contact.stiffness is not None else 0.0
+    return Control(
+        tolerance=plan.tolerance,
+        steps_per_revolution=float(case.accuracy.steps_per_revolution),
+        longest_step=LONGEST_STEP,
+        output_step=case.output.step,
+        contact_eccentricity=contact.eccentricity,
+        contact_stiffness=stiffness,
+    )
+
+
+def _header(command: str, case: Case, system: System) -> Header:
+    names = ["journal_x_m", "journal_y_m"]
+    names += [f"{name}_{axis}_m" for name, _ in system.rotor.points if name != "journal" for axis in "xy"]
+    units = {"time_s": "s", "speed_Hz": "Hz", "eccentricity": "", **dict.fromkeys(names, "m")}
+    return Header(
+        title=case.title or case.name,
+        command=command,
+        case_name=case.name,
+        case_text=case.source_text,
+        units=units,
+        versions={PROGRAM: _version(PROGRAM), "python": platform.python_version()}
+        | {package: _version(package) for package in PACKAGES},
+        references={"clearance_m": system.clearances[0], "contact_eccentricity": case.contact.eccentricity},
+    )
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        return "unknown"
+
+
+def _earlier(command: str, case: Case, path: Path) -> Run | None:
+    """The run in `path` if it is one of this case; None if there is no file yet."""
+    if not path.exists():
+        return None
+    run = read_run(path)
+    if (run.command, run.case_text) != (command, case.source_text):
+        name = run.case_name or "unnamed"
+        problem = f"holds a {run.command} of another case ({name}) or of this one with other keys."
+        remedy = "Give the case and the --set of that run, or another --output."
+        raise InputError(str(path), (Fault("--resume", str(path), None, problem, remedy),))
+    return run

@@ -1,0 +1,80 @@
+"""Implicit Runge-Kutta methods of the time loop: one diagonal coefficient, first stage explicit, last stage the result.
+
+Every implicit stage then has the same linear rotor behind it, so that one small inverse serves a whole step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Tableau(NamedTuple):
+    """Coefficients of an s-stage method of an order: stage (s, s), times (s,), defect (s,) = b - b_embedded."""
+
+    stage: Array
+    times: Array
+    defect: Array
+    order: int
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method with its source. embedded_order: order of the solution that the error estimate compares with."""
+
+    name: str
+    source: str
+    embedded_order: int
+    tableau: Tableau
+
+
+def _tableau(rows: list[list[float]], embedded: list[float], order: int) -> Tableau:
+    s = len(rows)
+    stage = np.zeros((s, s))
+    for i, row in enumerate(rows):
+        stage[i, : len(row)] = row
+    return Tableau(stage, stage.sum(axis=1), stage[-1] - np.array(embedded), order)
+
+
+def _trbdf2() -> Method:
+    gamma = 1.0 - np.sqrt(0.5)
+    w = np.sqrt(2.0) / 4.0
+    rows = [[0.0], [gamma, gamma], [w, w, gamma]]
+    embedded = [(1.0 - w) / 3.0, (3.0 * w + 1.0) / 3.0, gamma / 3.0]
+    return Method("trbdf2", "Bank et al. 1985; Hosea and Shampine 1996", 3, _tableau(rows, embedded, 2))
+
+
+def _esdirk3() -> Method:
+    gamma = 1767732205903 / 4055673282236
+    rows = [
+        [0.0],
+        [gamma, gamma],
+        [2746238789719 / 10658868560708, -640167445237 / 6845629431997, gamma],
+        [1471266399579 / 7840856788654, -4482444167858 / 7529755066697, 11266239266428 / 11593286722821, gamma],
+    ]
+    embedded = [2756255671327 / 12835298489170, -10771552573575 / 22201958757719, 9247589265047 / 10645013368117,
+                2193209047091 / 5459859503100]
+    return Method("esdirk3", "Kennedy and Carpenter 2003, ARK3(2)4L[2]SA", 2, _tableau(rows, embedded, 3))
+
+
+def _esdirk4() -> Method:
+    gamma = 0.25
+    rows = [
+        [0.0],
+        [gamma, gamma],
+        [8611 / 62500, -1743 / 31250, gamma],
+        [5012029 / 34652500, -654441 / 2922500, 174375 / 388108, gamma],
+        [15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768, 2285395 / 8070912, gamma],
+        [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, gamma],
+    ]
+    embedded = [4586570599 / 29645900160, 0.0, 178811875 / 945068544, 814220225 / 1159782912, -3700637 / 11593932,
+                61727 / 225920]
+    return Method("esdirk4", "Kennedy and Carpenter 2003, ARK4(3)6L[2]SA", 3, _tableau(rows, embedded, 4))
+
+
+METHODS: dict[str, Method] = {method.name: method for method in (_trbdf2(), _esdirk3(), _esdirk4())}

@@ -1,0 +1,142 @@
+"""Text with a unit -> SI number, and back for people. Inside frb everything is SI; units exist at the edges only.
+
+Rotor speeds and frequencies are revolutions per second [Hz] everywhere outside the equations, angles are radians,
+temperatures kelvin. pint counts radians and revolutions as dimensionless and so takes "rad/s" for "Hz"; speeds are
+therefore read from a table of their own.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pint
+
+SPEED = "Hz"
+ANGLE = "rad"
+TEMPERATURE_DIFFERENCE = "delta_degC"
+NUMBER = "1"
+
+_SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "rad/s": 1 / (2 * math.pi)}
+_ANGLE_UNITS = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
+_NUMBER_UNITS = {"": 1.0, "1": 1.0, "%": 0.01}
+_TABLES = {SPEED: _SPEED_UNITS, ANGLE: _ANGLE_UNITS, NUMBER: _NUMBER_UNITS}
+
+_TEXT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+# A product of names with one-digit powers: all that a case needs, and nothing that pint could be kept busy with.
+_FACTOR = r"(?:1|[A-Za-zµμ°]{1,20})(?:(?:\^|\*\*)[+-]?\d)?"
+_UNIT = re.compile(rf"{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,7}}")
+_SPELLING = str.maketrans({"²": "^2", "³": "^3", "·": "*", "⋅": "*", "μ": "µ"})
+
+# What people read, by SI unit: (name, SI value of one, SI value from which it is used), smallest first.
+_DISPLAY: dict[str, tuple[tuple[str, float, float], ...]] = {
+    "m": (("um", 1e-6, 0.0), ("mm", 1e-3, 1e-3), ("m", 1.0, 1.0)),
+    "kg": (("g", 1e-3, 0.0), ("kg", 1.0, 1.0)),
+    "kg*m": (("g*mm", 1e-6, 0.0),),
+    "kg*m^2": (("kg*mm^2", 1e-6, 0.0), ("kg*m^2", 1.0, 0.1)),
+    "N/m": (("N/m", 1.0, 0.0), ("N/mm", 1e3, 1e3)),
+    "Pa": (("Pa", 1.0, 0.0), ("bar", 1e5, 1e4), ("GPa", 1e9, 1e9)),
+    "Pa*s": (("mPa*s", 1e-3, 0.0), ("Pa*s", 1.0, 1.0)),
+    "s": (("us", 1e-6, 0.0), ("ms", 1e-3, 1e-3), ("s", 1.0, 0.1)),
+    ANGLE: (("deg", math.pi / 180, 0.0),),
+    TEMPERATURE_DIFFERENCE: (("K", 1.0, 0.0),),
+    NUMBER: (("", 1.0, 0.0),),
+}
+
+
+class ValueFault(ValueError):
+    """A value that cannot be taken: what is wrong with it, and what to write instead."""
+
+    def __init__(self, problem: str, remedy: str) -> None:
+        self.problem = problem
+        self.remedy = remedy
+        super().__init__(f"{problem} {remedy}")
+
+
+def quantity(given: object, unit: str, example: str = "") -> float:
+    """The SI value of `given`: a number, taken as SI, or text of a number and a unit such as "35 um".
+
+    unit: the SI unit expected, e.g. "m", "N*s/m", "K" (temperatures: "100 degC" is 373.15), `SPEED` in revolutions per
+    second, `ANGLE` in radians, `TEMPERATURE_DIFFERENCE`, `NUMBER` without unit; example: what a good value looks like.
+    Raises ValueFault for anything else than one finite quantity of this kind.
+    """
+    remedy = f'Write e.g. "{example}".' if example else f"Write a number in {_readable(unit)}."
+    if isinstance(given, int | float) and not isinstance(given, bool):
+        return _finite(given, remedy)
+    if not isinstance(given, str):
+        raise ValueFault("is not a quantity.", remedy)
+    parts = _TEXT.fullmatch(given)
+    if parts is None:
+        raise ValueFault("is not a number with a unit.", remedy)
+    number, unit_text = parts.groups()
+    return _finite(_to_si(_finite(number, remedy), unit_text.translate(_SPELLING), unit, remedy), remedy)
+
+
+def display(value: float, unit: str) -> str:
+    """An SI value as engineers write it: display(35e-6, "m") is "35 um"."""
+    choices = _DISPLAY.get(unit, ((unit, 1.0, 0.0),))
+    fitting = [(name, one) for name, one, from_ in choices if abs(value) * (1 + 1e-9) >= from_]
+    name, one = fitting[-1] if value else choices[-1][:2]
+    return f"{value / one:.6g} {name}".rstrip()
+
+
+def _finite(number: object, remedy: str) -> float:
+    try:
+        value = float(number)  # type: ignore[arg-type]
+    except OverflowError:  # a whole number beyond the range of a double
+        value = math.inf
+    if not math.isfinite(value):
+        raise ValueFault("is not a finite number.", remedy)
+    return value
+
+
+def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
+    if unit in _TABLES:
+        factors = _TABLES[unit]
+        key = re.sub(r"\s+", "", unit_text)
+        if key in factors:
+            return _round(number * factors[key])
+        if key == "":
+            raise ValueFault("has no unit.", remedy)
+        known = ", ".join(name for name in factors if name) if unit != NUMBER else "no unit, or %"
+        raise ValueFault(f'has the unit "{unit_text}", which does not fit here.', f"{remedy} Known: {known}.")
+    if unit_text == "":
+        raise ValueFault("has no unit.", remedy)
+    return _round(_by_pint(number, unit_text, unit, remedy))
+
+
+def _by_pint(number: float, unit_text: str, unit: str, remedy: str) -> float:
+    if not _UNIT.fullmatch(unit_text):
+        raise ValueFault(f'has a unit that cannot be read: "{unit_text[:40]}".', remedy)
+    import pint
+
+    registry = _registry()
+    try:
+        return float(registry.Quantity(number, unit_text.replace("°C", "degC")).to(unit).magnitude)
+    except pint.DimensionalityError:
+        raise ValueFault(
+            f'has the unit "{unit_text}", which cannot be turned into {_readable(unit)}.', remedy
+        ) from None
+    except pint.UndefinedUnitError:
+        raise ValueFault(f'has the unit "{unit_text}", which is not known.', remedy) from None
+    except (pint.PintError, ArithmeticError, ValueError, TypeError, AttributeError):
+        raise ValueFault(f'has the unit "{unit_text}", which does not fit here.', remedy) from None
+
+
+def _round(value: float) -> float:
+    """15 digits: what conversion leaves in the last bit goes, so that "35 um" is 3.5e-5 exactly."""
+    return float(f"{value:.15g}")
+
+
+def _readable(unit: str) -> str:
+    return "K" if unit == TEMPERATURE_DIFFERENCE else unit
+
+
+@functools.cache
+def _registry() -> pint.UnitRegistry[float]:
+    import pint
+
+    return pint.UnitRegistry()

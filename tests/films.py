@@ -1,0 +1,53 @@
+"""Bearings and films for the film tests: table 4.1 (B 20 mm, D 25 mm, C 40 um, 10 mPa s) and what departs from it."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from frbcli.film.bearing import RectangularBearing, evaluate, make_film
+from frbcli.film.kernel import FilmData
+from frbcli.film.table import Mesh
+from frbcli.scene.plan import DEFAULT_MESH
+
+CLEARANCE, RADIUS, VISCOSITY, AMBIENT = 40e-6, 12.5e-3, 10e-3, 1e5
+GROOVED = RectangularBearing(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, AMBIENT)
+PLAIN = replace(GROOVED, sections=1, supply_pressure=None)
+SUPPLIED = replace(GROOVED, supply_pressure=2e5)
+
+# Every kind of film: name -> bearing, theory, cavitation
+KINDS = {
+    "short": (GROOVED, "short", "half-sommerfeld"),
+    "short, Sommerfeld": (GROOVED, "short", "sommerfeld"),
+    "short, 2 bar": (SUPPLIED, "short", "half-sommerfeld"),
+    "finite": (GROOVED, "finite", "half-sommerfeld"),
+    "finite, Sommerfeld": (GROOVED, "finite", "sommerfeld"),
+    "finite, 2 bar": (SUPPLIED, "finite", "half-sommerfeld"),
+}
+EQUAL_PRESSURES = [name for name in KINDS if "2 bar" not in name]
+
+
+@functools.cache
+def film_of(bearing: RectangularBearing, theory: str, cavitation: str, mesh: Mesh = DEFAULT_MESH) -> FilmData:
+    """The film, made once per test process."""
+    return make_film(bearing, theory, cavitation, mesh)
+
+
+def force(kind: str, d: np.ndarray, v: np.ndarray, omega: float) -> np.ndarray:
+    """(2,) force in N of a film in KINDS; d over the clearance, v in clearances per second."""
+    bearing = KINDS[kind][0]
+    return evaluate(film_of(*KINDS[kind]), bearing.clearance, d * bearing.clearance, v * bearing.clearance, omega).force
+
+
+def polar(radius: float, angle: float) -> np.ndarray:
+    """(2,) vector of a length and an angle in rad from the x-axis."""
+    return radius * np.array([math.cos(angle), math.sin(angle)])
+
+
+def sommerfeld_number(bearing: RectangularBearing, force_N: float, omega: float) -> float:
+    """So = psi^2 F / (D B eta omega), (3.14)."""
+    psi = bearing.clearance / (0.5 * bearing.diameter)
+    return psi**2 * force_N / (bearing.diameter * bearing.width * bearing.viscosity * omega)

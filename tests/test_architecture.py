@@ -1,0 +1,117 @@
+"""Who may import whom: the table of docs/architecture.md, read and enforced."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import frbcli
+
+PACKAGE = Path(frbcli.__file__).parent
+PROJECT = PACKAGE.parent
+ROW = re.compile(r"^\| `([a-z]+)(?:/|\.py)` \|.*\| ([^|]*) \|$", re.MULTILINE)
+
+# Libraries that have one room, so that they can be exchanged there.
+LIBRARY_ROOMS = {
+    "click": {"cli"},
+    "rich": {"cli"},
+    "matplotlib": {"plot"},
+    "pint": {"units"},
+    "pydantic": {"case"},
+    "pydantic_core": {"case"},
+    "h5py": {"results"},
+}
+HEAVY = ("numpy", "scipy", "numba", "pydantic", "pint", "matplotlib", "pandas", "h5py", "skfem", "rich")
+
+
+def documented_dependencies() -> dict[str, set[str]]:
+    """Each room of the table with all it may import, directly or through what it imports."""
+    rows = dict(ROW.findall((PROJECT / "docs" / "architecture.md").read_text(encoding="utf-8")))
+    rooms = set(rows)
+    direct = {
+        room: rooms if "everything" in text else {word for word in re.findall(r"[a-z]+", text) if word in rooms}
+        for room, text in rows.items()
+    }
+    for _ in rooms:  # as many rounds as the longest chain can have
+        direct = {room: uses.union(*(direct[used] for used in uses)) for room, uses in direct.items()}
+    return direct
+
+
+def imports(file: Path) -> Iterator[str]:
+    """The dotted names of all modules that `file` imports, at any place in it."""
+    package = ("frbcli", *file.relative_to(PACKAGE).parent.parts)
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            base = ".".join((*above, *filter(None, [node.module])))
+            yield base
+            yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def room_of(file: Path) -> str:
+    return file.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+FILES = sorted(file for file in PACKAGE.rglob("*.py") if file.parent != PACKAGE or not file.stem.startswith("__"))
+
+
+def test_table_names_every_room() -> None:
+    documented = documented_dependencies()
+    assert {room_of(file) for file in FILES} <= set(documented)
+    assert "rotor" not in documented["film"]
+    assert "film" not in documented["rotor"]
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(PACKAGE)))
+def test_imports_follow_the_table(file: Path) -> None:
+    room = room_of(file)
+    allowed = documented_dependencies()[room] | {room}
+    used = {name.split(".")[1] for name in imports(file) if name.startswith("frbcli.") and name != "frbcli.__version__"}
+    assert used <= allowed, f"{room} imports {used - allowed}"
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(PACKAGE)))
+def test_libraries_stay_in_their_rooms(file: Path) -> None:
+    used = {name.split(".")[0] for name in imports(file)}
+    strangers = {name for name in used & set(LIBRARY_ROOMS) if room_of(file) not in LIBRARY_ROOMS[name]}
+    assert not strangers
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = f"""
+import sys
+from frbcli.cli.main import run
+assert run(["--help"]) == 0
+loaded = sorted(name for name in {HEAVY!r} if name in sys.modules)
+assert not loaded, loaded
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "waterfall" in done.stdout
+
+
+def test_public_names_resolve_lazily() -> None:
+    code = f"""
+import sys, frbcli
+assert not [name for name in {HEAVY!r} if name in sys.modules]
+assert frbcli.load_case("jeffcott").name == "jeffcott"
+"""
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+    for name in frbcli.__all__:
+        assert getattr(frbcli, name)
+    with pytest.raises(AttributeError):
+        frbcli.no_such_name  # noqa: B018
+
+
+def test_version_is_that_of_the_project() -> None:
+    project = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert frbcli.__version__ == project["version"]

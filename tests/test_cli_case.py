@@ -1,0 +1,238 @@
+"""frb check, schema, cases; and how errors leave the command line."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import click
+import pytest
+
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.case.shipped import find_shipped, shipped_names
+from frbcli.cli import main as cli
+from frbcli.cli.common import Terminal
+from frbcli.cli.main import COMMANDS, run
+from frbcli.errors import FrbError, NotConverged
+
+
+@dataclass(frozen=True)
+class Decision:
+    choice: str
+    value: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    decisions: tuple[Decision, ...]
+
+
+@pytest.fixture
+def _planned(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plan of one known decision, so that only the command is tested."""
+    module = ModuleType("frbcli.scene.plan")
+
+    def make_plan(case: Case) -> Plan:
+        return Plan((Decision("theory", "finite", f"[width] of {case.name}"),))
+
+    module.make_plan = make_plan  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "frbcli.scene.plan", module)
+
+
+def document(capsys: pytest.CaptureFixture[str]) -> Any:
+    """The one JSON document on stdout."""
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_of_the_table_has_help(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run([name, "--help"]) == 0
+    shown = capsys.readouterr().out
+    assert f"frb {name}" in shown
+    assert "--json" in shown
+
+
+@pytest.mark.usefixtures("_planned")
+def test_check_shows_values_and_plan_to_people(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["check", "jeffcott", "--set", "bearing.clearance=40 um"]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    for expected in ("bearing.clearance", "4e-05 m", "40 um", "[width] of jeffcott"):
+        assert expected in captured.err
+
+
+@pytest.mark.usefixtures("_planned")
+def test_check_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["check", "jeffcott", "--json", "--quiet"]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    found = json.loads(captured.out)
+    assert (found["command"], found["case"], found["status"]) == ("check", "jeffcott", "ok")
+    values = {value["key"]: (value["value"], value["unit"]) for value in found["values"]}
+    assert values["oil.viscosity"] == (0.012, "Pa*s")
+    assert found["plan"] == [{"choice": "theory", "value": "finite", "reason": "[width] of jeffcott"}]
+
+
+def test_wrong_case_is_exit_code_2_with_every_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "wrong.toml"
+    file.write_text(find_shipped("jeffcott").replace("6 kg", "6 mm").replace("35 um", "35 kg"))
+    assert run(["check", str(file), "--set", "speed.too=3"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    for key in ("rotor.mass", "bearing.clearance", "speed.too"):
+        assert key in captured.err
+    assert run(["check", "--json", str(file)]) == 2
+    found = document(capsys)
+    assert (found["command"], found["status"]) == ("check", "input-error")
+    assert [fault["key"] for fault in found["faults"]] == ["rotor.mass", "bearing.clearance"]
+    assert all(set(fault) == {"key", "value", "line", "problem", "remedy"} for fault in found["faults"])
+    lines = file.read_text().split("\n")
+    assert [lines[fault["line"] - 1].split()[0] for fault in found["faults"]] == ["mass", "clearance"]
+
+
+@pytest.mark.parametrize(
+    "arguments", [["nonsense"], ["check"], ["check", "jeffcott", "--no-such-option"], ["cases", "-o", "x"]]
+)
+def test_wrong_usage_is_exit_code_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(arguments) == 2
+    assert capsys.readouterr().out == ""
+    assert run([*arguments, "--json"]) == 2
+    found = document(capsys)
+    assert found["status"] == "input-error"
+    assert "--help" in found["faults"][0]["remedy"]
+
+
+def _raising(error: BaseException) -> click.Command:
+    @click.command()
+    @click.option("--json", is_flag=True)
+    def command(json: bool) -> None:  # noqa: ARG001
+        raise error
+
+    return command
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "status"),
+    [
+        (NotConverged("too stiff"), 3, "not-converged"),
+        (FrbError("broken"), 1, "error"),
+        (KeyboardInterrupt(), 130, None),
+    ],
+)
+def test_errors_become_exit_codes(
+    error: BaseException,
+    code: int,
+    status: str | None,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    module = ModuleType("raising")
+    module.command = _raising(error)  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "raising", module)
+    monkeypatch.setitem(cli.COMMANDS, "check", ("raising", "Raises."))
+    assert run(["check", "--json"]) == code
+    captured = capsys.readouterr()
+    if status is None:
+        assert captured.out == ""
+    else:
+        assert json.loads(captured.out) == {"command": "check", "status": status, "message": str(error)}
+        assert str(error) in captured.err
+
+
+def test_bugs_are_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = ModuleType("raising")
+    module.command = _raising(ZeroDivisionError())  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "raising", module)
+    monkeypatch.setitem(cli.COMMANDS, "check", ("raising", "Raises."))
+    with pytest.raises(ZeroDivisionError):
+        run(["check"])
+
+
+def test_command_s_own_exit_code_is_that_of_frb(monkeypatch: pytest.MonkeyPatch) -> None:
+    @click.command()
+    def command() -> int:
+        return 3
+
+    module = ModuleType("returning")
+    module.command = command  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "returning", module)
+    monkeypatch.setitem(cli.COMMANDS, "check", ("returning", "Returns."))
+    assert run(["check"]) == 3
+
+
+def test_console_entry_points() -> None:
+    version = subprocess.run([sys.executable, "-m", "frbcli", "--version"], capture_output=True, text=True, check=True)
+    assert version.stdout.startswith("frb ")
+    wrong = subprocess.run([sys.executable, "-m", "frbcli", "check", "/"], capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert "Traceback" not in wrong.stderr
+
+
+def test_schema_is_the_json_schema(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["schema"]) == 0
+    assert set(document(capsys)["properties"]) >= {
+        "rotor",
+        "bearing",
+        "oil",
+        "film",
+        "speed",
+        "shaft",
+        "disk",
+        "motion",
+    }
+
+
+def test_cases_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["cases"]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert all(name in captured.err for name in shipped_names())
+    assert run(["cases", "--json"]) == 0
+    assert [case["name"] for case in document(capsys)["cases"]] == list(shipped_names())
+
+
+def test_case_is_printed_and_copied(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["cases", "jeffcott"]) == 0
+    assert capsys.readouterr().out == find_shipped("jeffcott")
+    copy = tmp_path / "mine.toml"
+    assert run(["cases", "jeffcott", "-o", str(copy)]) == 0
+    assert load_case(copy).rotor == load_case("jeffcott").rotor
+    assert run(["cases", "jeffcott", "-o", str(copy)]) == 2  # what is there stays
+    assert run(["cases", "jeffcott", "-o", str(tmp_path / "no" / "mine.toml")]) == 2
+    assert run(["cases", "jefcott"]) == 2
+    assert 'Did you mean the shipped case "jeffcott"' in capsys.readouterr().err
+
+
+def test_json_knows_no_nan(capsys: pytest.CaptureFixture[str]) -> None:
+    import numpy as np
+
+    Terminal(json=True).emit(
+        {
+            "a": math.nan,
+            "b": np.array([[1.0, np.inf]]),
+            "c": np.float64(2),
+            "d": np.int64(3),
+            "e": Path("x"),
+            "f": (True, None),
+        }
+    )
+    assert document(capsys) == {"a": None, "b": [[1.0, None]], "c": 2.0, "d": 3, "e": "x", "f": [True, None]}
+
+
+def test_quiet_terminal_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    for terminal in (Terminal(quiet=True), Terminal()):
+        terminal.say("hello")
+        terminal.table("title", ("a",), [("[b]",)])
+        terminal.emit({"a": 1})
+        captured = capsys.readouterr()
+        assert captured.out == ""
+        assert (captured.err == "") == terminal.quiet
+    assert "[b]" in captured.err

@@ -1,0 +1,177 @@
+"""Events of made-up motions whose moments are known from their formulas."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
+
+from frbcli.analysis.events import SAMPLES_PER_REVOLUTION, WHIRL_BEGINS, Event, find_events, order_amplitude
+from frbcli.results.store import Run
+
+
+def found(rotor: Rotor, status: str = "finished") -> dict[str, Event]:
+    """The events by kind, where each kind comes once."""
+    events = find_events(make_run(rotor, status))
+    assert len({event.kind for event in events}) == len(events)
+    assert [event.t_s for event in events] == sorted(event.t_s for event in events)
+    return {event.kind: event for event in events}
+
+
+def onset_s(rotor: Rotor) -> float:
+    """When the logistic growth of the whirl passes the threshold."""
+    assert rotor.whirl_s is not None
+    return float(rotor.whirl_s - np.log(rotor.whirl_amplitude / WHIRL_BEGINS - 1.0) / rotor.growth_1_s)
+
+
+def slice_run(run: Run, until_s: float, status: str) -> Run:
+    kept = run["time_s"] <= until_s
+    return as_run({name: run[name][kept] for name in run.signals}, status)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_a_run_up_has_its_critical_speed_and_its_onset(noise: float) -> None:
+    rotor = Rotor(noise=noise)
+    events = found(rotor)
+    assert set(events) == {"critical-speed", "onset"}
+    critical, onset = events["critical-speed"], events["onset"]
+    assert critical.speed_Hz == pytest.approx(145.4, abs=0.5 + 40 * noise)  # the peak of resonance at 5 % damping
+    assert critical.t_s == pytest.approx(critical.speed_Hz / 30.0, abs=1e-6)
+    assert (critical.frequency_Hz, critical.frequency_ratio) == (critical.speed_Hz, 1.0)
+    assert onset.t_s == pytest.approx(onset_s(rotor), abs=0.01)
+    assert onset.frequency_ratio == pytest.approx(0.465, abs=0.01)
+    assert onset.frequency_Hz == pytest.approx(onset.frequency_ratio * onset.speed_Hz)
+    assert onset.film is None
+
+
+@pytest.mark.parametrize("growth_1_s", [15.0, 60.0, 300.0])
+@pytest.mark.parametrize(("ratio", "lock_Hz"), [(0.47, 125.0), (0.35, 75.0), (0.3, 150.0)])
+def test_onset_is_found_within_two_hundredths_of_a_second(growth_1_s: float, ratio: float, lock_Hz: float) -> None:
+    rotor = Rotor(growth_1_s=growth_1_s, whirl_ratio=ratio, lock_Hz=lock_Hz)
+    onset = found(rotor)["onset"]
+    assert onset.t_s == pytest.approx(onset_s(rotor), abs=0.02 if growth_1_s > 20 else 0.05)
+    expected = ((ratio * onset.speed_Hz) ** -8 + lock_Hz**-8) ** (-1 / 8)
+    assert onset.frequency_Hz == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    "rotor",
+    [
+        Rotor(whirl_s=None),
+        Rotor(whirl_s=None, noise=0.05),
+        Rotor(whirl_s=None, unbalance_m=10e-6),
+        Rotor(whirl_s=None, critical_Hz=None, noise=0.05),
+        Rotor(whirl_s=None, critical_Hz=None, speeds_Hz=(200.0, 200.0), duration_s=3.0),
+        Rotor(whirl_s=None, critical_Hz=None, speeds_Hz=(0.0, 0.0), duration_s=1.0),
+        Rotor(whirl_s=None, critical_Hz=None, speeds_Hz=(300.0, 0.0)),
+        Rotor(whirl_s=None, critical_Hz=None, duration_s=0.05),
+    ],
+    ids=str,
+)
+def test_a_run_without_whirl_has_no_onset(rotor: Rotor) -> None:
+    expected = set() if rotor.critical_Hz is None else {"critical-speed"}
+    assert set(found(rotor)) == expected
+
+
+@pytest.mark.parametrize("critical_Hz", [None, 330.0, 600.0])
+def test_a_monotone_rise_is_no_critical_speed(critical_Hz: float | None) -> None:
+    assert found(Rotor(critical_Hz=critical_Hz, whirl_s=None)) == {}
+    assert set(found(Rotor(critical_Hz=critical_Hz))) == {"onset"}
+
+
+@pytest.mark.parametrize("critical_Hz", [60.0, 100.0, 170.0])
+def test_critical_speed_is_found_where_it_is(critical_Hz: float) -> None:
+    assert found(Rotor(critical_Hz=critical_Hz))["critical-speed"].speed_Hz == pytest.approx(critical_Hz, rel=0.01)
+
+
+def test_critical_speed_is_found_from_the_journal_alone() -> None:
+    columns = signals(Rotor(unbalance_m=2e-6))
+    run = as_run({name: values for name, values in columns.items() if not name.startswith("disk")})
+    critical = next(event for event in find_events(run) if event.kind == "critical-speed")
+    assert critical.speed_Hz == pytest.approx(145.4, abs=1.0)
+
+
+def test_resonance_after_the_onset_of_whirl_is_not_told_as_critical_speed() -> None:
+    assert set(found(Rotor(critical_Hz=250.0))) == {"onset"}
+
+
+def test_whirl_that_ends_has_an_offset() -> None:
+    up = Rotor()
+    run = make_run(up)
+    mirrored = {name: np.concatenate([run[name], run[name][-2::-1]]) for name in run.signals}
+    # played backwards a motion turns backwards: mirror it to turn forward again
+    half = len(run["time_s"])
+    mirrored["time_s"] = np.arange(2 * half - 1) * up.step_s
+    for node in ("journal", "disk"):
+        mirrored[f"{node}_x_m"][half:] *= -1.0
+    onset, offset = (event for event in find_events(as_run(mirrored)) if event.kind in ("onset", "offset"))
+    assert (onset.kind, offset.kind) == ("onset", "offset")
+    assert offset.t_s == pytest.approx(2 * up.duration_s - onset.t_s, abs=0.01)
+    assert offset.frequency_ratio == pytest.approx(onset.frequency_ratio, abs=0.01)
+
+
+def test_a_short_burst_is_no_whirl() -> None:
+    columns = signals(Rotor(whirl_s=None))
+    burst = 0.3 * CLEARANCE * np.exp(-(((columns["time_s"] - 6.0) / 0.015) ** 2))
+    angle = np.pi * np.cumsum(columns["speed_Hz"]) * 5e-5
+    columns["journal_x_m"] += burst * np.cos(angle)
+    columns["journal_y_m"] += burst * np.sin(angle)
+    assert {event.kind for event in find_events(as_run(columns))} == {"critical-speed"}
+
+
+def test_backward_motion_is_no_whirl() -> None:
+    columns = signals(Rotor(critical_Hz=None))
+    columns["journal_x_m"] = -columns["journal_x_m"]
+    assert "onset" not in {event.kind for event in find_events(as_run(columns))}
+
+
+def test_a_run_that_stops_in_contact_shows_onset_and_contact() -> None:
+    run = slice_run(make_run(), 6.56, "contact")
+    events = {event.kind: event for event in find_events(run)}
+    assert set(events) == {"critical-speed", "onset", "contact"}
+    assert events["onset"].t_s == pytest.approx(onset_s(Rotor()), abs=0.01)
+    assert events["contact"].t_s == run["time_s"][-1]
+    assert {event.kind for event in find_events(replace(run, status="interrupted"))} == {"critical-speed"}
+
+
+def test_a_bouncing_journal_is_one_contact() -> None:
+    columns = signals(Rotor(whirl_s=None, critical_Hz=None))
+    for moment in (3.0, 3.01, 3.05, 7.0):
+        columns["eccentricity"][round(moment / 5e-5)] = 1.0
+    contacts = find_events(as_run(columns))
+    assert [event.kind for event in contacts] == ["contact", "contact"]
+    np.testing.assert_allclose([event.t_s for event in contacts], [3.0, 7.0])
+    assert contacts[1].speed_Hz == pytest.approx(210.0)
+
+
+def test_each_bearing_has_its_own_events() -> None:
+    calm, restless = signals(Rotor(whirl_s=None, critical_Hz=None)), signals(Rotor(critical_Hz=None))
+    columns = {"time_s": calm["time_s"], "speed_Hz": calm["speed_Hz"]}
+    for bearing, motion in (("left", calm), ("right", restless)):
+        columns |= {f"{name}_{bearing}": motion[name] for name in ("journal_x_m", "journal_y_m", "eccentricity")}
+    events = find_events(as_run(columns))
+    assert [(event.kind, event.film) for event in events] == [("onset", "right")]
+
+
+def test_an_empty_run_has_no_events() -> None:
+    assert find_events(as_run({name: values[:0] for name, values in signals(Rotor(duration_s=0.1)).items()})) == ()
+
+
+def test_order_amplitude_is_exact_and_blind_to_the_other_orders() -> None:
+    revolution = np.arange(0, 40, 1 / SAMPLES_PER_REVOLUTION)
+    motion = 0.3 + 2.0 * np.exp(2j * np.pi * revolution) + 0.7 * np.exp(1j * np.pi * (revolution + 0.3))
+    np.testing.assert_allclose(order_amplitude(motion, 0.5, 4), 0.7, rtol=1e-9)
+    np.testing.assert_allclose(order_amplitude(motion, 1.0, 4), 2.0, rtol=1e-9)
+    np.testing.assert_allclose(order_amplitude(motion, 1.5, 4), 0.0, atol=1e-9)
+    assert len(order_amplitude(motion[:100], 0.5, 4)) == 0
+
+
+def test_two_hundred_thousand_samples_take_less_than_half_a_second() -> None:
+    run = make_run()
+    assert len(run) > 200_000
+    start = time.perf_counter()
+    find_events(run)
+    assert time.perf_counter() - start < 0.5

@@ -1,0 +1,241 @@
+"""Pictures of made-up runs: what is drawn is what the run holds."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
+
+from frbcli.errors import InputError, RunFileError
+from frbcli.plot.displacement import displacement_figure
+from frbcli.plot.eccentricity import eccentricity_figure
+from frbcli.plot.orbit import orbit_figure
+from frbcli.plot.signals import DRAWN_POINTS, clearance, labels, model, thin
+from frbcli.plot.style import save_figure
+from frbcli.plot.summary import summary_figure
+from frbcli.plot.waterfall import LEVELS_dB, waterfall_figure
+from frbcli.results.store import Run
+
+FILM = '[film]\ntheory = "finite"\ncavitation = "{}"\n'
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return replace(make_run(), case_text=FILM.format("half-sommerfeld"))
+
+
+@pytest.fixture(scope="module")
+def up_and_down() -> Run:
+    return make_run(Rotor(duration_s=6.0, whirl_s=None, step_s=2e-4, speeds_Hz=(0.0, 300.0, 300.0, 0.0)))
+
+
+def texts(figure: Figure) -> str:
+    """All that is written in a figure."""
+    figure.draw_without_rendering()
+    return "\n".join(text.get_text() for text in figure.findobj(mpl.text.Text))
+
+
+def levels(axes: Axes) -> QuadMesh:
+    (mesh,) = (artist for artist in axes.collections if isinstance(artist, QuadMesh))
+    return mesh
+
+
+def test_waterfall_shows_the_whirl_where_it_is(run: Run) -> None:
+    axes = waterfall_figure(run).axes[0]
+    mesh = levels(axes)
+    assert mesh.get_clim() == LEVELS_dB
+    level = np.asarray(mesh.get_array())
+    assert np.isfinite(level).all()
+    edges = mesh.get_coordinates()
+    time_s, frequency = edges[0, :-1, 0], edges[:-1, 0, 1]
+    loudest = np.unravel_index(np.argmax(level), level.shape)
+    assert level.max() == pytest.approx(20 * np.log10(0.8), abs=0.5)
+    assert time_s[loudest[1]] > 6.5
+    assert 90.0 < frequency[loudest[0]] < 130.0
+    assert axes.get_ylim()[1] == pytest.approx(1.2 * 300.0, abs=2.0)
+
+
+def test_waterfall_draws_the_rotor_speed_and_its_half_and_names_them(run: Run) -> None:
+    figure = waterfall_figure(run)
+    whole, half = figure.axes[0].get_lines()
+    np.testing.assert_allclose(whole.get_ydata(), 30.0 * np.asarray(whole.get_xdata()), rtol=1e-6)
+    np.testing.assert_allclose(half.get_ydata(), 0.5 * np.asarray(whole.get_ydata()))
+    written = texts(figure)
+    for text in ("ω", "ω/2", "time in s", "frequency in Hz", "in dB", run.title, "half-Sommerfeld, finite bearing"):
+        assert text in written
+
+
+def test_waterfall_of_a_ring_draws_the_ring_lines(run: Run) -> None:
+    columns = {name: run[name] for name in run.signals}
+    ringed = as_run(columns | {"ring_speed_Hz": 0.25 * run["speed_Hz"]})
+    drawn = [np.asarray(line.get_ydata())[-1] for line in waterfall_figure(ringed).axes[0].get_lines()]
+    np.testing.assert_allclose(np.array(drawn) / drawn[0], [1.0, 0.625, 0.125])
+
+
+def test_waterfall_over_speed_has_speed_on_its_axis(run: Run) -> None:
+    (line, _) = waterfall_figure(run, over="speed", signal="disk", direction="forward").axes[0].get_lines()
+    np.testing.assert_allclose(line.get_xdata(), line.get_ydata())
+
+
+def test_waterfall_over_speed_of_an_up_and_down_run_has_two_parts(up_and_down: Run) -> None:
+    figure = waterfall_figure(up_and_down, over="speed")
+    assert [axes.get_title("left") for axes in figure.axes[:2]] == ["run-up", "run-down"]
+    for axes in figure.axes[:2]:
+        assert (np.diff(levels(axes).get_coordinates()[0, :, 0]) >= 0.0).all()
+
+
+def test_waterfall_over_speed_at_constant_speed_is_refused() -> None:
+    constant = make_run(Rotor(duration_s=1.0, whirl_s=None, critical_Hz=None, speeds_Hz=(200.0, 200.0)))
+    with pytest.raises(InputError, match="constant speed"):
+        waterfall_figure(constant, over="speed")
+
+
+@pytest.mark.parametrize("over", ["time", "speed"])
+def test_cascade_has_a_curve_per_spectrum_on_its_own_floor(run: Run, over: str) -> None:
+    figure = waterfall_figure(run, over, cascade=True)  # type: ignore[arg-type]
+    curves = [line for line in figure.axes[0].get_lines() if len(np.asarray(line.get_xdata())) > 200]
+    floors = [np.min(line.get_ydata()) for line in curves if line.get_linestyle() == "-"]
+    assert len(floors) == 60
+    assert (np.diff(floors) < 0.0).all()  # from the back to the front
+    assert "60 dB" in texts(figure)
+
+
+@pytest.mark.parametrize("log", [False, True])
+def test_frequency_axis_is_linear_or_logarithmic(run: Run, log: bool) -> None:
+    assert waterfall_figure(run, log=log).axes[0].get_yscale() == ("log" if log else "linear")
+
+
+def test_eccentricities_are_overlaid_and_told_apart_by_model(run: Run) -> None:
+    other = replace(run, case_text=FILM.format("reynolds"))
+    figure = eccentricity_figure([run, other])
+    assert len(figure.axes[0].get_lines()) == 2
+    assert "Reynolds, finite bearing" in texts(figure)
+    for line in figure.axes[0].get_lines():
+        assert np.max(line.get_ydata()) == np.max(run["eccentricity"])
+
+
+def test_labels_fall_back_to_files(run: Run) -> None:
+    assert labels([run, replace(run, path=Path("b/other.h5"))]) == ["run", "other"]
+    assert len(set(labels([run, replace(run, path=Path("b/run.h5"))]))) == 2
+    assert model(replace(run, case_text="not toml [")) == model(replace(run, case_text="film = 3")) == ""
+    assert model(replace(run, case_text='[film]\ncavitation = { two-phase = { steepness = 0.9 } }')) == "two-phase"
+
+
+def test_bearings_have_a_curve_each() -> None:
+    columns = signals(Rotor(duration_s=1.0))
+    columns["eccentricity_left"] = columns.pop("eccentricity")
+    columns["eccentricity_right"] = 0.5 * columns["eccentricity_left"]
+    figure = eccentricity_figure([as_run(columns)])
+    assert [line.get_label() for line in figure.axes[0].get_lines()] == ["left", "right"]
+
+
+def test_orbit_lies_in_its_clearance_circle(run: Run) -> None:
+    axes = orbit_figure([run], 8.0, 8.05).axes[0]
+    orbit = axes.get_lines()[0]
+    radius = np.hypot(orbit.get_xdata(), orbit.get_ydata())
+    (circle,) = axes.patches
+    assert circle.get_radius() == pytest.approx(CLEARANCE * 1e6)  # type: ignore[attr-defined]
+    assert len(radius) == 1001
+    np.testing.assert_allclose(radius / 35.0, run["eccentricity"][160_000:161_001])
+    assert axes.get_aspect() == 1.0
+
+
+def test_orbit_shows_the_end_of_the_run_unless_told_otherwise(run: Run) -> None:
+    assert "orbit from 9.9 s to 10 s" in texts(orbit_figure([run]))
+
+
+@pytest.mark.parametrize("figure", [orbit_figure, eccentricity_figure])
+def test_times_outside_the_run_are_refused(run: Run, figure: object) -> None:
+    with pytest.raises(RunFileError, match="goes from 0 s to 10 s"):
+        figure([run], 20.0, 21.0)  # type: ignore[operator]
+
+
+def test_displacement_is_in_micrometres(run: Run) -> None:
+    x, y = displacement_figure([run], from_time=8.0).axes
+    for axes, name in ((x, "disk_x_m"), (y, "disk_y_m")):
+        assert np.max(axes.get_lines()[0].get_ydata()) == pytest.approx(np.max(run[name][160_000:]) * 1e6)
+        assert np.min(axes.get_lines()[0].get_xdata()) >= 8.0
+
+
+def test_displacement_without_a_disk_is_that_of_the_journal(run: Run) -> None:
+    rigid = as_run({name: run[name] for name in run.signals if not name.startswith("disk")})
+    assert "displacement of the journal" in texts(displacement_figure([rigid]))
+    with pytest.raises(RunFileError, match="disk_x_m"):
+        displacement_figure([rigid], "disk")
+
+
+def test_summary_marks_the_events_found(run: Run) -> None:
+    written = texts(summary_figure(run))
+    for text in ("critical speed\n145.4 Hz", "onset of whirl\n193.6 Hz, 0.46 ω", "eccentricity", "speed in Hz"):
+        assert text in written
+    contact = {"kind": "contact", "film": None, "t_s": 2.0, "speed_Hz": 60.0, "frequency_ratio": None}
+    told = texts(summary_figure(replace(run, events=[contact], status="contact")))
+    assert "contact\n60.0 Hz" in told
+    assert "onset" not in told
+    assert "contact at 10 s" in told
+
+
+@pytest.mark.parametrize("samples", [2, 40, 70, 2000])
+def test_a_run_that_ends_soon_has_a_summary_too(run: Run, samples: int) -> None:
+    short = as_run({name: run[name][:samples] for name in run.signals}, status="contact")
+    save = summary_figure(short)
+    save.draw_without_rendering()
+    assert len(save.axes) == (3 if samples < 64 else 4)
+
+
+@pytest.mark.parametrize("figure", [summary_figure, waterfall_figure, lambda run: orbit_figure([run])])
+def test_a_run_without_samples_is_refused(run: Run, figure: object) -> None:
+    empty = as_run({name: run[name][:0] for name in run.signals})
+    with pytest.raises(RunFileError, match="no samples"):
+        figure(empty)  # type: ignore[operator]
+
+
+def test_a_run_without_clearance_has_no_waterfall(run: Run) -> None:
+    with pytest.raises(RunFileError, match="clearance"):
+        waterfall_figure(replace(run, references={}))
+    assert clearance(replace(run, references={"clearance_m": 1e-5, "clearance_m_left": 2e-5}), "_left") == 2e-5
+
+
+def test_thinned_curves_keep_their_extremes() -> None:
+    time_s = np.linspace(0.0, 1.0, 200_001)
+    values = np.sin(400 * time_s)
+    values[123_456] = 5.0
+    few, kept = thin(time_s, values)
+    assert len(few) < 1.1 * DRAWN_POINTS
+    assert (np.diff(few) > 0.0).all()
+    assert (kept.max(), kept.min()) == (5.0, values.min())
+    assert few[-1] == 1.0
+
+
+@pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".pdf", b"%PDF"), (".svg", b"<?xml")])
+def test_pictures_are_written_as_their_name_says_and_alike_each_time(run: Run, tmp_path: Path, suffix: str,
+                                                                     magic: bytes) -> None:  # fmt: skip
+    first = save_figure(eccentricity_figure([run]), tmp_path / f"a{suffix}").read_bytes()
+    assert first.startswith(magic)
+    assert first == save_figure(eccentricity_figure([run]), tmp_path / f"b{suffix}").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["picture.gif", "picture", "nowhere/picture.png"])
+def test_pictures_that_cannot_be_written_are_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError):
+        save_figure(Figure(), tmp_path / name)
+
+
+def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:
+    before = dict(mpl.rcParams)
+    summary_figure(run)
+    assert dict(mpl.rcParams) == before
+
+
+def test_drawing_does_not_import_pyplot() -> None:
+    code = "import sys, frbcli.plot.summary, frbcli.plot.orbit; sys.exit('matplotlib.pyplot' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[1], check=False).returncode == 0

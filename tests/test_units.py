@@ -1,0 +1,140 @@
+"""Text with a unit -> SI, and back."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "si"),
+    [
+        ("35 um", "m", 35e-6),
+        ("35 µm", "m", 35e-6),  # micro sign
+        ("35 μm", "m", 35e-6),  # Greek mu
+        ("20mm", "m", 0.02),
+        ("3 g*mm", "kg*m", 3e-6),
+        ("3 g mm", "kg*m", 3e-6),
+        ("20 kg·mm²", "kg*m^2", 20e-6),
+        ("12 mPa*s", "Pa*s", 0.012),
+        ("5000 N/mm", "N/m", 5e6),
+        ("0.1 N*s/m", "N*s/m", 0.1),
+        ("1 bar", "Pa", 1e5),
+        ("830 kg/m^3", "kg/m^3", 830.0),
+        ("9.81 m/s^2", "m/s^2", 9.81),
+        ("1e-5 1/K", "1/K", 1e-5),
+        ("100 degC", "K", 373.15),
+        ("100 °C", "K", 373.15),
+        ("-178 K", TEMPERATURE_DIFFERENCE, -178.0),
+        ("180 deg", ANGLE, math.pi),
+        ("15°", ANGLE, math.pi / 12),
+        ("25 Hz", SPEED, 25.0),
+        ("1.5 kHz", SPEED, 1500.0),
+        ("3000 rpm", SPEED, 50.0),
+        ("3000 1/min", SPEED, 50.0),
+        ("1 rad/s", SPEED, 1 / (2 * math.pi)),
+        ("0.999", NUMBER, 0.999),
+        ("5 %", NUMBER, 0.05),
+    ],
+)
+def test_reads_the_notation_of_case_files(text: str, unit: str, si: float) -> None:
+    assert quantity(text, unit) == pytest.approx(si, rel=1e-14)
+
+
+def test_conversion_leaves_no_noise_in_the_last_bit() -> None:
+    assert quantity("35 um", "m") == 35e-6
+
+
+@pytest.mark.parametrize("unit", ["m", SPEED, ANGLE, "K", NUMBER])
+def test_bare_numbers_are_si(unit: str) -> None:
+    assert quantity(12, unit) == 12.0
+    assert quantity(0.5, unit) == 0.5
+
+
+@pytest.mark.parametrize(
+    ("given", "unit", "problem"),
+    [
+        ("35", "m", "no unit"),
+        ("25", SPEED, "no unit"),
+        ("35 kg", "m", "cannot be turned into m"),
+        ("35 furlongz", "m", "not known"),
+        ("5 Hz", ANGLE, "does not fit"),
+        ("5 1/s", SPEED, "does not fit"),  # revolutions or radians?
+        ("10 degC", TEMPERATURE_DIFFERENCE, "cannot be turned into K"),
+        ("3 m^^2", "m", "cannot be read"),
+        ("2 m^99999999", "m", "cannot be read"),
+        ("about 3 mm", "m", "not a number"),
+        ("", "m", "not a number"),
+        ("nan m", "m", "not a number"),
+        (math.nan, "m", "finite"),
+        (math.inf, "m", "finite"),
+        ("1e999 m", "m", "finite"),
+        (10**400, "m", "finite"),
+        (True, "m", "not a quantity"),
+        (None, "m", "not a quantity"),
+        ([1], "m", "not a quantity"),
+    ],
+)
+def test_faults_say_what_is_wrong_and_what_to_write(given: object, unit: str, problem: str) -> None:
+    with pytest.raises(ValueFault) as caught:
+        quantity(given, unit, "20 mm")
+    assert problem in caught.value.problem
+    assert '"20 mm"' in caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (35e-6, "m", "35 um"),
+        (0.02, "m", "20 mm"),
+        (0.001, "m", "1 mm"),
+        (3e-6, "kg*m", "3 g*mm"),
+        (5e6, "N/m", "5000 N/mm"),
+        (5e4, "Pa", "0.5 bar"),
+        (0.012, "Pa*s", "12 mPa*s"),
+        (math.pi / 12, ANGLE, "15 deg"),
+        (-0.25, NUMBER, "-0.25"),
+        (0.0, "m", "0 m"),
+        (9.81, "m/s^2", "9.81 m/s^2"),
+    ],
+)
+def test_display_is_what_engineers_write(value: float, unit: str, text: str) -> None:
+    assert display(value, unit) == text
+
+
+UNITS = ["m", "kg", "kg*m", "kg*m^2", "N/m", "N*s/m", "Pa", "Pa*s", "s", "K", "1/K", SPEED, ANGLE, NUMBER]
+
+
+@given(
+    value=st.floats(1e-9, 1e9) | st.floats(-1e9, -1e-9) | st.just(0.0),
+    unit=st.sampled_from([*UNITS, TEMPERATURE_DIFFERENCE]),
+)
+def test_what_is_displayed_reads_back(value: float, unit: str) -> None:
+    assert quantity(display(value, unit), unit) == pytest.approx(value, rel=1e-5)
+
+
+def is_number_or_fault(given: object, unit: str) -> bool:
+    """Whether `given` is a finite number, or refused with words; any other exception passes and fails the test."""
+    try:
+        return math.isfinite(quantity(given, unit))
+    except ValueFault as fault:
+        return bool(fault.problem and fault.remedy)
+
+
+@given(given=st.text() | st.integers() | st.floats() | st.booleans() | st.none(), unit=st.sampled_from(UNITS))
+def test_anything_is_a_finite_number_or_a_fault(given: object, unit: str) -> None:
+    assert is_number_or_fault(given, unit)
+
+
+@given(
+    number=st.floats(-1e3, 1e3),
+    unit_text=st.text(alphabet="mKsPaNHzbardegC°µ*/^-0123456789 ", max_size=12),
+    unit=st.sampled_from(UNITS),
+)
+def test_any_unit_is_read_or_refused(number: float, unit_text: str, unit: str) -> None:
+    assert is_number_or_fault(f"{number} {unit_text}", unit)

@@ -1,0 +1,169 @@
+"""The measured side of the validation: one function per figure, each from the public functions of frbcli."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from frbcli.analysis.stability import Stability, stability
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.film.bearing import evaluate
+from frbcli.film.direct import largest_pressure
+from frbcli.film.kernel import FilmData
+from frbcli.results.store import Run
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_rotor, make_system, planned_film
+from frbcli.solve.run import runup
+
+DATA = Path(__file__).parent.parent / "data"
+
+RISEN = 0.6  # eccentricity beyond which the journal has left its resting position, ...
+SETTLED_s = 2.0  # ... after this time: a slow rotor rests there, too
+RIGID = "rigid"  # a shaft stiffness
+FIRST_SECOND = ("speed.to=30 Hz", "speed.duration=1 s")  # the first tenth of 0 to 300 Hz in 10 s
+FIRST_SECONDS = ("speed.to=90 Hz", "speed.duration=3 s")
+WINDOW_s = 0.1  # at least one turn of a whirl at half of 30 Hz and more
+REFERENCE = ("accuracy.tolerance=1e-8", "accuracy.steps_per_revolution=160", "accuracy.mesh=[12, 256]")
+
+
+@dataclass(frozen=True)
+class Rise:
+    """When the eccentricity jumps: first passage of RISEN (NaN if never), and the onset event (NaN if none), in s."""
+
+    passage_s: float
+    onset_s: float
+
+
+def rigid_bearing_frequency(case: Case) -> float:
+    """Lowest natural frequency in Hz of the rotor with its journals held."""
+    rotor = make_rotor(case)
+    free = null_space(rotor.journals.reshape(-1, rotor.size))
+    squares = eigh(free.T @ rotor.stiffness @ free, free.T @ rotor.mass @ free, eigvals_only=True)
+    return float(np.sqrt(squares[0])) / (2 * math.pi)
+
+
+def first_event(run: Run, kind: str, key: str) -> float:
+    """`key` of the first event of a kind, NaN if there is none."""
+    return next((float(event[key]) for event in run.events if event["kind"] == kind), math.nan)
+
+
+def rise(run: Run) -> Rise:
+    """When the eccentricity of a run jumps."""
+    time = run["time_s"]
+    risen = np.flatnonzero((time > SETTLED_s) & (run["eccentricity"] > RISEN))
+    passage = float(time[risen[0]]) if len(risen) else math.nan
+    return Rise(passage, first_event(run, "onset", "t_s"))
+
+
+def eccentricity_at_1s(folder: Path, name: str) -> float:
+    """Eccentricity after the first second of a shipped run-up."""
+    return float(runup(load_case(name, FIRST_SECOND), folder / "first-second.h5")["eccentricity"][-1])
+
+
+def film_pressure(case: Case, eccentricity: float, speed_Hz: float) -> float:
+    """Largest absolute pressure in bar with the journal held still at an eccentricity."""
+    plan = make_plan(case)
+    bearing = make_system(case, plan).bearings[0]
+    held = np.array([eccentricity * bearing.clearance, 0.0])
+    return largest_pressure(bearing, plan.mesh, held, np.zeros(2), 2 * math.pi * speed_Hz) / 1e5
+
+
+def threshold_Hz(case: Case) -> float:
+    """Linear threshold; 0 for a rotor that is unstable from its lowest speed on, infinite for one that is never."""
+    found: Stability = stability(case)
+    if found.threshold is not None:
+        return found.threshold.speed_Hz
+    resting = [point for point in found.sweep if point.films]
+    return 0.0 if resting and resting[0].growth > 0.0 else math.inf
+
+
+def smallest_whirl(folder: Path, supply: str) -> float:
+    """Smallest amplitude of the journal's motion over the clearance in the first three seconds at a supply pressure."""
+    case = load_case("jeffcott", (*FIRST_SECONDS, f"bearing.supply.pressure={supply}"))
+    run = runup(case, folder / "first-seconds.h5")
+    motion = (run["journal_x_m"] + 1j * run["journal_y_m"]) / run.references["clearance_m"]
+    windows = motion[: len(motion) // (width := round(WINDOW_s / case.output.step)) * width].reshape(-1, width)
+    return float(windows.std(axis=1).min())
+
+
+def effective_velocity_zero(run: Run) -> float:
+    """First time in s, once settled, at which omega - 2 delta' of the journal is no longer positive."""
+    time = run["time_s"]
+    attitude = np.unwrap(np.angle(run["journal_x_m"] + 1j * run["journal_y_m"]))
+    effective = 2 * math.pi * run["speed_Hz"] - 2.0 * np.gradient(attitude, time)
+    reached = np.flatnonzero((time > SETTLED_s) & (effective <= 0.0))
+    return float(time[reached[0]]) if len(reached) else math.nan
+
+
+def stiffness_thresholds(stiffnesses: Sequence[str]) -> list[float]:
+    """Linear thresholds in Hz of the Jeffcott rotor with shafts of the given stiffnesses, RIGID among them."""
+    return [
+        threshold_Hz(load_case("rigid") if s == RIGID else load_case("jeffcott", (f"rotor.shaft_stiffness={s}",)))
+        for s in stiffnesses
+    ]
+
+
+def supply_thresholds(pressures: Sequence[str]) -> list[float]:
+    """Linear thresholds in Hz of the Jeffcott rotor at the given supply pressures."""
+    return [threshold_Hz(load_case("jeffcott", (f"bearing.supply.pressure={p}",))) for p in pressures]
+
+
+def accuracy_before(folder: Path, case: Case, reference: Case, before_s: float) -> float:
+    """Largest difference in eccentricity to the reference run up to before_s."""
+    runs = [runup(each, folder / f"accuracy-{i}.h5") for i, each in enumerate((case, reference))]
+    eccentricities = [run["eccentricity"][run["time_s"] <= before_s] for run in runs]
+    return float(np.abs(eccentricities[0] - eccentricities[1]).max())
+
+
+def worst_resting_position(clearance_um: str, theory: str) -> tuple[float, float]:
+    """Largest deviation from equilibrium.csv: relative in eccentricity, and in attitude angle in degrees."""
+    name = {"40": "jeffcott-table-4-1", "35": "jeffcott"}[clearance_um]
+    rows = [row for row in _rows("equilibrium.csv") if (row["clearance_um"], row["theory"]) == (clearance_um, theory)]
+    speeds = [float(row["speed_Hz"]) for row in rows]
+    points = stability(load_case(name, (f"film.theory={theory}",)), speeds).points
+    films = [point.films[0] for point in points]
+    pairs = list(zip(films, rows, strict=True))
+    relative = max(abs(film.eccentricity / float(row["eccentricity"]) - 1.0) for film, row in pairs)
+    degrees = max(abs(film.attitude_deg - float(row["attitude_deg"])) for film, row in pairs)
+    return relative, degrees
+
+
+def worst_film_force(supply: str) -> tuple[float, float]:
+    """Largest relative deviation of the film forces from film-forces.csv, on the mesh that is planned by default.
+
+    Second: what the program behind that table states as its own error there.
+    """
+    case = load_case("jeffcott-table-4-1")
+    plan = make_plan(case)
+    sections = {"none": 1, "circumferential-groove": 2}[supply]
+    like = replace(make_system(case, plan).bearings[0], sections=sections)
+    rows = [row for row in _rows("film-forces.csv") if row["supply"] == supply]
+    pressures = {row["supply_pressure_bar"] for row in rows}
+    bearings = {bar: replace(like, supply_pressure=float(bar) * 1e5 if sections == 2 else None) for bar in pressures}
+    films = {bar: planned_film(plan, bearing, plan.mesh) for bar, bearing in bearings.items()}
+    return max(_force_error(films[row["supply_pressure_bar"]], like.clearance, row) for row in rows)
+
+
+def _force_error(film: FilmData, clearance: float, row: dict[str, str]) -> tuple[float, float]:
+    eccentricity, attitude = float(row["eccentricity"]), math.radians(float(row["attitude_deg"]))
+    along = np.array([math.cos(attitude), math.sin(attitude)])
+    across = np.array([-along[1], along[0]])
+    rate = float(row["eccentricity_rate_1_s"]) * along + float(row["whirl_speed_rad_s"]) * eccentricity * across
+    omega = 2 * math.pi * float(row["speed_Hz"])
+    force = evaluate(film, clearance, eccentricity * clearance * along, rate * clearance, omega).force
+    expected = np.array([float(row["Fx_N"]), float(row["Fy_N"])])
+    size = float(np.linalg.norm(expected))
+    return float(np.linalg.norm(force - expected)) / size, float(row["force_error_N"]) / size
+
+
+def _rows(name: str) -> list[dict[str, str]]:
+    with (DATA / name).open(encoding="utf-8") as file:
+        table = csv.DictReader(line for line in file if not line.startswith("#"))
+        return [row for row in table if row["cavitation"] == "half-sommerfeld"]

@@ -1,0 +1,191 @@
+"""Measures everything and writes docs/validation.md: `cd tests && python -m validation.validate`."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from frbcli.case.load import load_case
+from frbcli.scene.plan import make_plan
+from frbcli.solve.run import runup
+from validation import measures
+from validation.measures import DATA, REFERENCE, RIGID
+
+PAGE = Path(__file__).parent.parent.parent / "docs" / "validation.md"
+STIFFNESSES = ("1000 N/mm", "5000 N/mm", RIGID)
+PRESSURES = ("1 bar", "2 bar", "3 bar", "4 bar")
+TARGETS = ("1e-2", "1e-3", "1e-4")
+WHIRLING = 0.05  # amplitude over the clearance
+THRESHOLDS_Hz = {"jeffcott-table-4-1": 167.4, "jeffcott": 177.2}  # by an independent finite-volume program
+
+HEAD = """# Validation
+
+Measured beside printed. This page is written by `cd tests && python -m validation.validate`, which runs everything
+again (half a minute); `tests/test_validation.py` holds the rows that matter most.
+All figures are for half-Sommerfeld films of finite length and the default accuracy unless the row says otherwise.
+
+A row *agrees* if it deviates by no more than the wording of the source bears (the source rounds), else it *differs*,
+and the reason stands below the table.
+"""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """text: as shown; value: to compare with a printed number, NaN if there is none; holds: whether an order holds."""
+
+    text: str
+    value: float = math.nan
+    holds: bool = True
+
+
+def printed_rows() -> list[dict[str, Any]]:
+    """The rows of thesis-numbers.toml."""
+    rows: list[dict[str, Any]] = tomllib.loads((DATA / "thesis-numbers.toml").read_text(encoding="utf-8"))["result"]
+    return rows
+
+
+def measure(folder: Path) -> dict[str, Measured]:
+    """All reached rows, by their id. Runs are written to `folder`."""
+    runs = {
+        name: runup(load_case(name), folder / f"{name}.h5")
+        for name in ("jeffcott", "jeffcott-table-4-1", "rigid", "soft-shaft")
+    }
+    rises = {name: measures.rise(run) for name, run in runs.items()}
+    zero = measures.effective_velocity_zero(runs["rigid"])
+    stiff = measures.stiffness_thresholds(STIFFNESSES)
+    supply = measures.supply_thresholds(PRESSURES)
+    whirl = measures.smallest_whirl(folder, PRESSURES[-1])
+
+    def risen(name: str) -> Measured:
+        found = rises[name]
+        return Measured(f"{found.passage_s:.2f} (onset event {found.onset_s:.2f})", found.passage_s)
+
+    def number(value: float, digits: int) -> Measured:
+        return Measured(f"{value:.{digits}f}", value)
+
+    def critical(name: str) -> Measured:
+        return number(measures.first_event(runs[name], "critical-speed", "t_s"), 2)
+
+    case = load_case("jeffcott")
+    raised = load_case("jeffcott-supply-2bar")
+    return {
+        "rigid-bearing-frequency": number(measures.rigid_bearing_frequency(case), 2),
+        "critical-speed": critical("jeffcott"),
+        "critical-speed-table-4-1": critical("jeffcott-table-4-1"),
+        "rise-table-4-1": risen("jeffcott-table-4-1"),
+        "rise": risen("jeffcott"),
+        "eccentricity-1bar": number(measures.eccentricity_at_1s(folder, "jeffcott"), 3),
+        "eccentricity-2bar": number(measures.eccentricity_at_1s(folder, "jeffcott-supply-2bar"), 3),
+        "largest-pressure-1bar": number(measures.film_pressure(case, 0.485, 30.0), 2),
+        "largest-pressure-2bar": number(measures.film_pressure(raised, 0.393, 30.0), 2),
+        "soft-shaft-critical": number(measures.first_event(runs["soft-shaft"], "critical-speed", "speed_Hz"), 1),
+        "effective-angular-velocity": Measured(
+            f"zero at {zero:.2f} s, jump at {rises['rigid'].passage_s:.2f} s",
+            holds=abs(zero - rises["rigid"].passage_s) < 0.1,
+        ),
+        "stiffness-order": Measured(speeds(stiff), holds=stiff[0] < stiff[1] < stiff[2]),
+        "supply-order": Measured(
+            f"{speeds(supply)}; at 4 bar the journal never comes to rest, its whirl stays above {whirl:.2f} clearances",
+            holds=supply[0] > supply[1] > supply[2] > supply[3] and whirl > WHIRLING,
+        ),
+    }
+
+
+def speeds(thresholds: list[float]) -> str:
+    """Thresholds as text."""
+    words = {0.0: "unstable at once", math.inf: "stable"}
+    return ", ".join(words.get(value, f"{value:.1f} Hz") for value in thresholds)
+
+
+def compared(rows: list[dict[str, Any]], measured: dict[str, Measured]) -> list[str]:
+    """The table of what is reached, the reasons, and the table of what is not."""
+    lines = ["| quantity | where | model there | printed | measured | deviation | verdict |", "|" + " --- |" * 7]
+    reasons = []
+    for row in (row for row in rows if "missing" not in row):
+        found = measured[row["id"]]
+        printed, deviation, agrees = "order", "", found.holds
+        if "printed" in row:
+            relative = found.value / row["printed"] - 1.0
+            printed, deviation = f"{row['printed']:g}", f"{100 * relative:+.1f} %"
+            agrees = abs(relative) <= row["tolerance"]
+        verdict = "agrees" if agrees else "differs"
+        cells = (row["quantity"], row["where"], row.get("model", ""), printed, found.text, deviation, verdict)
+        lines.append(f"| {' | '.join(cells)} |")
+        if not agrees:
+            reasons.append(f"- *{row['quantity']}*: {row.get('note', 'no reason known')}.")
+    lines += ["", "Why rows differ:", "", *reasons] if reasons else []
+    lines += ["", "## Not yet reached", "", "| quantity | where | waits for |", "|" + " --- |" * 3]
+    lines += [f"| {row['quantity']} | {row['where']} | {row['missing']} |" for row in rows if "missing" in row]
+    return lines
+
+
+def independent() -> list[str]:
+    """The section on the independent finite-volume program."""
+    lines = ["| quantity | theory | expected | measured | deviation | allowed |", "|" + " --- |" * 6]
+    for name, expected in THRESHOLDS_Hz.items():
+        found = measures.threshold_Hz(load_case(name))
+        off = f"{100 * (found / expected - 1):+.2f} %"
+        lines.append(f"| linear threshold of `{name}`, Hz | finite | {expected} | {found:.1f} | {off} | 0.5 % |")
+    for clearance in ("40", "35"):
+        for theory in ("finite", "short"):
+            relative, degrees = measures.worst_resting_position(clearance, theory)
+            what = f"resting positions, clearance {clearance} um, 10 to 200 Hz: eccentricity, attitude"
+            off = f"{100 * relative:.3f} %, {degrees:.3f} deg"
+            lines.append(f"| {what} | {theory} | 5 positions | | {off} at most | 0.3 %, 0.3 deg |")
+    for supply in ("none", "circumferential-groove"):
+        error, own = measures.worst_film_force(supply)
+        off, allowed = f"{100 * error:.3f} % at most", f"0.3 %, and {100 * own:.2f} % that the program may err by there"
+        lines.append(f"| film forces, supply `{supply}`, eccentricity 0.3 to 0.9 | finite | | | {off} | {allowed} |")
+    return lines
+
+
+def accuracy(folder: Path) -> list[str]:
+    """The section on the error of a run before its rise."""
+    threshold = measures.threshold_Hz(load_case("jeffcott"))
+    before = threshold / 30.0  # 30 Hz are passed in a second
+    reference = load_case("jeffcott", REFERENCE)
+    lines = [f"Up to {before:.2f} s, the linear threshold; the whirl that grows after it multiplies every difference.", ""]
+    lines += ["| run | mesh, tolerance | largest error of the eccentricity |", "|" + " --- |" * 3]
+    settings = [(f"accuracy.target={target}",) for target in TARGETS] + [("film.theory=short",)]
+    for setting in settings:
+        case = load_case("jeffcott", setting)
+        plan = make_plan(case)
+        error = measures.accuracy_before(folder, case, reference, before)
+        mesh = f"{plan.mesh.axial} x {plan.mesh.circumferential}" if plan.theory == "finite" else "-"
+        lines.append(f"| `--set {setting[0]}` | {mesh}, {plan.tolerance:g} | {error:.1e} |")
+    return lines
+
+
+def main() -> None:
+    """Measure, and write the page."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        sections = [
+            HEAD,
+            "## The dissertation",
+            "",
+            "R. Nowald, dissertation, TU Darmstadt 2018. Rotor: Jeffcott, table 6.1; 0 to 300 Hz in 10 s.",
+            "The rise is the first passage of an eccentricity of 0.6.",
+            "",
+            *compared(printed_rows(), measure(folder)),
+            "",
+            "## An independent program",
+            "",
+            "Finite volumes, grid-refined and extrapolated, written only to check against.",
+            "",
+            *independent(),
+            "",
+            "## Accuracy of a run",
+            "",
+            "The case `jeffcott` against its run with tolerance 1e-8, 160 steps per revolution and 12 x 256 elements.",
+            *accuracy(folder),
+        ]
+    PAGE.write_text("\n".join(sections) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
