@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from films import AMBIENT, CLEARANCE, GROOVED, PLAIN, RADIUS, VISCOSITY, film_of, polar, sommerfeld_number
 
+from frbcli.film import short
 from frbcli.film.bearing import RectangularBearing, evaluate
 from frbcli.film.direct import direct_force, section_pressure
 from frbcli.film.grid import axial_modes, axial_vertices, ring_vertices
@@ -51,24 +52,25 @@ def test_ocvirk(bearing: RectangularBearing, eccentricity: float) -> None:
     assert -found[0] / found[1] == pytest.approx(-math.pi * math.sqrt(s2) / (4 * eccentricity), rel=1e-10)
 
 
-def brute_force(eccentricity: float, w: tuple[float, float], slenderness: float, sigma: float, level: float) -> np.ndarray:
-    """(2,) integral of the clipped pressure (B.3) over a grid of some two million points."""
+def brute_force(eccentricity: float, w: tuple[float, float], sigma: float, level: float) -> np.ndarray:
+    """(2,) integral of the clipped pressure (B.3) over a grid of two million points."""
     theta = 2 * np.pi * (np.arange(4000) + 0.5) / 4000
     points, weights = np.polynomial.legendre.leggauss(500)
-    pressure = short_pressure(theta, 0.5 * (points + 1), eccentricity, *w, slenderness, sigma)
+    pressure = short_pressure(theta, 0.5 * (points + 1), eccentricity, *w, SLENDERNESS, sigma)
     line = np.maximum(pressure - level, 0.0) @ (0.5 * weights)
     return 2 * np.pi * np.array([(line * np.cos(theta)).mean(), (line * np.sin(theta)).mean()])
 
 
+SLENDERNESS = 0.64  # (b/R)^2
 MOTIONS = [(1.0, 2.0), (-1.0, 0.5), (2.0, -3.0), (0.0, -100.0)]
 
 
 @pytest.mark.parametrize("w", MOTIONS)
 @pytest.mark.parametrize("eccentricity", [0.05, 0.5, 0.95])
 def test_closed_form_is_the_clipped_integral(eccentricity: float, w: tuple[float, float]) -> None:
-    expected = brute_force(eccentricity, w, 0.64, 0.0, 0.0)
-    found = np.array(short_closed(eccentricity, *w, 0.64, 1)[:2])
-    assert np.linalg.norm(found - expected) < 1e-6 * np.linalg.norm(expected)
+    expected = brute_force(eccentricity, w, 0.0, 0.0)
+    found = np.array(short_closed(eccentricity, *w, SLENDERNESS, 1)[:2])
+    assert np.linalg.norm(found - expected) < 1e-5 * np.linalg.norm(expected)
 
 
 @pytest.mark.parametrize(("sigma", "level"), [(0.0, 0.0), (0.3, 0.0), (0.3, -0.2), (0.0, -0.4), (5.0, -0.1)])
@@ -77,17 +79,41 @@ def test_closed_form_is_the_clipped_integral(eccentricity: float, w: tuple[float
 def test_extended_short_bearing_is_the_clipped_integral(
     eccentricity: float, w: tuple[float, float], sigma: float, level: float
 ) -> None:
-    """Exact along z; around, the trapezoidal rule meets kinks where the film ruptures: 5e-4 with its 96 points."""
-    expected = brute_force(eccentricity, w, 0.64, sigma, level)
-    found = np.array(short_general(eccentricity, *w, 0.64, sigma, level)[:2])
-    assert np.linalg.norm(found - expected) < 5e-4 * np.linalg.norm(expected)
+    """Exact along z; around, the trapezoidal rule meets kinks where the film ruptures: 5e-4 with its 96 points, of the
+    force of this motion or the opposite one, whichever is larger."""
+    expected = brute_force(eccentricity, w, sigma, level)
+    opposite = brute_force(eccentricity, (-w[0], -w[1]), sigma, level)
+    found = np.array(short_general(eccentricity, *w, SLENDERNESS, sigma, level)[:2])
+    scale = max(np.linalg.norm(expected), np.linalg.norm(opposite))
+    assert np.linalg.norm(found - expected) < 5e-4 * scale
+
+
+@pytest.mark.parametrize("w", [(-12.0, 27.0), (5.0, 2.0), (-100.0, 30.0), (50.0, -300.0)])
+@pytest.mark.parametrize("eccentricity", [0.3, 0.6, 0.9])
+def test_extended_short_bearing_has_the_derivatives_of_its_integral(
+    eccentricity: float, w: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Supply at 2 bar. Differences are taken of a sum over so many points that its kinks do not matter."""
+    sigma = (2e5 - AMBIENT) / GROOVED.pressure_scale
+    at = np.array([eccentricity, *w])
+    found = np.array(short_general(*at, SLENDERNESS, sigma, 0.0))
+    monkeypatch.setattr(short, "ANGLES", 4000)
+
+    def force(place: np.ndarray) -> np.ndarray:
+        return np.array(short_general.py_func(*place, SLENDERNESS, sigma, 0.0)[:2])
+
+    steps = np.diag([1e-4 * (1 - eccentricity), 1e-3 * math.hypot(*w), 1e-3 * math.hypot(*w)])
+    by_e, by_r, by_t = ((force(at + step) - force(at - step)) / (2 * step.sum()) for step in steps)
+    damping, fine = found[2:6].reshape(2, 2), np.stack([by_r, by_t], axis=1)
+    np.testing.assert_allclose(damping, fine, rtol=0.0, atol=2e-2 * np.abs(fine).max())
+    np.testing.assert_allclose(found[6:], by_e, rtol=0.0, atol=2e-2 * np.abs(by_e).max())
 
 
 @pytest.mark.parametrize("eccentricity", [0.1, 0.4, 0.7, 0.9])
 def test_long_bearing_has_sommerfelds_pressure(eccentricity: float) -> None:
     """In the middle of a bearing with B/D = 20 the edges are not felt:
-    p = 6 eta omega (R/C)^2 eps sin(Theta) (2 + eps cos(Theta)) / ((2 + eps^2) (1 + eps cos(Theta))^2), counted here from
-    the widest gap in the sense of rotation; divided by 12 eta / psi^2 that is the scaled pressure."""
+    p = 6 eta omega (R/C)^2 eps sin(Theta) (2 + eps cos(Theta)) / ((2 + eps^2) (1 + eps cos(Theta))^2), Theta from the
+    widest gap in the sense of rotation; divided by 12 eta / psi^2 that is the scaled pressure."""
     mesh = Mesh(24, 192)
     field = section_pressure(plain(20.0), mesh, eccentricity, 0.0, -0.5 * OMEGA * eccentricity)
     middle = int(np.argmin(np.abs(field.z - 0.5)))
@@ -119,8 +145,8 @@ def test_narrow_finite_bearing_is_a_short_one(cavitation: str, eccentricity: flo
         d = bearing.clearance * polar(eccentricity, 0.4)
         v = bearing.clearance * np.array([0.1, 0.2]) * OMEGA
         finite = direct_force(bearing, cavitation, Mesh(6, 192), d, v, OMEGA)
-        short = evaluate(film_of(bearing, "short", cavitation), bearing.clearance, d, v, OMEGA).force
-        errors.append(np.linalg.norm(finite - short) / np.linalg.norm(short))
+        narrow = evaluate(film_of(bearing, "short", cavitation), bearing.clearance, d, v, OMEGA).force
+        errors.append(np.linalg.norm(finite - narrow) / np.linalg.norm(narrow))
     assert errors[1] < 6e-3
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
 
@@ -152,7 +178,7 @@ def test_raimondi_and_boyd(slenderness: float) -> None:
 
 
 def test_raimondi_and_boyd_at_small_eccentricity() -> None:
-    """Where the two conditions differ least, the shortest bearing at a small eccentricity, they agree to one per cent."""
+    """Where the two conditions differ least, in the shortest bearing and near the centre, they agree to a per cent."""
     for eccentricity in (0.1, 0.2):
         s, attitude = RAIMONDI_BOYD[0.25][eccentricity]
         so, angle = rotating(plain(0.25), "half-sommerfeld", FINE, eccentricity)
@@ -219,8 +245,8 @@ def test_force_table_is_the_direct_solve(bearing: RectangularBearing, cavitation
     ids=["supply 2 bar", "cavity 0.5 bar"],
 )
 def test_field_table_is_the_direct_solve(bearing: RectangularBearing) -> None:
-    """The film ruptures at some place between the axial lines of the table: half a per cent at worst, where the force is
-    the small rest of a pressure all around; a twentieth of a per cent in the middle of the field."""
+    """The film ruptures somewhere between the axial lines of the table: below 0.3 per cent at worst, where the force is
+    the small rest of a pressure all around; some hundredths of a per cent mostly."""
     errors = table_errors(bearing, "half-sommerfeld")
-    assert np.median(errors) < 1e-3
-    assert errors.max() < 8e-3
+    assert np.median(errors) < 4e-4
+    assert errors.max() < 3e-3

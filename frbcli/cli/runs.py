@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from pathlib import Path
 
@@ -32,3 +33,8 @@ SECONDS = Seconds()
 def beside(run: Path, what: str) -> Path:
     """Where a result goes if nothing is said: beside its run."""
     return run.with_name(run.stem + what)
+
+
+def here(case_name: str, what: str) -> Path:
+    """Where the result of a case goes if nothing is said: into this directory, under the case's name."""
+    return Path((re.sub(r"[^\w.-]+", "-", case_name) or "run") + what)

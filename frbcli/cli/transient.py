@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.runs import OUTPUT, beside
+from frbcli.cli.runs import OUTPUT, beside, here
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -24,6 +24,8 @@ Transient = Callable[..., "Run"]
 EXIT_CODES = {"finished": 0, "interrupted": 130}  # anything else ended early for a reason that it names: 3
 ENDED_EARLY = 3
 REFRESH_Hz = 8
+COLUMNS = 80  # of a terminal
+LONGEST_LEFT_s = 1e9  # no guess that anybody waits for
 REASONS = {
     "contact": "The journal reached the shell (contact.eccentricity). "
     "To go on through contact: --set contact.policy=elastic --set contact.stiffness='1e9 N/m'.",
@@ -46,8 +48,9 @@ def transient(
     command: str, run_case: Transient, case: Case, output: Path | None, resume: bool, picture: bool, terminal: Terminal
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
-    path = output or Path(f"{case.name or 'run'}.h5")
-    with _progress(terminal) as observe:
+    path = output or here(case.name, ".h5")
+    with live_lines(terminal) as show:
+        observe: Observer | None = None if show is None else lambda progress: show(progress_line(progress))
         run = run_case(case, path, resume=resume, observe=observe)
     _report(run, terminal)
     if picture and len(run) > 1:
@@ -69,12 +72,17 @@ def transient(
             "error": run.error,
         }
     )
-    return EXIT_CODES.get(run.status, ENDED_EARLY)
+    return exit_code(run.status)
+
+
+def exit_code(status: str) -> int:
+    """The exit code for a run that ended so."""
+    return EXIT_CODES.get(status, ENDED_EARLY)
 
 
 @contextmanager
-def _progress(terminal: Terminal) -> Iterator[Observer | None]:
-    """An observer that keeps one line of the terminal up to date; None where nobody watches."""
+def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
+    """What shows some lines on the terminal in place of those before; None where nobody watches."""
     if not terminal.live:
         yield None
         return
@@ -82,23 +90,27 @@ def _progress(terminal: Terminal) -> Iterator[Observer | None]:
     from rich.text import Text
 
     with Live(console=terminal.console(), refresh_per_second=REFRESH_Hz, transient=True) as live:
-        yield lambda progress: live.update(Text(progress_line(progress)))
+        yield lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis"))
 
 
 def progress_line(progress: Progress) -> str:
     """One line of at most 80 columns: time, speed, eccentricity, steps per revolution, pace, time left."""
-    per_turn = f"{progress.steps_per_revolution:.0f}" if math.isfinite(progress.steps_per_revolution) else "-"
-    return (
-        f"{progress.t_s:6.3f}/{progress.end_s:g} s  {progress.speed_Hz:5.1f} Hz  eps {progress.eccentricity:5.3f}  "
+    per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
+    line = (
+        f"{progress.t_s:.3f}/{progress.end_s:g} s  {progress.speed_Hz:5.1f} Hz  eps {progress.eccentricity:5.3f}  "
         f"{per_turn} steps/rev  {progress.simulated_ms_per_hour:.2g} ms/h  {_clock(progress.left_s)} left"
     )
+    return line if len(line) <= COLUMNS else line[: COLUMNS - 1] + "…"
 
 
 def _clock(seconds: float) -> str:
-    if not math.isfinite(seconds):
+    """Minutes and seconds, hours or days: what fits in six columns."""
+    if not 0.0 <= seconds < LONGEST_LEFT_s:
         return "?"
     minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes}:{rest:02d}"
+    if minutes < 100:
+        return f"{minutes}:{rest:02d}"
+    return f"{minutes // 60} h" if minutes < 6000 else f"{minutes // 1440} d"
 
 
 def _report(run: Run, terminal: Terminal) -> None:

@@ -18,7 +18,7 @@ from frbcli.film.modal import element_lengths, unit_fields
 from frbcli.film.table import DEPTH_STEP, Mesh, eccentricity_axis, half_width_lines
 
 CONTRACTION = 0.35  # one grid for all eccentricities, see ring_vertices
-LINES = 5  # Gauss points over half the width
+LINES = 8  # Gauss points over half the width: the edge of the cavity crosses them at any slope
 
 # Rows of the grid: element boundaries and lengths; positions and shares of the axial lines (the first LINES columns);
 # the six rows of force_weights.

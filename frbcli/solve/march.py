@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.kernel import film_force
 from frbcli.rotor.excitation import rotation
+from frbcli.solve.dense import solve_dense
 
 Array = NDArray[np.float64]
 
@@ -129,7 +130,8 @@ def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
         film[CORRECTION, 0] = (matrix[1, 1] * x - matrix[0, 1] * y) / det
         film[CORRECTION, 1] = (matrix[0, 0] * y - matrix[1, 0] * x) / det
     else:
-        film[CORRECTION] = np.linalg.solve(matrix, film[CORRECTION])
+        right = film[CORRECTION : CORRECTION + 1].reshape(-1, 1)  # a view: solved in place
+        solve_dense(matrix, right)
 
 
 @njit(cache=True, error_model="numpy")
@@ -148,18 +150,37 @@ def _reach(d_x, d_y, c_x, c_y, limit):  # type: ignore[no-untyped-def]
 @njit(cache=True, error_model="numpy")
 def _prepare(rotor, pick, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
     """Make the inverse E for this g and speed and keep its products, see advance for their shapes."""
-    inverse = np.linalg.inv(rotor.mass + g * (rotor.damping + speed * rotor.gyroscopic) + g * g * rotor.stiffness)
-    products[E_DAMPING] = inverse @ rotor.damping
-    products[E_STIFFNESS] = inverse @ rotor.stiffness
-    products[E_GYROSCOPIC] = inverse @ rotor.gyroscopic
-    loads[E_STATIC] = inverse @ rotor.static_load
-    loads[E_COS] = inverse @ rotor.unbalance_cos
-    loads[E_SIN] = inverse @ rotor.unbalance_sin
-    spread[:, :] = inverse @ pick.T
-    for j in range(spread.shape[1]):
-        for i in range(spread.shape[0]):
-            spread[i, j] *= rotor.multiplicity[j // 2]
-    compliance[:, :] = g * (pick @ spread)
+    n, m = rotor.mass.shape[0], pick.shape[0]
+    # One elimination for all right-hand sides: the three matrices, the three loads, the journals.
+    dynamic, right = np.empty((n, n)), np.empty((n, 3 * n + 3 + m))
+    for i in range(n):
+        for j in range(n):
+            dynamic[i, j] = rotor.mass[i, j] + g * (
+                rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j])
+            right[i, j] = rotor.damping[i, j]
+            right[i, n + j] = rotor.stiffness[i, j]
+            right[i, 2 * n + j] = rotor.gyroscopic[i, j]
+        right[i, 3 * n] = rotor.static_load[i]
+        right[i, 3 * n + 1] = rotor.unbalance_cos[i]
+        right[i, 3 * n + 2] = rotor.unbalance_sin[i]
+        for k in range(m):
+            right[i, 3 * n + 3 + k] = pick[k, i] * rotor.multiplicity[k // 2]
+    solve_dense(dynamic, right)
+    for i in range(n):
+        for j in range(n):
+            products[E_DAMPING, i, j] = right[i, j]
+            products[E_STIFFNESS, i, j] = right[i, n + j]
+            products[E_GYROSCOPIC, i, j] = right[i, 2 * n + j]
+        for k in range(3):
+            loads[k, i] = right[i, 3 * n + k]
+        for k in range(m):
+            spread[i, k] = right[i, 3 * n + 3 + k]
+    for k in range(m):
+        for j in range(m):
+            total = 0.0
+            for i in range(n):
+                total += pick[k, i] * spread[i, j]
+            compliance[k, j] = g * total
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -296,7 +317,7 @@ def _accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a): 
             film[U_0, k] = rate
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy")
 def _local_error(defect, observed, stage_v, stage_a, step, g):  # type: ignore[no-untyped-def]
     """Largest embedded error of the observed displacements, over their clearances; velocities count times g."""
     n, stages = stage_v.shape
@@ -315,7 +336,7 @@ def _local_error(defect, observed, stage_v, stage_a, step, g):  # type: ignore[n
     return error
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy")
 def _write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_q, out_v, written):  # type: ignore[no-untyped-def]
     """Dense output: the cubic through displacements and velocities at both ends of a step. Returns rows written."""
     last = stage_v.shape[1] - 1

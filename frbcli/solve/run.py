@@ -19,6 +19,7 @@ from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_down_profile, run_up_profile
 from frbcli.solve.film_error import SAMPLES, film_force_error
+from frbcli.solve.interrupt import held_back
 from frbcli.solve.march import (
     CONTACT,
     ERROR_LARGEST,
@@ -101,31 +102,33 @@ def _run(
 
 
 def _go(march: _March, writer: RunWriter, observe: Observer | None) -> Run:
-    """March to the end; checkpoints are spaced so that writing takes a small share of the time."""
+    """March to the end or to Ctrl-C; checkpoints are spaced so that writing takes a small share of the time."""
+
+    def checkpoint() -> None:
+        writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
+
     status, saved, pause = RUNNING, time.monotonic(), CHECKPOINT_EVERY_s
-    try:
-        while status == RUNNING:
+    # An interruption between a step and its samples would tear them apart.
+    with held_back() as interrupt:
+        while status == RUNNING and not interrupt.asked:
             status, signals = march.chunk()
             writer.append(signals)
             if observe is not None:
                 observe(march.progress())
             if status == RUNNING and time.monotonic() - saved > pause:
                 began = time.monotonic()
-                writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
+                checkpoint()
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
-    except KeyboardInterrupt:
-        # Between two chunks state and samples belong together; inside of one the samples are not yet taken.
-        march.forget_broken_chunk()
-        writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
+        # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
+        checkpoint()
+    if status == RUNNING:
         return writer.so_far()
     from frbcli.analysis.events import find_events  # scipy.signal takes longer to import than a short run
 
-    # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
-    writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
     ended = STATUS.get(status, "not-converged")
-    events = [asdict(event) for event in find_events(writer.so_far(ended))]
-    return writer.finish(ended, march.cost(), march.error(), events, march.time)
+    so_far = writer.so_far(ended)
+    return writer.finish(ended, so_far.cost, so_far.error, [asdict(event) for event in find_events(so_far)], march.time)
 
 
 class _March:
@@ -143,8 +146,6 @@ class _March:
         self._sample_every = max(1, int(profile.end / self._control.output_step) // SAMPLES)
         self._samples = np.empty((0, 2 * system.rotor.size + 1))
         self._cpu_s = self._wall_s = 0.0
-        self._before = self._state
-        self._dirty = False
 
     @property
     def time(self) -> float:
@@ -158,8 +159,6 @@ class _March:
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
         cpu, wall = time.process_time(), time.perf_counter()
-        self._before = State(*(part.copy() for part in self._state))
-        self._dirty = True
         status, rows = advance(
             self._rotor, self._system.films, self._tableau, self._control, self._state, BUDGET, self._q, self._v
         )
@@ -171,14 +170,7 @@ class _March:
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept]])
         self._samples = np.concatenate([self._samples, fresh])
-        signals = self._signals(times, speeds, self._q[:rows])
-        self._dirty = False
-        return status, signals
-
-    def forget_broken_chunk(self) -> None:
-        """Go back to the state before a chunk whose samples were not handed over."""
-        if self._dirty:
-            self._state = self._before
+        return status, self._signals(times, speeds, self._q[:rows])
 
     def _signals(self, times: Array, speeds: Array, q: Array) -> dict[str, Array]:
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
@@ -210,7 +202,7 @@ class _March:
             "rejected_steps": int(numbers[REJECTED]),
             "steps_per_revolution": float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
             "film_solves": int(numbers[SOLVES]),
-            "ms_per_film_solve": 1e3 * self._cpu_s / max(numbers[SOLVES], 1.0),
+            "ms_per_film_solve": 1e3 * self._cpu_s / max(float(numbers[SOLVES]), 1.0),
             "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
         }
 

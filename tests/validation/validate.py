@@ -148,7 +148,7 @@ def accuracy(folder: Path) -> list[str]:
     threshold = measures.threshold_Hz(load_case("jeffcott"))
     before = threshold / 30.0  # 30 Hz are passed in a second
     reference = load_case("jeffcott", REFERENCE)
-    lines = [f"Up to {before:.2f} s, the linear threshold; the whirl that grows after it multiplies every difference.", ""]
+    lines = [f"Up to {before:.2f} s, the linear threshold; the whirl that grows after it multiplies errors.", ""]
     lines += ["| run | mesh, tolerance | largest error of the eccentricity |", "|" + " --- |" * 3]
     settings = [(f"accuracy.target={target}",) for target in TARGETS] + [("film.theory=short",)]
     for setting in settings:
@@ -168,7 +168,7 @@ def main() -> None:
             HEAD,
             "## The dissertation",
             "",
-            "R. Nowald, dissertation, TU Darmstadt 2018. Rotor: Jeffcott, table 6.1; 0 to 300 Hz in 10 s.",
+            "Nowald, dissertation, TU Darmstadt 2018. Rotor: Jeffcott, table 6.1; 0 to 300 Hz in 10 s.",
             "The rise is the first passage of an eccentricity of 0.6.",
             "",
             *compared(printed_rows(), measure(folder)),

@@ -1,0 +1,119 @@
+"""`frb compare`: one case with several models of its films."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.runs import OUTPUT, here
+from frbcli.cli.transient import exit_code, live_lines, progress_line
+
+if TYPE_CHECKING:
+    from frbcli.analysis.compare import Comparison, VariantResult
+    from frbcli.case.schema import Case
+
+COLUMNS = ("films", "critical", "onset", "ratio", "largest", "rms", "error", "CPU s")
+EXPLANATION = (
+    "critical, onset: rotor speed in Hz; ratio: frequency of the whirl to it.\n"
+    "largest, rms: deviation of the eccentricity from the first, before either whirls.\n"
+    "error: of the film forces, relative, against the finite bearing on a finer mesh."
+)
+
+
+class Names(click.ParamType[tuple[str, ...]]):
+    """Names separated by commas."""
+
+    name = "names"
+
+    def convert(
+        self, value: object, _param: click.Parameter | None, _ctx: click.Context | None
+    ) -> tuple[str, ...]:
+        names = value if isinstance(value, tuple) else str(value).split(",")
+        return tuple(name.strip() for name in names if name.strip())
+
+
+@click.command()
+@case_argument
+@click.option("--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]")
+@click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [that of CASE]")
+@click.option("--test", default="runup", show_default=True, metavar="TEST", help="The scene: runup.")
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
+@click.option("--picture/--no-picture", default=True, help="A picture of all.")
+@click.option("--keep", metavar="DIR", type=OUTPUT, help="Keep the run files in this directory.")
+@output_options
+def command(
+    case: Case,
+    cavitation: tuple[str, ...],
+    theory: tuple[str, ...],
+    test: str,
+    output: Path | None,
+    picture: bool,
+    keep: Path | None,
+    terminal: Terminal,
+) -> int:
+    """Run CASE with several models of its films: events, deviations and cost in one table and one picture.
+
+    With neither --cavitation nor --theory all models of this version are compared.
+    """
+    from frbcli.analysis.compare import compare
+    from frbcli.plot.style import check_picture
+
+    target = output or here(case.name, "-compare.png")
+    check_picture(target)
+    with live_lines(terminal) as show:
+        watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
+        found = compare(case, cavitation, theory, test, keep, watch)
+    _report(found, terminal)
+    if picture and all(len(result.run) > 1 for result in found.results):
+        from frbcli.plot.compare import comparison_figure
+        from frbcli.plot.style import save_figure
+
+        save_figure(comparison_figure(found), target)
+        terminal.say(f"picture: {target}")
+    results = [_document(result) for result in found.results]
+    terminal.emit({"command": "compare", "case": case.name, "test": found.test, "results": results})
+    return max((exit_code(result.run.status) for result in found.results), default=0)
+
+
+def _report(found: Comparison, terminal: Terminal) -> None:
+    terminal.table(found.case.title or found.case.name, COLUMNS, map(_cells, found.results))
+    terminal.say(EXPLANATION)
+    for result in found.results:
+        if result.run.status != "finished":
+            terminal.say(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
+
+
+def _cells(result: VariantResult) -> tuple[str, ...]:
+    critical, onset = result.first("critical-speed"), result.first("onset")
+    error = result.run.error["film_force_relative"]
+    return (
+        result.variant.name,
+        "-" if critical is None else f"{critical['speed_Hz']:.1f}",
+        "-" if onset is None else f"{onset['speed_Hz']:.1f}",
+        "-" if onset is None else f"{onset['frequency_ratio']:.3f}",
+        f"{result.deviation.largest:.4f}",
+        f"{result.deviation.rms:.4f}",
+        "-" if error is None else f"{error:.0e}",
+        f"{result.run.cost['cpu_s']:.2f}",
+    )
+
+
+def _document(result: VariantResult) -> dict[str, Any]:
+    deviation = result.deviation
+    return {
+        "cavitation": result.variant.cavitation,
+        "theory": result.variant.theory,
+        "coupling": None,  # rotor and films are advanced as one
+        "status": result.run.status,
+        "events": result.run.events,
+        "deviation": {
+            "eccentricity_largest": deviation.largest,
+            "eccentricity_rms": deviation.rms,
+            "until_s": deviation.until_s,
+        },
+        "cost": result.run.cost,
+        "error": result.run.error,
+    }

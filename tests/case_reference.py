@@ -1,0 +1,120 @@
+"""Writes docs/case-file.md from the JSON Schema of a case: `cd tests && python -m case_reference`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from frbcli.case.schema import json_schema
+
+PAGE = Path(__file__).parent.parent / "docs" / "case-file.md"
+
+HEAD = """# The case file
+
+A case is one TOML file: rotor, bearings, oil, how the film is computed, the speed profile. `frb cases jeffcott` prints
+a whole one, `frb cases jeffcott -o my.toml` copies it, `frb check my.toml` says what is wrong with it and what will be
+modelled, `frb schema > case.schema.json` gives editors the same knowledge.
+
+- A quantity is a text of number and unit, `"35 um"`; a bare number is in the unit of the table below. Any unit of the
+  same kind will do: `"12 mPa*s"`, `"5000 N/mm"`, `"3 g*mm"`, `"18000 rpm"`, `"15 deg"`, `"100 degC"`.
+- Rotor speeds and frequencies are revolutions per second. Pressures are absolute. Angles phi are 0 at the top and count
+  counter-clockwise; angles of a displacement count from the x-axis (see [conventions](conventions.md)).
+- `--set bearing.clearance="40 um"` sets one key for one call of any command that takes a case; repeat it for more.
+  `bearing.1.width` reaches into the second `[[bearing]]`.
+- An unknown key is a fault, not a remark: every fault of a file is reported at once, with its line and a remedy.
+
+The schema already describes floating rings, turbochargers and cavitation models that this version reads and checks, but
+does not model yet; `frb check` and every run name what is missing (see the [README](../README.md)).
+
+This page is written from the schema by `cd tests && python -m case_reference`, and a test keeps it so.
+"""
+
+# table of the file: name of its model in the schema
+TABLES = {
+    "top level": "Case",
+    '[rotor] kind = "rigid"': "RigidRotor",
+    '[rotor] kind = "jeffcott"': "JeffcottRotor",
+    '[rotor] kind = "turbocharger"': "TurbochargerRotor",
+    "[[shaft]]": "ShaftSection",
+    "[[disk]]": "Disk",
+    '[bearing] kind = "single-film"': "SingleFilmBearing",
+    '[bearing] kind = "floating-ring"': "FloatingRingBearing",
+    "[bearing.ring]": "Ring",
+    "[bearing.inner], [bearing.outer]": "FilmGeometry",
+    "clearance = { cold = ... }": "ColdClearance",
+    'supply = { kind = "none" }': "NoSupply",
+    'supply = { kind = "circumferential-groove" }': "CircumferentialGroove",
+    'supply = { kind = "axial-grooves" }': "AxialGrooves",
+    'supply = { kind = "bores" }': "Bores",
+    'supply = { kind = "pocket" }': "Pocket",
+    "[oil]": "Oil",
+    "[oil.vogel]": "Vogel",
+    "[film]": "FilmModel",
+    "[film.penalty]": "Penalty",
+    "[film.peeken]": "Peeken",
+    "[film.elrod]": "Elrod",
+    "[film.two-phase]": "TwoPhase",
+    "[speed]": "SpeedProfile",
+    "[motion]": "Motion",
+    "[start]": "Start",
+    "[contact]": "Contact",
+    "[accuracy]": "Accuracy",
+    "[output]": "Output",
+}
+
+
+def page() -> str:
+    """The whole page."""
+    schema = json_schema()
+    models = schema["$defs"] | {"Case": schema}
+    if left := set(models) - set(TABLES.values()):
+        raise ValueError(f"no place on the page for {sorted(left)}")
+    return "\n".join([HEAD, *(_section(title, models[name]) for title, name in TABLES.items())])
+
+
+def _section(title: str, model: dict[str, Any]) -> str:
+    rows = [_row(key, entry, key in model.get("required", ())) for key, entry in model["properties"].items()]
+    text = " ".join(model["description"].split("\n\n")[0].split())
+    head = ["| key | value | default | meaning |", "|" + " --- |" * 4]
+    return "\n".join([f"## `{title}`", "", text, "", *head, *rows, ""])
+
+
+def _row(key: str, entry: dict[str, Any], required: bool) -> str:
+    meaning = entry.get("description", "")
+    if meaning.startswith(("a quantity in", "a plain number")):
+        meaning = ""
+    return f"| `{key}` | {_value(entry)} | {_default(entry, required)} | {meaning} |"
+
+
+def _value(entry: dict[str, Any]) -> str:
+    """What a key takes, in words."""
+    if "const" in entry:
+        return f"`{entry['const']}`"
+    if "enum" in entry:
+        return ", ".join(f"`{choice}`" for choice in entry["enum"])
+    if "prefixItems" in entry:
+        return f"[{', '.join(_value(item) for item in entry['prefixItems'])}]"
+    forms = entry.get("anyOf", entry.get("oneOf", []))
+    forms = [form for form in forms if form.get("type") != "null"]
+    if len(forms) == 2 and forms[0].get("type") == "number" and forms[1].get("type") == "string":
+        unit = forms[0]["description"].removeprefix("in ")
+        return "number" if unit == "without unit" else unit
+    if forms:
+        return " or ".join(dict.fromkeys(_value(form) for form in forms))
+    names = {"integer": "whole number", "string": "text", "array": "tables"}
+    return "table" if "$ref" in entry else names.get(entry.get("type", ""), "table")
+
+
+def _default(entry: dict[str, Any], required: bool) -> str:
+    if required:
+        return "must be given"
+    default = entry.get("default")
+    if default in (None, "", []) or default != default:  # NaN: another key's value, see its meaning
+        return ""
+    if isinstance(default, dict):
+        return "as its table"
+    return f"`{default:g}`" if isinstance(default, float) else f"`{default}`"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

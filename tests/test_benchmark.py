@@ -1,0 +1,225 @@
+"""Speed against the naive way, measured in one process: `pytest -m benchmark -s` prints the ratios.
+
+The naive way is what one writes first: scikit-fem assembly and a sparse solve at every call of the right-hand side, the
+pressure clipped at the quadrature points, and scipy's LSODA around it.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import spsolve
+from skfem import Basis, BilinearForm, ElementQuad2, LinearForm, MeshQuad
+
+from frbcli.case.load import load_case
+from frbcli.film.bearing import RectangularBearing
+from frbcli.results.store import Run
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import System, make_system
+from frbcli.solve.run import runup
+
+pytestmark = pytest.mark.benchmark
+
+Array = NDArray[np.float64]
+AXIAL, AROUND = 10, 20  # the mesh of the naive film, as published
+WINDOW_s = 5e-4  # of the run-up that the naive way is timed on, at each of these times
+WINDOW_STARTS_s = (2.0, 4.5)
+REPEATS = 3
+
+
+def report(text: str) -> None:
+    """A measured figure, for who runs with -s."""
+    sys.stdout.write(text + "\n")
+
+
+class NaiveFilm:
+    """Half-Sommerfeld forces from forms assembled and a sparse system solved at every call; the mesh is made once."""
+
+    def __init__(self, bearing: RectangularBearing) -> None:
+        self.scale = bearing.force_scale
+        self.aspect = (0.5 * bearing.diameter / bearing.section_width) ** 2
+        ring, width = np.linspace(0.0, 2 * math.pi, AROUND + 1), np.linspace(0.0, 1.0, AXIAL + 1)
+        self.basis = Basis(MeshQuad.init_tensor(ring, width), ElementQuad2(), intorder=4)
+        phi, z = self.basis.doflocs
+        self.angles = np.asarray(self.basis.global_coordinates())[0]
+        first = {round(height, 9): node for node, (angle, height) in enumerate(zip(phi, z, strict=True)) if angle < 1e-9}
+        seam = np.flatnonzero(phi > ring[-1] - 1e-9)
+        master = np.arange(len(phi))
+        master[seam] = [first[round(height, 9)] for height in z[seam]]
+        kept, column = np.unique(master, return_inverse=True)
+        self.join = csr_matrix((np.ones(len(phi)), (np.arange(len(phi)), column)))
+        self.inner = np.flatnonzero((z[kept] > 1e-9) & (z[kept] < 1 - 1e-9))
+
+    def force(self, d: Array, v: Array, omega: float) -> Array:
+        """(2,) force in N; d, v over the clearance."""
+        w = (v[0] + 0.5 * omega * d[1], v[1] - 0.5 * omega * d[0])
+        matrix = self.join.T @ diffusion.assemble(self.basis, d_x=d[0], d_y=d[1], aspect=self.aspect) @ self.join
+        load = self.join.T @ motion.assemble(self.basis, w_x=w[0], w_y=w[1])
+        pressure = np.zeros(matrix.shape[0])
+        pressure[self.inner] = spsolve(matrix[self.inner][:, self.inner].tocsc(), load[self.inner])
+        carried = np.maximum(np.asarray(self.basis.interpolate(self.join @ pressure)), 0.0) * self.basis.dx
+        return self.scale * np.array([np.sum(carried * np.sin(self.angles)), -np.sum(carried * np.cos(self.angles))])
+
+
+@BilinearForm
+def diffusion(p, q, s):  # type: ignore[no-untyped-def]
+    gap = 1 + s.d_x * np.sin(s.x[0]) - s.d_y * np.cos(s.x[0])
+    return gap**3 * (p.grad[0] * q.grad[0] + s.aspect * p.grad[1] * q.grad[1])
+
+
+@LinearForm
+def motion(q, s):  # type: ignore[no-untyped-def]
+    return -(s.w_x * np.sin(s.x[0]) - s.w_y * np.cos(s.x[0])) * q
+
+
+def naive_cpu_per_simulated_second(system: System, run: Run, slope: float) -> float:
+    """CPU seconds that LSODA with the naive film needs for one simulated second, from windows of a real run-up.
+
+    slope: rotor speed per time in rad/s^2.
+    """
+    rotor, bearing = system.rotor, system.bearings[0]
+    film = NaiveFilm(bearing)
+    inverse = np.linalg.inv(rotor.mass)
+    n = rotor.size
+
+    def rates(t: float, y: Array) -> Array:
+        q, v = y[:n], y[n:]
+        omega, angle = slope * t, 0.5 * slope * t * t
+        along = slope * math.cos(angle) - omega**2 * math.sin(angle)
+        across = slope * math.sin(angle) + omega**2 * math.cos(angle)
+        pick = rotor.journals[0]
+        force = film.force(pick @ q / bearing.clearance, pick @ v / bearing.clearance, omega)
+        load = rotor.static_load + along * rotor.unbalance_cos + across * rotor.unbalance_sin
+        load = load + 2.0 * pick.T @ force - rotor.damping @ v - rotor.stiffness @ q
+        return np.concatenate([v, inverse @ load])
+
+    cpu = 0.0
+    for start in WINDOW_STARTS_s:
+        sample = round(start / 5e-5)
+        names = ("journal_x_m", "disk_x_m", "journal_y_m", "disk_y_m")
+        q = np.array([run[name][sample] for name in names])
+        v = np.array([np.gradient(run[name][sample - 2 : sample + 3], 5e-5)[2] for name in names])
+        rates(start, np.concatenate([q, v]))
+        began = time.process_time()
+        solution = solve_ivp(
+            rates, (start, start + WINDOW_s), np.concatenate([q, v]), method="LSODA", rtol=1e-5, atol=1e-10
+        )
+        cpu += time.process_time() - began
+        assert solution.success
+    return cpu / (WINDOW_s * len(WINDOW_STARTS_s))
+
+
+def best(job: Callable[[], Run]) -> Run:
+    """The run with the least CPU time: what is left when the machine's other work is taken away."""
+    return min((job() for _ in range(REPEATS)), key=lambda run: run.cost["cpu_s"])
+
+
+def eccentricity_error(run: Run, reference: Run, until_s: float) -> float:
+    samples = round(until_s / 5e-5)
+    return float(np.max(np.abs(run["eccentricity"][:samples] - reference["eccentricity"][:samples])))
+
+
+def test_jeffcott_run_up_against_the_naive_way(tmp_path: Path) -> None:
+    case = load_case("jeffcott")
+    run = best(lambda: runup(case, tmp_path / "run.h5"))
+    fine = ("accuracy.tolerance=1e-9", "accuracy.steps_per_revolution=160", "accuracy.mesh=[12, 256]")
+    reference = runup(load_case("jeffcott", fine), tmp_path / "reference.h5")
+    error = eccentricity_error(run, reference, 5.9)  # the linear threshold is passed at 5.9 s
+    pace = run.t_end_s / run.cost["cpu_s"]
+    naive = naive_cpu_per_simulated_second(make_system(case, make_plan(case)), run, 2 * math.pi * 30.0)
+    report(f"\nfinite, half-Sommerfeld: {pace:.0f} simulated s per CPU s, error in eps {error:.1e}")
+    report(f"naive: {naive:.3g} CPU s per simulated s (10 s: {naive / 360:.2g} h); ratio {naive * pace:.3g}")
+    assert error < 1e-3
+    assert pace >= 20
+    assert naive * pace >= 5000
+
+
+def test_short_bearing_run_up(tmp_path: Path) -> None:
+    run = best(lambda: runup(load_case("jeffcott", ("film.theory=short",)), tmp_path / "run.h5"))
+    pace = run.t_end_s / run.cost["cpu_s"]
+    report(f"\nshort bearing: {pace:.0f} simulated s per CPU s")
+    assert pace >= 20
+
+
+def test_film_evaluations_against_the_naive_way() -> None:
+    """One force with all derivatives against five naive forces: one and four for a finite-difference Jacobian."""
+    from numba import njit
+
+    from frbcli.film.kernel import film_force
+
+    @njit
+    def many(film, count):  # type: ignore[no-untyped-def]
+        total = 0.0
+        for i in range(count):
+            total += film_force(film, 0.3 + 1e-6 * i, -0.2, 1.0, -2.0, 200.0)[0]
+        return total
+
+    case = load_case("jeffcott")
+    system = make_system(case, make_plan(case))
+    many(system.films[0], 1)
+    count = 100_000
+    began = time.process_time()
+    many(system.films[0], count)
+    fast = (time.process_time() - began) / count
+    d, v = np.array([0.3, -0.2]), np.array([1.0, -2.0])
+    film = NaiveFilm(system.bearings[0])
+    film.force(d, v, 200.0)
+    began = time.process_time()
+    for _ in range(10):
+        film.force(d, v, 200.0)
+    naive = 5 * (time.process_time() - began) / 10
+    assert film.force(d, v, 200.0) == pytest.approx(film_force(system.films[0], *d, *v, 200.0)[:2], rel=0.02)
+    report(f"\nforce and derivatives: {1e6 * fast:.2f} us; naive {1e3 * naive:.1f} ms; ratio {naive / fast:.3g}")
+    assert naive / fast > 5000
+
+
+SCRIPT = """
+import sys, time
+from frbcli import load_case, runup
+class First(Exception): pass
+def first(progress): raise First
+case = load_case("jeffcott", ("speed.duration=0.2 s",))
+try: runup(case, sys.argv[2], observe=first)
+except First: print(time.time() - float(sys.argv[1]))
+"""
+
+
+def start_seconds(tmp_path: Path, cache: Path) -> float:
+    """Wall time from the start of a fresh process to its first look at the march."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    command = [sys.executable, "-c", SCRIPT, str(time.time()), str(tmp_path / "run.h5")]
+    result = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return float(result.stdout)
+
+
+def test_start_of_a_run(tmp_path: Path) -> None:
+    cold = start_seconds(tmp_path, tmp_path / "cache")
+    warm = min(start_seconds(tmp_path, tmp_path / "cache") for _ in range(REPEATS))
+    report(f"\nfirst run after installation: {cold:.1f} s to the first step, with compilation; later starts: {warm:.2f} s")
+    assert cold < 30
+    assert warm < 1
+
+
+def test_help_answers_at_once() -> None:
+    def seconds(*arguments: str) -> float:
+        times = []
+        for _ in range(7):
+            began = time.perf_counter()
+            subprocess.run([sys.executable, *arguments], capture_output=True, check=True)
+            times.append(time.perf_counter() - began)
+        return min(times)
+
+    own, click = seconds("-m", "frbcli", "--help"), seconds("-c", "import click")
+    report(f"\nfrb --help: {own:.3f} s; python -c 'import click': {click:.3f} s; ratio {own / click:.2f}")
+    assert own < 2 * click

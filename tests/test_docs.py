@@ -1,0 +1,59 @@
+"""The documents cannot rot: pages that are written by a program are up to date, and what they name is there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import case_reference
+import pytest
+
+from frbcli.cli.main import COMMANDS
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def named(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def test_case_file_page_is_what_the_schema_says() -> None:
+    assert case_reference.PAGE.read_text(encoding="utf-8") == case_reference.page(), (
+        "run `cd tests && python -m case_reference`"
+    )
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    targets = re.findall(r"\]\(([^)#]+)", text)
+    missing = [t for t in targets if not t.startswith("http") and not (page.parent / t).exists()]
+    assert missing == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_files_and_functions_that_are_named_exist(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    files = set(re.findall(r"`((?:frbcli|tests|cases|docs)/[\w./-]*)`", text))
+    assert [name for name in files if not (ROOT / name).exists()] == []
+    for name, function in re.findall(r"`(frbcli/[\w/]+\.py)`: `(\w+)`", text):
+        assert re.search(rf"^(?:def|class) {function}\b|^{function}\b", (ROOT / name).read_text("utf-8"), re.MULTILINE)
+
+
+def test_readme_tours_every_command() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [command for command in COMMANDS if f"frb {command}" not in text] == []
+
+
+def test_every_page_is_in_the_index() -> None:
+    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    pages = [page.name for page in (ROOT / "docs").glob("*.md") if page.name != "README.md"]
+    assert [name for name in pages if f"]({name})" not in index] == []
+
+
+def test_ci_finds_the_readmes_line_that_sets_up_and_tests() -> None:
+    pattern = re.search(r"grep -m 1 -E '([^']+)' README.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    assert pattern
+    lines = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+    assert len([line for line in lines if re.search(pattern[1], line)]) == 1
