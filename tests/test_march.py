@@ -32,8 +32,7 @@ from frbcli.solve.march import (
     State,
     advance,
 )
-from frbcli.solve.run import rotor_data
-from frbcli.solve.start import state_at
+from frbcli.solve.start import rotor_data, state_at
 from frbcli.solve.tableau import METHODS, Method, Tableau
 
 Array = NDArray[np.float64]

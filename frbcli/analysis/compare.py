@@ -94,8 +94,8 @@ def compare(
 ) -> Comparison:
     """Run a case with every combination of the given cavitation models and theories; () stands for that of the case.
 
-    With neither given, all models of this version are compared, that of the case first. keep: a directory for the run files,
-    made if need be; observe: called some times a second. Ctrl-C ends the comparison with a run that is "interrupted".
+    With neither given, all models of this version are compared, that of the case first. keep: a directory for the run
+    files, made if need be; observe: called some times a second. Ctrl-C ends the comparison with an "interrupted" run.
     Raises InputError for models or tests that there are not, fewer than two models, or files that cannot be written.
     """
     _check_test(test)
@@ -116,7 +116,7 @@ def compare(
 
 
 def make_variants(case: Case, cavitations: Sequence[str] = (), theories: Sequence[str] = ()) -> tuple[Variant, ...]:
-    """The combinations to compare, see compare. Raises InputError with every name that is wrong, and for a single one."""
+    """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
     faults = [*_unknown("--cavitation", cavitations, CAVITATIONS), *_unknown("--theory", theories, THEORIES)]
     if faults:
         raise InputError(case.name or "case", tuple(faults))
@@ -181,8 +181,8 @@ def _directory(keep: str | Path | None) -> Iterator[Path]:
         return
     try:
         Path(keep).mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:
-        problem = f"cannot be made: {error}."
+    except OSError as error:
+        problem = f"cannot be made: {error.strerror}."
         raise InputError("comparison", (Fault("--keep", str(keep), None, problem, "Choose another place."),)) from error
     yield Path(keep)
 

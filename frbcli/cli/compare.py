@@ -15,11 +15,12 @@ if TYPE_CHECKING:
     from frbcli.analysis.compare import Comparison, VariantResult
     from frbcli.case.schema import Case
 
-COLUMNS = ("films", "critical", "onset", "ratio", "largest", "rms", "error", "CPU s")
+COLUMNS = ("films", "crit.", "onset", "ratio", "max", "rms", "err.", "CPU")
 EXPLANATION = (
-    "critical, onset: rotor speed in Hz; ratio: frequency of the whirl to it.\n"
-    "largest, rms: deviation of the eccentricity from the first, before either whirls.\n"
-    "error: of the film forces, relative, against the finite bearing on a finer mesh."
+    "crit., onset: rotor speed in Hz at resonance and where the whirl begins; ratio:\n"
+    "its frequency to that speed; max, rms: deviation of the eccentricity from the\n"
+    "first row's, before either whirls; err.: of the film forces against a finite\n"
+    "bearing on a finer mesh; CPU: time in s."
 )
 
 
@@ -28,9 +29,7 @@ class Names(click.ParamType[tuple[str, ...]]):
 
     name = "names"
 
-    def convert(
-        self, value: object, _param: click.Parameter | None, _ctx: click.Context | None
-    ) -> tuple[str, ...]:
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
         names = value if isinstance(value, tuple) else str(value).split(",")
         return tuple(name.strip() for name in names if name.strip())
 
@@ -94,9 +93,9 @@ def _cells(result: VariantResult) -> tuple[str, ...]:
         "-" if critical is None else f"{critical['speed_Hz']:.1f}",
         "-" if onset is None else f"{onset['speed_Hz']:.1f}",
         "-" if onset is None else f"{onset['frequency_ratio']:.3f}",
-        f"{result.deviation.largest:.4f}",
-        f"{result.deviation.rms:.4f}",
-        "-" if error is None else f"{error:.0e}",
+        f"{result.deviation.largest:.3f}",
+        f"{result.deviation.rms:.3f}",
+        "-" if error is None else f"{error:.0e}".replace("e-0", "e-").replace("e+0", "e+"),
         f"{result.run.cost['cpu_s']:.2f}",
     )
 

@@ -1,53 +1,91 @@
-"""Several models of the films in one picture: eccentricities overlaid, and how far each is from the first."""
+"""Several models of the films in one picture: eccentricities overlaid, and what happens when."""
 
 from __future__ import annotations
+
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.compare import Comparison, VariantResult
+from frbcli.analysis.compare import Comparison, Variant
 from frbcli.plot.signals import CAVITATION_NAMES, suffixes, thin, times
 from frbcli.plot.style import COLOURS, new_figure, styled
+from frbcli.results.store import Run
 
-LINES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
+Line = Any  # a line style of matplotlib: a name, or an offset and lengths of dashes
+
+LINES: tuple[Line, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
 MARKS = {"critical-speed": "o", "onset": "^", "offset": "v", "contact": "X"}
-MARK_NAMES = {"critical-speed": "critical", "onset": "whirl from", "offset": "whirl until", "contact": "contact at"}
-ROW_HEIGHT = 0.06  # of an event's mark above the axes, relative to them
+WORDS = {"critical-speed": "critical", "onset": "whirl", "offset": "whirl ends", "contact": "contact"}
+ROW_HEIGHT = 0.32  # inches of a variant's row
+LEFT_SHARE = 0.85  # of the time axis; the label of an event beyond stands left of it
 
 
 def comparison_figure(comparison: Comparison) -> Figure:
-    """Eccentricity over time and rotor speed, one colour and line style per variant, its events marked above.
+    """Eccentricity over time and rotor speed, one colour and line style per variant; below, a row of events for each.
 
     Raises RunFileError if a run holds no samples.
     """
-    count = len(comparison.results)
+    runs = [result.run for result in comparison.results]
+    spans = [times(run) for run in runs]
+    count = len(runs)
     with styled():
-        figure = new_figure(comparison.case.title or comparison.case.name, "films compared", height=4.6 + 0.25 * count)
-        axes = figure.subplots()
-        for row, result in enumerate(comparison.results):
-            _draw(axes, result, row)
-        time_s = times(comparison.results[0].run)
-        axes.set_xlim(time_s[0], time_s[-1])
-        axes.set_ylim(0.0, 1.0)
-        axes.set_xlabel("time in s")
-        axes.set_ylabel("eccentricity")
-        figure.legend(loc="outside lower left", fontsize=8.0)
+        title = comparison.case.title or comparison.case.name
+        figure = new_figure(title, f"run-up with {count} models of the films", height=4.4 + ROW_HEIGHT * count)
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3.6, ROW_HEIGHT * count))
+        above.set_xlim(min(span[0] for span in spans), max(span[-1] for span in spans))
+        for row, run in enumerate(runs):
+            colour, line = COLOURS[row % len(COLOURS)], LINES[row % len(LINES)]
+            for suffix in suffixes(run, "eccentricity"):
+                above.plot(*thin(times(run), run["eccentricity" + suffix]), color=colour, linestyle=line, alpha=0.75)
+            _draw_events(below, run, row, colour, line)
+        above.set_ylim(0.0, 1.0)
+        above.set_ylabel("eccentricity")
+        _speed_axis(above, comparison)
+        below.set_yticks(range(count), [_name(result.variant) for result in comparison.results])
+        below.set_ylim(count - 0.5, -0.5)
+        below.tick_params(axis="y", length=0)
+        below.grid(axis="y", visible=False)
+        below.spines["left"].set_visible(False)
+        below.set_xlabel("time in s")
     return figure
 
 
-def _draw(axes: Axes, result: VariantResult, row: int) -> None:
-    run, colour, line = result.run, COLOURS[row % len(COLOURS)], LINES[row % len(LINES)]
-    label: str | None = _words(result)
-    for suffix in suffixes(run, "eccentricity"):
-        axes.plot(*thin(times(run), run["eccentricity" + suffix]), color=colour, linestyle=line, label=label, alpha=0.75)
-        label = None  # the legend names a variant once
+def _draw_events(axes: Axes, run: Run, row: int, colour: str, line: Line) -> None:
+    """A run as a line as long as it lasts, with its events on it."""
+    left, right = axes.get_xlim()
+    time_s = times(run)
+    axes.plot([time_s[0], time_s[-1]], [row, row], color=colour, linestyle=line)
     for event in run.events:
-        axes.axvline(event["t_s"], color=colour, linestyle=line, linewidth=0.8)
+        at = event["t_s"]
+        axes.plot(at, row, marker=MARKS[event["kind"]], markersize=6.0, color=colour, clip_on=False)
+        after = at < left + LEFT_SHARE * (right - left)
+        axes.annotate(
+            f"{WORDS[event['kind']]} {event['speed_Hz']:.1f} Hz",
+            (at, row),
+            xytext=(6 if after else -6, 3),
+            textcoords="offset points",
+            ha="left" if after else "right",
+            va="bottom",
+            fontsize=7.5,
+        )
 
 
-def _words(result: VariantResult) -> str:
-    """A variant and its events, for the legend."""
-    variant = result.variant
-    name = f"{CAVITATION_NAMES.get(variant.cavitation, variant.cavitation)}, {variant.theory} bearing"
-    events = [f"{MARK_NAMES[event['kind']]} {event['speed_Hz']:.1f} Hz" for event in result.run.events]
-    return ": ".join(text for text in (name, ", ".join(events)) if text)
+def _speed_axis(axes: Axes, comparison: Comparison) -> None:
+    """The rotor speed above the time, where it rises from the beginning to the end."""
+    speed = comparison.case.speed
+    rate = (speed.end - speed.start) / speed.duration
+    if rate == 0.0:
+        return
+
+    def at_time(time_s: Any) -> Any:
+        return speed.start + rate * time_s
+
+    def at_speed(speed_hz: Any) -> Any:
+        return (speed_hz - speed.start) / rate
+
+    axes.secondary_xaxis("top", functions=(at_time, at_speed)).set_xlabel("rotor speed in Hz")
+
+
+def _name(variant: Variant) -> str:
+    return f"{CAVITATION_NAMES.get(variant.cavitation, variant.cavitation)}, {variant.theory}"

@@ -1,7 +1,7 @@
 """Small dense systems inside the time loop.
 
-LAPACK would do it, but its bindings alone take a third of the time in which the whole loop is compiled, and systems here
-have two to some sixty unknowns.
+LAPACK would do it, but its bindings alone take a third of the time in which the whole loop is compiled, and systems
+here have two to some sixty unknowns.
 """
 
 from __future__ import annotations

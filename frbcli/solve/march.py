@@ -1,7 +1,7 @@
 """The time loop: rotor and films advanced together by an implicit Runge-Kutta method with error control. Compiled.
 
-The rotor is linear. One inverse E = (M + g D + g^2 K)^-1 with g = gamma h turns each implicit stage into an equation for the
-velocities u of the journals alone,
+The rotor is linear. One inverse E = (M + g D + g^2 K)^-1 with g = gamma h turns each implicit stage into an equation
+for the velocities u of the journals alone,
 
     u = u_0 + S F(x(u), u),      x = x_0 + g u,      S = g P E P^T,
 
@@ -61,7 +61,7 @@ class RotorData(NamedTuple):
 
 class Control(NamedTuple):
     """What the time loop may do. tolerance: local error of a displacement over the clearance; longest_step in s;
-    steps_per_revolution: at least; output_step in s; contact_eccentricity, contact_stiffness (N/m; 0: stop at contact)."""
+    steps_per_revolution: at least; output_step in s; contact_eccentricity; contact_stiffness in N/m, 0: stop there."""
 
     tolerance: float
     steps_per_revolution: float
@@ -136,7 +136,7 @@ def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy")
 def _reach(d_x, d_y, c_x, c_y, limit):  # type: ignore[no-untyped-def]
-    """Largest factor <= 1 by which the correction c may be applied so that the gap to `limit` keeps a share of itself."""
+    """Largest factor <= 1 by which the correction c may be applied: the gap to `limit` keeps a share of itself."""
     here = _norm(d_x, d_y)
     there = _norm(d_x + c_x, d_y + c_y)
     allowed = here + CLOSEST * (limit - here)
@@ -354,7 +354,7 @@ def _write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_
 
 @njit(cache=True, error_model="numpy")
 def _step_after(h, error, before, order):  # type: ignore[no-untyped-def]
-    """Proportional-integral control: the step after an accepted one; errors over the tolerance, of this step and before."""
+    """Proportional-integral control: the step after an accepted one; errors over the tolerance, now and before."""
     ratio = SAFETY * max(error, 1e-8) ** (-0.7 / order) * max(before, 1e-8) ** (0.3 / order)
     ratio = min(5.0, max(0.2, ratio))
     return h * ratio if ratio < 1.0 or ratio > GROWTH else h
@@ -393,8 +393,9 @@ def _largest_eccentricity(clearances, pick, q):  # type: ignore[no-untyped-def]
 def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # type: ignore[no-untyped-def]
     """Advance the state until the output buffers are full, `budget` steps are done, or the run ends.
 
-    out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more than
-    one step can write. Returns (status, rows written). The course of the steps does not depend on how often this is called.
+    out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more
+    than one step can write. Returns (status, rows written). The course of the steps does not depend on how often this
+    is called.
     """
     # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
     numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past
@@ -414,7 +415,8 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
     products, loads = np.zeros((3, n, n)), np.zeros((3, n))
     spread, compliance, newton = np.zeros((n, m)), np.zeros((m, m)), np.zeros((m, m))
     at, film = np.zeros((STAGE_ROWS, n)), np.zeros((JOURNAL_ROWS, m))
-    stage_v, stage_a, past, q_new = np.zeros((n, stages)), np.zeros((n, stages)), np.zeros((HISTORY, 1 + m)), np.zeros(n)
+    stage_v, stage_a = np.zeros((n, stages)), np.zeros((n, stages))
+    past, q_new = np.zeros((HISTORY, 1 + m)), np.zeros(n)
     inverse_g, inverse_speed = numbers[INVERSE_G], numbers[INVERSE_SPEED]
     if inverse_g > 0.0:
         _prepare(rotor, pick, inverse_g, inverse_speed, products, loads, spread, compliance)

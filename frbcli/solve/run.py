@@ -33,11 +33,10 @@ from frbcli.solve.march import (
     TURNS,
     Array,
     Control,
-    RotorData,
     State,
     advance,
 )
-from frbcli.solve.start import first_state
+from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.tableau import METHODS
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
@@ -230,30 +229,6 @@ class _March:
             simulated_ms_per_hour=1e3 * 3600.0 * rate,
             left_s=(end - t) / rate if rate > 0 else math.inf,
         )
-
-
-def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
-    """The system and its speed as the time loop takes them."""
-    rotor = system.rotor
-    # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
-    observed = np.concatenate([points / system.clearances[0] for _, points in rotor.points])
-    return RotorData(
-        mass=rotor.mass,
-        damping=rotor.damping,
-        gyroscopic=rotor.gyroscopic,
-        stiffness=rotor.stiffness,
-        static_load=rotor.static_load,
-        unbalance_cos=rotor.unbalance_cos,
-        unbalance_sin=rotor.unbalance_sin,
-        journals=rotor.journals,
-        multiplicity=rotor.multiplicity,
-        clearances=np.array(system.clearances),
-        observed=observed,
-        has_gyroscopic=bool(np.any(rotor.gyroscopic)),
-        profile_times=profile.times,
-        profile_speeds=profile.speeds,
-        profile_angles=profile.angles,
-    )
 
 
 def control_of(case: Case, plan: Plan) -> Control:

@@ -1,4 +1,4 @@
-"""Where a run starts: displacement, velocity and consistent acceleration."""
+"""What a run starts with: the arrays of its rotor; displacement, velocity and consistent acceleration."""
 
 from __future__ import annotations
 
@@ -8,10 +8,34 @@ from frbcli.case.schema import Start
 from frbcli.film.bearing import evaluate
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.system import System
-from frbcli.solve.march import HISTORY, NUMBERS, STEP, Array, State
+from frbcli.solve.march import HISTORY, NUMBERS, STEP, Array, RotorData, State
 from frbcli.solve.resting import held_rotor, resting_position
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
+
+
+def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
+    """The system and its speed as the time loop takes them."""
+    rotor = system.rotor
+    # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
+    observed = np.concatenate([points / system.clearances[0] for _, points in rotor.points])
+    return RotorData(
+        mass=rotor.mass,
+        damping=rotor.damping,
+        gyroscopic=rotor.gyroscopic,
+        stiffness=rotor.stiffness,
+        static_load=rotor.static_load,
+        unbalance_cos=rotor.unbalance_cos,
+        unbalance_sin=rotor.unbalance_sin,
+        journals=rotor.journals,
+        multiplicity=rotor.multiplicity,
+        clearances=np.array(system.clearances),
+        observed=observed,
+        has_gyroscopic=bool(np.any(rotor.gyroscopic)),
+        profile_times=profile.times,
+        profile_speeds=profile.speeds,
+        profile_angles=profile.angles,
+    )
 
 
 def first_state(start: Start, system: System, profile: SpeedProfile) -> State:

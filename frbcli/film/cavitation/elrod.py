@@ -1,0 +1,31 @@
+"""Jakobsson, Floberg and Olsson's condition in Elrod's manner (3.34) to (3.37): full at a pressure, or empty in part at p_cav."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.film.cavitation.law import Array, CellState, Scales
+
+
+@dataclass(frozen=True)
+class Elrod:
+    """bulk_modulus: beta of the full film over 12 eta / psi^2, in 1/s; infinite for an incompressible oil."""
+
+    bulk_modulus: float = np.inf
+    conserves = True
+
+    def cells(self, w: Array, scales: Scales) -> CellState:
+        full = w > 0.0
+        above = np.where(full, w, 0.0) * scales.reference
+        fraction = np.exp(above / self.bulk_modulus) + np.where(full, 0.0, w)  # (3.35)
+        zero = np.zeros_like(w)
+        return CellState(
+            pressure=scales.cavitation + above,
+            fraction=fraction,
+            source=zero,
+            pressure_slope=np.where(full, scales.reference, 0.0),
+            fraction_slope=np.where(full, fraction * scales.reference / self.bulk_modulus, 1.0),
+            source_slope=zero,
+        )

@@ -1,0 +1,101 @@
+"""The developed gap of one section: its size, where the pressure is given, and what happens at its ends (section 4.1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from frbcli.film.grid import Array
+
+Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"
+
+
+@dataclass(frozen=True)
+class AxialGroove:
+    """A groove over the whole width: phi of its middle, opening angle, both rad; gauge pressure in the middle, Pa.
+
+    The pressure falls to ambient at the ends of the bearing as (6.2) has it.
+    """
+
+    position: float
+    opening: float
+    pressure: float
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A bore or pocket: phi and axial position (m from the end z = 0) of its middle, half extents (rad, m), gauge pressure.
+
+    round: an ellipse in the developed gap; else a rectangle.
+    """
+
+    position: float
+    axial: float
+    half_angle: float
+    half_width: float
+    pressure: float
+    round: bool
+
+
+@dataclass(frozen=True)
+class Section:
+    """One rectangular section of a film, SI units; pressures are gauge, over the ambient pressure.
+
+    width: b of the section; copies: how many equal ones make the bearing; near, far: its edges at z = 0 and z = 1;
+    far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2).
+    """
+
+    radius: float
+    width: float
+    bearing_width: float
+    clearance: float
+    viscosity: float
+    ambient_pressure: float
+    cavitation_pressure: float
+    copies: int
+    near: Edge
+    far: Edge
+    far_pressure: float = 0.0
+    grooves: tuple[AxialGroove, ...] = ()
+    holes: tuple[Hole, ...] = field(default=())
+
+    @property
+    def pressure_scale(self) -> float:
+        """12 eta / psi^2: turns a scaled pressure (1/s) into Pa, see (3.9)."""
+        return 12.0 * self.viscosity * (self.radius / self.clearance) ** 2
+
+    @property
+    def aspect(self) -> float:
+        """(R/b)^2 of (3.9)."""
+        return (self.radius / self.width) ** 2
+
+
+SUPPLY_LENGTH = 0.1  # z_1 of (6.2): share of the bearing's width over which a groove's pressure rises from its end
+
+
+def groove_pressure(groove: AxialGroove, distance: Array, bearing_width: float) -> Array:
+    """Gauge pressure in an axial groove at the distance (n,) in m from the nearer end of the bearing, (6.2)."""
+    return groove.pressure * (1.0 - np.exp(-distance / (SUPPLY_LENGTH * bearing_width)))
+
+
+def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Array) -> Array:
+    """(n + 1,) boundaries of cells over one turn from the first break (or -pi), denser around phi = narrowest.
+
+    breaks: angles that must be boundaries (edges of grooves). The density follows Sommerfeld's angle, see ring_vertices.
+    """
+    gamma = np.linspace(-np.pi, np.pi, 20_001)
+    angle = narrowest + 2.0 * np.arctan2(contraction * np.sin(0.5 * gamma), np.cos(0.5 * gamma))
+    cuts = np.sort(np.mod(breaks - angle[0], 2 * np.pi)) + angle[0] if len(breaks) else np.array([angle[0]])
+    turn = np.append(cuts, cuts[0] + 2 * np.pi)
+    # gamma over one and a half turns, so that pieces may start anywhere
+    long_angle = np.concatenate([angle[:-1], angle + 2 * np.pi])
+    long_gamma = np.concatenate([gamma[:-1], gamma + 2 * np.pi])
+    places = np.interp(turn, long_angle, long_gamma)
+    pieces = []
+    for start, end in zip(places[:-1], places[1:], strict=True):
+        count = max(2, round(elements * (end - start) / (2 * math.pi)))
+        pieces.append(np.interp(np.linspace(start, end, count + 1)[:-1], long_gamma, long_angle))
+    pieces.append(turn[-1:])
+    return np.concatenate(pieces)

@@ -1,0 +1,235 @@
+"""`frb compare`: the same run-up with several models of the films."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic_run import Rotor, as_run, signals
+
+from frbcli.analysis.compare import Comparison, Deviation, Variant, compare, deviation, make_variants
+from frbcli.case.load import load_case, load_case_text
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError
+from frbcli.plot.compare import comparison_figure
+from frbcli.results.store import Run, read_run
+from frbcli.solve import run as run_module
+from frbcli.solve.run import Progress, runup
+
+QUICK = ("speed.duration=0.4 s", "speed.from=20 Hz", "speed.to=120 Hz", "output.step=2e-4 s", "accuracy.mesh=[4, 48]")
+HALF, FULL = "half-sommerfeld", "sommerfeld"
+
+
+def quick_case(*settings: str) -> Case:
+    return load_case("jeffcott", (*QUICK, *settings))
+
+
+@pytest.fixture(scope="module")
+def compared() -> Comparison:
+    return compare(quick_case(), theories=["finite", "short"])
+
+
+def test_each_variant_is_the_run_of_its_models(compared: Comparison, tmp_path: Path) -> None:
+    assert [result.variant for result in compared.results] == [Variant("finite", HALF), Variant("short", HALF)]
+    alone = runup(quick_case("film.theory=short"), tmp_path / "short.h5")
+    for name in alone.signals:
+        np.testing.assert_array_equal(compared.results[1].run[name], alone[name])
+    assert load_case_text(compared.results[1].run.case_text).film.theory == "short"
+
+
+def test_deviation_is_from_the_first(compared: Comparison) -> None:
+    first, other = compared.results
+    apart = np.abs(first.run["eccentricity"] - other.run["eccentricity"])
+    assert first.deviation == Deviation(0.0, 0.0, 0.4)
+    assert other.deviation.largest == apart.max() > 0.01
+    assert other.deviation.rms == pytest.approx(np.sqrt(np.mean(apart**2)))
+    assert 0.0 < other.deviation.rms < other.deviation.largest
+
+
+def test_the_table_has_a_row_for_each(compared: Comparison) -> None:
+    table = compared.to_pandas()
+    assert table["theory"].tolist() == ["finite", "short"]
+    assert table["status"].tolist() == ["finished"] * 2
+    assert table["deviation_largest"].tolist() == [result.deviation.largest for result in compared.results]
+    assert (table["cpu_s"] > 0.0).all()
+    assert table["film_force_relative"][0] < table["film_force_relative"][1]
+
+
+def whirling(at: float | None, eccentricity_off: float = 0.0, lasts: float = 1.0) -> Run:
+    columns = signals(Rotor(duration_s=lasts, step_s=1e-3, whirl_s=None, critical_Hz=None))
+    columns["eccentricity"] = columns["eccentricity"] + eccentricity_off * (columns["time_s"] > 0.5)
+    onset = {"kind": "onset", "film": None, "t_s": at, "speed_Hz": 150.0, "frequency_Hz": 70.0, "frequency_ratio": 0.47}
+    return replace(as_run(columns), events=[] if at is None else [onset])
+
+
+@pytest.mark.parametrize(
+    ("run", "reference", "largest", "until"),
+    [
+        (whirling(None, 0.1), whirling(None), 0.1, 1.0),
+        (whirling(0.4, 0.1), whirling(None), 0.0, 0.4),
+        (whirling(None, 0.1), whirling(0.4), 0.0, 0.4),
+        (whirling(0.9, 0.1), whirling(0.7, -0.1), 0.2, 0.7),
+    ],
+)
+def test_deviation_counts_before_the_first_whirl_of_either(
+    run: Run, reference: Run, largest: float, until: float
+) -> None:
+    found = deviation(run, reference)
+    assert found.until_s == until
+    assert found.largest == pytest.approx(largest)
+    share = max(0.0, until - 0.5) / until
+    assert found.rms == pytest.approx(largest * np.sqrt(share), rel=5e-3)
+
+
+def test_a_whirl_from_the_beginning_leaves_nothing_to_compare() -> None:
+    found = deviation(whirling(0.0), whirling(None))
+    assert np.isnan([found.largest, found.rms]).all()
+
+
+# --- which models ---
+
+
+def test_options_combine_and_repeat_nothing() -> None:
+    case = quick_case("film.theory=short", f"film.cavitation={FULL}")
+    assert make_variants(case, [HALF, FULL, HALF]) == (Variant("short", HALF), Variant("short", FULL))
+    assert make_variants(case, [], ["finite", "short"]) == (Variant("finite", FULL), Variant("short", FULL))
+    assert len(make_variants(case, [HALF, FULL], ["finite", "short"])) == 4
+    everything = make_variants(case)
+    assert everything[0] == Variant("short", FULL)
+    assert len(set(everything)) == len(everything) == 4
+
+
+def test_every_unknown_model_is_named_with_what_there_is() -> None:
+    with pytest.raises(InputError) as caught:
+        make_variants(quick_case(), ["elrod", FULL, "wet"], ["long"])
+    faults = caught.value.faults
+    assert [(fault.key, fault.value) for fault in faults] == [
+        ("--cavitation", "elrod"), ("--cavitation", "wet"), ("--theory", "long")
+    ]  # fmt: skip
+    assert "sommerfeld, half-sommerfeld" in faults[0].remedy
+    assert "short, finite" in faults[2].remedy
+
+
+@pytest.mark.parametrize("test", ["rotation", "squeeze", "whirl", "polka"])
+def test_other_tests_are_refused_before_any_work(test: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=test):
+        compare(quick_case(), test=test, keep=tmp_path / "kept")
+    assert not (tmp_path / "kept").exists()
+
+
+# --- files ---
+
+
+def test_runs_are_kept_where_asked_for(tmp_path: Path) -> None:
+    found = compare(quick_case("film.theory=short"), [HALF, FULL], keep=tmp_path / "a" / "b")
+    names = ["half-sommerfeld-short.h5", "sommerfeld-short.h5"]
+    assert sorted(os.listdir(tmp_path / "a" / "b")) == names
+    for result, name in zip(found.results, names, strict=True):
+        kept = read_run(tmp_path / "a" / "b" / name)
+        np.testing.assert_array_equal(kept["eccentricity"], result.run["eccentricity"])
+
+
+def test_a_directory_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="--keep"):
+        compare(quick_case(), keep=tmp_path / "file" / "runs")
+
+
+def test_ctrl_c_ends_the_comparison_with_the_run_under_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_module, "BUDGET", 60)
+    seen: list[str] = []
+
+    def observe(variant: Variant, _: Progress) -> None:
+        seen.append(variant.name)
+        if seen.count("sommerfeld short") == 2:
+            signal.raise_signal(signal.SIGINT)
+
+    found = compare(quick_case("film.theory=short"), [HALF, FULL], observe=observe)
+    assert [result.run.status for result in found.results] == ["finished", "interrupted"]
+    assert list(dict.fromkeys(seen)) == ["half-sommerfeld short", "sommerfeld short"]
+
+
+# --- picture and command ---
+
+
+def test_the_picture_tells_the_variants_apart_and_marks_their_events(compared: Comparison) -> None:
+    late = {"kind": "onset", "film": None, "t_s": 0.38, "speed_Hz": 115.0, "frequency_Hz": 50.0, "frequency_ratio": 0.4}
+    early = {**late, "kind": "critical-speed", "t_s": 0.1, "speed_Hz": 45.0}
+    first, other = compared.results
+    marked = replace(compared, results=(first, replace(other, run=replace(other.run, events=[early, late]))))
+    above, below = comparison_figure(marked).axes[:2]
+    curves = above.get_lines()
+    assert len(curves) == 2
+    assert len({(line.get_color(), line.get_linestyle()) for line in curves}) == 2
+    rows = [text.get_text() for text in below.get_yticklabels()]
+    assert rows == ["half-Sommerfeld, finite", "half-Sommerfeld, short"]
+    assert [text.get_text() for text in below.texts] == ["critical 45.0 Hz", "whirl 115.0 Hz"]
+    assert [text.get_ha() for text in below.texts] == ["left", "right"]  # none leaves the picture
+    assert {float(line.get_ydata()[0]) for line in below.get_lines()[2:]} == {1.0}
+
+
+def test_a_rotor_of_constant_speed_has_no_axis_of_speeds() -> None:
+    found = compare(quick_case("speed.to=20 Hz", "film.theory=short"), [HALF, FULL])
+    assert not comparison_figure(found).axes[0].child_axes
+
+
+SETTINGS = [word for setting in QUICK for word in ("--set", setting)]
+
+
+def test_command_says_one_json_document_one_table_one_picture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert frb(["compare", "jeffcott", *SETTINGS, "--json"]) == 0
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert list(found) == ["command", "case", "test", "results"]
+    assert [found[key] for key in ("command", "case", "test")] == ["compare", "jeffcott", "runup"]
+    assert len(found["results"]) == 4
+    for result in found["results"]:
+        assert list(result) == ["cavitation", "theory", "coupling", "status", "events", "deviation", "cost", "error"]
+        assert result["coupling"] is None
+        assert list(result["deviation"]) == ["eccentricity_largest", "eccentricity_rms", "until_s"]
+    assert max(map(len, said.err.splitlines())) <= 80
+    assert all(f"{result['cavitation']} {result['theory']}" in said.err for result in found["results"])
+    assert os.listdir() == ["jeffcott-compare.png"]
+    assert Path("jeffcott-compare.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_command_says_nothing_if_asked_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ["--theory", "short", "--cavitation", f"{HALF}, {FULL}", "--quiet", "--no-picture", "--keep", "runs"]
+    assert frb(["compare", "jeffcott", *SETTINGS, *words]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert os.listdir() == ["runs"]
+
+
+def test_a_variant_that_ends_early_is_exit_3(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--theory", "short", "--cavitation", f"{HALF},{FULL}", "--no-picture", "--json"]
+    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75"]) == 3
+    said = capsys.readouterr()
+    assert [result["status"] for result in json.loads(said.out)["results"]] == ["finished", "contact"]
+    assert "sommerfeld short: contact at" in said.err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--test", "squeeze"],
+        ["--cavitation", "elrod"],
+        ["--cavitation", HALF],
+        ["-o", "picture.bmp"],
+        ["--theory", "short,finite", "--keep", str(Path(__file__))],
+    ],
+)
+def test_wrong_wishes_are_exit_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--json"]) == 2
+    assert json.loads(capsys.readouterr().out)["status"] == "input-error"
