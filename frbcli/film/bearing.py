@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.film.fields import field_grid, field_table
-from frbcli.film.kernel import FIELDS, SHORT, SHORT_GENERAL, TABLE, FilmData, film_force
 from frbcli.film.grid import Array
+from frbcli.film.kernel import FIELDS, SHORT, SHORT_GENERAL, TABLE, FilmData, film_force
 from frbcli.film.table import Mesh, force_table
 
 EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
@@ -18,8 +18,8 @@ EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
 class RectangularBearing:
     """A bearing whose developed gap consists of `sections` equal rectangles side by side, SI units.
 
-    sections: 1 for a plain bearing, 2 for one with a central circumferential groove (figure 4.1); supply_pressure: in the
-    groove, None without one. Pressures are absolute.
+    sections: 1 for a plain bearing, 2 for one with a central circumferential groove (figure 4.1); supply_pressure: in
+    the groove, None without one. Pressures are absolute.
     """
 
     width: float

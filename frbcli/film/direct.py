@@ -18,7 +18,8 @@ LINES = 24  # Gauss points over the width
 
 @dataclass(frozen=True)
 class SectionPressure:
-    """Sommerfeld's pressure of one section, scaled, gauge: values (2 m, LINES) at the ring's nodes and axial Gauss points.
+    """Sommerfeld's pressure of one section, scaled, gauge: values (2 m, LINES) at the ring's nodes and axial Gauss
+    points.
 
     vertices: (m,) Theta of the element boundaries; z, weights: (LINES,) axial positions and weights over [0, 1].
     """
@@ -31,7 +32,8 @@ class SectionPressure:
 
 @dataclass(frozen=True)
 class _Motion:
-    """Motion in the frame of the line of centres: eccentricity, unit vectors along and across it, w_r and w_t in 1/s."""
+    """Motion in the frame of the line of centres: eccentricity, unit vectors along and across it, w_r and w_t in
+    1/s."""
 
     eccentricity: float
     along: Array
@@ -86,7 +88,8 @@ def section_pressure(
 def largest_pressure(
     bearing: RectangularBearing, mesh: Mesh, displacement: Array, velocity: Array, omega: float
 ) -> float:
-    """Largest pressure in the film, Pa absolute: parabola through the largest nodal value and its neighbours, each way."""
+    """Largest pressure in the film, Pa absolute: parabola through the largest nodal value and its neighbours, each
+    way."""
     motion = _motion(bearing, displacement, velocity, omega)
     field = section_pressure(bearing, mesh, motion.eccentricity, motion.w_r, motion.w_t)
     n = len(field.vertices)

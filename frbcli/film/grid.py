@@ -18,7 +18,8 @@ class AxialModes:
     """The axial half of the separated problem on quadratic elements.
 
     eigenvalues: (k,) of K_z phi = lambda M_z phi, pressure zero at both ends; loads: (k,) integral of each mode over
-    z (its share of a load that does not depend on z); shapes: (k, n) values at the n axial nodes; nodes: (n,) in [0, 1].
+    z (its share of a load that does not depend on z); shapes: (k, n) values at the n axial nodes; nodes: (n,) in [0,
+    1].
     Modes without a share in such a load (the odd ones) are left out: they stay zero.
     """
 

@@ -42,8 +42,10 @@ class FilmData(NamedTuple):
 def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     """Force of one whole bearing on the journal.
 
-    d: displacement over the clearance (|d| < 1 is the caller's duty); v: its rate in 1/s; omega: omega_J + omega_S in rad/s.
-    Returns the force (x, y) in N, its derivatives by d (xx, xy, yx, yy) in N and by v (xx, xy, yx, yy) in N s: ten numbers.
+    d: displacement over the clearance (|d| < 1 is the caller's duty); v: its rate in 1/s; omega: omega_J + omega_S in
+    rad/s.
+    Returns the force (x, y) in N, its derivatives by d (xx, xy, yx, yy) in N and by v (xx, xy, yx, yy) in N s: ten
+    numbers.
     """
     # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
     w_x, w_y = v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x
@@ -54,15 +56,18 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     w_r, w_t = c * w_x + s * w_y, c * w_y - s * w_x
     if film.kind == SHORT:
         f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = short_closed(
-            eccentricity, w_r, w_t, film.slenderness, film.clipped == 1)
+            eccentricity, w_r, w_t, film.slenderness, film.clipped == 1
+        )
     elif film.kind == SHORT_GENERAL:
         f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = short_general(
-            eccentricity, w_r, w_t, film.slenderness, film.sigma, film.level)
+            eccentricity, w_r, w_t, film.slenderness, film.sigma, film.level
+        )
     elif film.kind == TABLE:
         f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = table_force(film.table, eccentricity, w_r, w_t)
     else:
         f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = fields_force(
-            film.table, film.grid, eccentricity, w_r, w_t, film.sigma, film.level)
+            film.table, film.grid, eccentricity, w_r, w_t, film.sigma, film.level
+        )
     if beyond:  # in contact: the film stays as it is at the end of the tables
         e_r = e_t = 0.0
     # Turning the displacement by dt turns force and w with it: dF/dt = (J F - dF/dw J w) / eps
@@ -72,10 +77,16 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     k_xx, k_xy, k_yx, k_yy = _turned(e_r, t_r, e_t, t_t, c, s)
     scale, half = film.force_scale, 0.5 * omega
     return (  # dw/dd = -(omega/2) J
-        scale * (c * f_r - s * f_t), scale * (s * f_r + c * f_t),
-        scale * (k_xx - half * d_xy), scale * (k_xy + half * d_xx),
-        scale * (k_yx - half * d_yy), scale * (k_yy + half * d_yx),
-        scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy,
+        scale * (c * f_r - s * f_t),
+        scale * (s * f_r + c * f_t),
+        scale * (k_xx - half * d_xy),
+        scale * (k_xy + half * d_xx),
+        scale * (k_yx - half * d_yy),
+        scale * (k_yy + half * d_yx),
+        scale * d_xx,
+        scale * d_xy,
+        scale * d_yx,
+        scale * d_yy,
     )
 
 

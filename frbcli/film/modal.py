@@ -19,8 +19,13 @@ from frbcli.film.grid import Array
 
 GAUSS_POINTS = np.array([0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15)])
 GAUSS_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
-SHAPE = np.stack([(1 - GAUSS_POINTS) * (1 - 2 * GAUSS_POINTS), 4 * GAUSS_POINTS * (1 - GAUSS_POINTS),
-                  GAUSS_POINTS * (2 * GAUSS_POINTS - 1)])  # (node, point)
+SHAPE = np.stack(
+    [
+        (1 - GAUSS_POINTS) * (1 - 2 * GAUSS_POINTS),
+        4 * GAUSS_POINTS * (1 - GAUSS_POINTS),
+        GAUSS_POINTS * (2 * GAUSS_POINTS - 1),
+    ]
+)  # (node, point)
 SLOPE = np.stack([4 * GAUSS_POINTS - 3, 4 - 8 * GAUSS_POINTS, 4 * GAUSS_POINTS - 1])
 
 
@@ -53,8 +58,11 @@ def _element(length, cube, decay, local):  # type: ignore[no-untyped-def]
         for j in range(3):
             entry = 0.0
             for g in range(3):
-                entry += GAUSS_WEIGHTS[g] * cube[g] * (
-                    SLOPE[i, g] * SLOPE[j, g] / length + decay * length * SHAPE[i, g] * SHAPE[j, g])
+                entry += (
+                    GAUSS_WEIGHTS[g]
+                    * cube[g]
+                    * (SLOPE[i, g] * SLOPE[j, g] / length + decay * length * SHAPE[i, g] * SHAPE[j, g])
+                )
             local[i, j] = entry
 
 
@@ -110,8 +118,9 @@ def solve_ring(lengths, cube, decay, load):  # type: ignore[no-untyped-def]
             pressure[k, 2 * e] = condensed[e, k] - part * cut[e]
         for e in range(m):
             n = 2 * (e + 1) if e + 1 < m else 0
-            pressure[k, 2 * e + 1] = (middle[e, 1] * load[k, e, 1] - middle[e, 0] * pressure[k, 2 * e]
-                                      - middle[e, 2] * pressure[k, n])
+            pressure[k, 2 * e + 1] = (
+                middle[e, 1] * load[k, e, 1] - middle[e, 0] * pressure[k, 2 * e] - middle[e, 2] * pressure[k, n]
+            )
     return pressure
 
 
@@ -148,8 +157,11 @@ def unit_fields(vertices, eccentricity, decays, mode_loads):  # type: ignore[no-
             n = 2 * (e + 1) if e + 1 < m else 0
             for s in range(2):
                 for i in range(3):
-                    defect[s, e, i] = -(local[i, 0] * solution[s, 2 * e] + local[i, 1] * solution[s, 2 * e + 1]
-                                        + local[i, 2] * solution[s, n])
+                    defect[s, e, i] = -(
+                        local[i, 0] * solution[s, 2 * e]
+                        + local[i, 1] * solution[s, 2 * e + 1]
+                        + local[i, 2] * solution[s, n]
+                    )
         derivative = solve_ring(lengths, cube, decays[k], defect)
         for s in range(2):
             fields[s, k] = solution[s]

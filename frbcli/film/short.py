@@ -1,7 +1,7 @@
 """The extended short bearing of appendix B: no flow along phi, any pressure at the two edges of a section.
 
-Gauge pressures over p_0, divided by 12 eta / psi^2. With A = -(b/R)^2 (w . n) / (2 H^3) the pressure (B.3) of a section reads
-P = A z (1 - z) + sigma z on 0 <= z <= 1, with sigma the scaled supply pressure at z = 1.
+Gauge pressures over p_0, divided by 12 eta / psi^2. With A = -(b/R)^2 (w . n) / (2 H^3) the pressure (B.3) of a
+section reads P = A z (1 - z) + sigma z on 0 <= z <= 1, with sigma the scaled supply pressure at z = 1.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[
     """Force of one section with equal pressures at both edges and in the cavity, in the frame of the line of centres.
 
     In Sommerfeld's angle gamma the integrand is a trigonometric polynomial: the classical closed form. slenderness:
-    (b/R)^2; clipped: half-Sommerfeld instead of Sommerfeld. Returns the integrals of P (cos Theta, sin Theta) dz dTheta:
-    force (r, t), its derivatives by w (rr, rt, tr, tt) and by the eccentricity (r, t), eight numbers.
+    (b/R)^2; clipped: half-Sommerfeld instead of Sommerfeld. Returns the integrals of P (cos Theta, sin Theta) dz
+    dTheta: force (r, t), its derivatives by w (rr, rt, tr, tt) and by the eccentricity (r, t), eight numbers.
     """
     s2 = 1.0 - eccentricity * eccentricity
     s = math.sqrt(s2)
@@ -64,14 +64,22 @@ def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[
     rate, s_rate = 5.0 * eccentricity / s2, -eccentricity / s2
     d_rr = k * (2.0 * eccentricity * turn - 2.0 * sines)
     d_rt = k * s * (cosines + s_rate * i_rt)
-    return (force_r, force_t, rr, rt, rt, tt,
-            rate * force_r + d_rr * w_r + d_rt * w_t,
-            rate * force_t + d_rt * w_r + 2.0 * s_rate * tt * w_t)
+    return (
+        force_r,
+        force_t,
+        rr,
+        rt,
+        rt,
+        tt,
+        rate * force_r + d_rr * w_r + d_rt * w_t,
+        rate * force_t + d_rt * w_r + 2.0 * s_rate * tt * w_t,
+    )
 
 
 @njit(cache=True, error_model="numpy")
 def short_general(eccentricity, w_r, w_t, slenderness, sigma, level):  # type: ignore[no-untyped-def]
-    """As short_closed, with the supply pressure sigma at z = 1 and the cavitation pressure `level`, both scaled, gauge."""
+    """As short_closed, with the supply pressure sigma at z = 1 and the cavitation pressure `level`, both scaled,
+    gauge."""
     s = math.sqrt(1.0 - eccentricity * eccentricity)
     force_r = force_t = rr = rt = tt = by_e_r = by_e_t = 0.0
     for i in range(ANGLES):

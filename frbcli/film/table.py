@@ -1,8 +1,9 @@
 """Finite-length films of rectangular gaps, tabulated over the eccentricity.
 
-Where all pressures at the edges equal the cavitation pressure the force of a rectangular film is proportional to |w| and
-depends, in the frame of the line of centres, on the eccentricity and the direction of w alone. That table is made from the
-compiled solver of `modal.py` in some 30 ms before a run starts, and evaluated a few hundred thousand times during it.
+Where all pressures at the edges equal the cavitation pressure the force of a rectangular film is proportional to |w|
+and depends, in the frame of the line of centres, on the eccentricity and the direction of w alone. That table is made
+from the compiled solver of `modal.py` in some 30 ms before a run starts, and evaluated a few hundred thousand times
+during it.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ class Mesh:
 def eccentricity_axis() -> Array:
     """(n,) eccentricities of the tables, equidistant in x = -ln(1 - eps)."""
     end = -math.log(1.0 - LARGEST_ECCENTRICITY)
-    return 1.0 - np.exp(-DEPTH_STEP * np.arange(math.ceil(end / DEPTH_STEP) + 1))
+    eccentricities: Array = 1.0 - np.exp(-DEPTH_STEP * np.arange(math.ceil(end / DEPTH_STEP) + 1))
+    return eccentricities
 
 
 def half_width_lines(lines: int = LINES) -> tuple[Array, Array]:
@@ -50,11 +52,13 @@ def ring_contraction(eccentricity: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def clipped_forces(fields, shapes, weights_z, directions, stretch, stretch_rate, vertices, clipped):  # type: ignore[no-untyped-def]
+def clipped_forces(  # type: ignore[no-untyped-def]
+    fields, shapes, weights_z, directions, stretch, stretch_rate, vertices, clipped
+):
     """(d, 3, 2) force of unit w in each direction, its derivatives by the direction and by the eccentricity.
 
-    fields: (4, k, n) of unit_fields; shapes: (k, l) modes at the axial lines with weights_z (l,); directions: (d,) angles of
-    (w_r, stretch * w_t). Axis 2: components along and across the line of centres.
+    fields: (4, k, n) of unit_fields; shapes: (k, l) modes at the axial lines with weights_z (l,); directions: (d,)
+    angles of (w_r, stretch * w_t). Axis 2: components along and across the line of centres.
     """
     lengths, weights = element_lengths(vertices), force_weights(vertices)
     n, lines, modes = fields.shape[2], shapes.shape[1], shapes.shape[0]
@@ -84,8 +88,11 @@ def clipped_forces(fields, shapes, weights_z, directions, stretch, stretch_rate,
                 for e in range(lengths.shape[0]):
                     e2 = 2 * e + 2 if 2 * e + 2 < n else 0
                     for c in range(2):
-                        part[0, c] += (weights[c, 0, e] * line[0, 2 * e] + weights[c, 1, e] * line[0, 2 * e + 1]
-                                       + weights[c, 2, e] * line[0, e2])
+                        part[0, c] += (
+                            weights[c, 0, e] * line[0, 2 * e]
+                            + weights[c, 1, e] * line[0, 2 * e + 1]
+                            + weights[c, 2, e] * line[0, e2]
+                        )
             for a in range(3):
                 for c in range(2):
                     result[j, a, c] += weights_z[z] * part[a, c]
@@ -95,8 +102,8 @@ def clipped_forces(fields, shapes, weights_z, directions, stretch, stretch_rate,
 def force_table(mesh: Mesh, radius_to_width: float, clipped: bool) -> Array:
     """(n, DIRECTIONS, 2, 4) force of one section: value, derivative by x, by the direction psi, and by both.
 
-    Radial component even in psi, tangential odd. Entries are integrals of P (cos Theta, sin Theta) dz dTheta for |w| = 1/s, with w
-    measured as (w_r, w_t (1 - eps)^STRETCH).
+    Radial component even in psi, tangential odd. Entries are integrals of P (cos Theta, sin Theta) dz dTheta for |w| =
+    1/s, with w measured as (w_r, w_t (1 - eps)^STRETCH).
     """
     modes = axial_modes(axial_vertices(mesh.axial))
     lines, weights = half_width_lines()
@@ -108,7 +115,9 @@ def force_table(mesh: Mesh, radius_to_width: float, clipped: bool) -> Array:
         vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
         fields = unit_fields(vertices, eccentricity, radius_to_width**2 * modes.eigenvalues, modes.loads)
         stretch = (1.0 - eccentricity) ** STRETCH
-        forces = clipped_forces(fields, shapes, weights, directions, stretch, -STRETCH * stretch / (1.0 - eccentricity), vertices, clipped)
+        forces = clipped_forces(
+            fields, shapes, weights, directions, stretch, -STRETCH * stretch / (1.0 - eccentricity), vertices, clipped
+        )
         table[i, :, :, 0] = forces[:, 0]
         table[i, :, :, 1] = forces[:, 2] * (1.0 - eccentricity)
         table[i, :, :, 2] = forces[:, 1]
@@ -118,10 +127,11 @@ def force_table(mesh: Mesh, radius_to_width: float, clipped: bool) -> Array:
 
 
 def _slopes(values: Array, step: float, parity: float) -> Array:
-    """(n, d) slopes of the cubic splines through values (n, d) over half a turn, mirrored at both ends with this parity.
+    """(n, d) slopes of the cubic splines through values (n, d) over half a turn, mirrored at both ends with this
+    parity.
 
-    Between neighbours s' + 4 s + s'' = 3 (f'' - f') / step; beyond an end the slope of an even function is mirrored with
-    the other sign: it is zero there; that of an odd function with the same.
+    Between neighbours s' + 4 s + s'' = 3 (f'' - f') / step; beyond an end the slope of an even function is mirrored
+    with the other sign: it is zero there; that of an odd function with the same.
     """
     from scipy.linalg import solve_banded
 
@@ -172,9 +182,14 @@ def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
     # d(u_t)/dx = -STRETCH u_t; dx/deps = 1 / (1 - eps)
     depth = 1.0 / (1.0 - eccentricity)
     return (
-        speed * g_r, mirror * speed * g_t,
-        g_r * cosine - p_r * sine, mirror * by_u_r * stretch, mirror * (g_t * cosine - p_t * sine), by_u_t * stretch,
-        depth * (speed * x_r - STRETCH * by_u_r * u_t), mirror * depth * (speed * x_t - STRETCH * by_u_t * u_t),
+        speed * g_r,
+        mirror * speed * g_t,
+        g_r * cosine - p_r * sine,
+        mirror * by_u_r * stretch,
+        mirror * (g_t * cosine - p_t * sine),
+        by_u_t * stretch,
+        depth * (speed * x_r - STRETCH * by_u_r * u_t),
+        mirror * depth * (speed * x_t - STRETCH * by_u_t * u_t),
     )
 
 
@@ -185,12 +200,33 @@ def _hermite(  # type: ignore[no-untyped-def]
     """Value, derivative by x and by psi of component c in the cell (i, j)."""
     # along psi first, at both ends of the cell in x: value and x-derivative, and the psi-slopes of both
     v0 = b0 * table[i, j, c, 0] + b1 * table[i, j + 1, c, 0] + b2 * table[i, j, c, 2] + b3 * table[i, j + 1, c, 2]
-    v1 = b0 * table[i + 1, j, c, 0] + b1 * table[i + 1, j + 1, c, 0] + b2 * table[i + 1, j, c, 2] + b3 * table[i + 1, j + 1, c, 2]
+    v1 = (
+        b0 * table[i + 1, j, c, 0]
+        + b1 * table[i + 1, j + 1, c, 0]
+        + b2 * table[i + 1, j, c, 2]
+        + b3 * table[i + 1, j + 1, c, 2]
+    )
     x0 = b0 * table[i, j, c, 1] + b1 * table[i, j + 1, c, 1] + b2 * table[i, j, c, 3] + b3 * table[i, j + 1, c, 3]
-    x1 = b0 * table[i + 1, j, c, 1] + b1 * table[i + 1, j + 1, c, 1] + b2 * table[i + 1, j, c, 3] + b3 * table[i + 1, j + 1, c, 3]
+    x1 = (
+        b0 * table[i + 1, j, c, 1]
+        + b1 * table[i + 1, j + 1, c, 1]
+        + b2 * table[i + 1, j, c, 3]
+        + b3 * table[i + 1, j + 1, c, 3]
+    )
     p0 = d1 * (table[i, j + 1, c, 0] - table[i, j, c, 0]) + d2 * table[i, j, c, 2] + d3 * table[i, j + 1, c, 2]
-    p1 = d1 * (table[i + 1, j + 1, c, 0] - table[i + 1, j, c, 0]) + d2 * table[i + 1, j, c, 2] + d3 * table[i + 1, j + 1, c, 2]
+    p1 = (
+        d1 * (table[i + 1, j + 1, c, 0] - table[i + 1, j, c, 0])
+        + d2 * table[i + 1, j, c, 2]
+        + d3 * table[i + 1, j + 1, c, 2]
+    )
     q0 = d1 * (table[i, j + 1, c, 1] - table[i, j, c, 1]) + d2 * table[i, j, c, 3] + d3 * table[i, j + 1, c, 3]
-    q1 = d1 * (table[i + 1, j + 1, c, 1] - table[i + 1, j, c, 1]) + d2 * table[i + 1, j, c, 3] + d3 * table[i + 1, j + 1, c, 3]
-    return (a0 * v0 + a1 * v1 + a2 * x0 + a3 * x1, c1 * (v1 - v0) + c2 * x0 + c3 * x1,
-            a0 * p0 + a1 * p1 + a2 * q0 + a3 * q1)
+    q1 = (
+        d1 * (table[i + 1, j + 1, c, 1] - table[i + 1, j, c, 1])
+        + d2 * table[i + 1, j, c, 3]
+        + d3 * table[i + 1, j + 1, c, 3]
+    )
+    return (
+        a0 * v0 + a1 * v1 + a2 * x0 + a3 * x1,
+        c1 * (v1 - v0) + c2 * x0 + c3 * x1,
+        a0 * p0 + a1 * p1 + a2 * q0 + a3 * q1,
+    )

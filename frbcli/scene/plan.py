@@ -19,10 +19,14 @@ SECTIONS = {"none": 1, "circumferential-groove": 2}
 
 # A target of 1e-3 is met by the default mesh with a wide margin (docs/validation.md); a factor of ten less doubles it.
 DEFAULT_MESH = Mesh(axial=6, circumferential=96)
+FIELDS_MESH = Mesh(axial=6, circumferential=80)  # where the elements are summed at every call
 FINE_MESH = Mesh(axial=10, circumferential=192)
 FINE_TARGET = 2e-4
 # Local errors of a step that keep the sum of some revolutions below the target, by method.
 LOOSE_TARGET, LOOSE_SHARE, TIGHT_SHARE = 2e-3, 0.02, 0.01
+
+
+TABULATED_FIELDS = "tabulated fields, clipped at every call"
 
 
 @dataclass(frozen=True)
@@ -72,9 +76,11 @@ def make_plan(case: Case) -> Plan:
     else:
         decide("theory", theory, "set in the case")
     decide("cavitation", cavitation, "set in the case; the film has no state of its own, oil is not balanced")
-    decide("film", _film_form(case, bearing, theory), "rectangular gap: forces depend on the line of centres only")
+    form = _film_form(case, bearing, theory)
+    decide("film", form, "rectangular gap: forces depend on the line of centres only")
 
-    mesh = DEFAULT_MESH if case.accuracy.target > FINE_TARGET else FINE_MESH
+    coarse = FIELDS_MESH if form == TABULATED_FIELDS else DEFAULT_MESH
+    mesh = coarse if case.accuracy.target > FINE_TARGET else FINE_MESH
     reason = f"holds the target {case.accuracy.target:g} up to an eccentricity of 0.95"
     if case.accuracy.mesh is not None:
         mesh, reason = Mesh(*case.accuracy.mesh), "set in the case"
@@ -82,7 +88,7 @@ def make_plan(case: Case) -> Plan:
         decide("mesh", f"{mesh.axial} x {mesh.circumferential}", f"quadratic elements, axial x around; {reason}")
 
     if case.accuracy.target > LOOSE_TARGET:
-        method, share, reason = "esdirk3", LOOSE_SHARE, "third order, L-stable: the target is loose, three film solves a step do"
+        method, share, reason = "esdirk3", LOOSE_SHARE, "third order, L-stable: enough for a loose target"
     else:
         method, share, reason = "esdirk4", TIGHT_SHARE, "fourth order, L-stable: its error is far below the target"
     decide("integrator", method, reason)
@@ -102,7 +108,7 @@ def _film_form(case: Case, bearing: SingleFilmBearing, theory: str) -> str:
         return "closed form" if equal else "clipped exactly along z, 96 points around"
     if equal or case.film.cavitation == "sommerfeld":
         return "table over eccentricity and direction"
-    return "tabulated fields, clipped at every call"
+    return TABULATED_FIELDS
 
 
 def _refuse_what_is_not_modelled(case: Case) -> None:

@@ -15,6 +15,7 @@ class Elrod:
 
     bulk_modulus: float = np.inf
     conserves = True
+    clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         full = w > 0.0

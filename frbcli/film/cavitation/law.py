@@ -34,10 +34,16 @@ class Scales:
 
 
 class Law(Protocol):
-    """A cavitation model. conserves: whether oil neither appears nor vanishes in its cells."""
+    """A cavitation model.
+
+    conserves: whether oil neither appears nor vanishes in its cells; clips: whether loads take no pressure below p_cav.
+    """
 
     @property
     def conserves(self) -> bool: ...
+
+    @property
+    def clips(self) -> bool: ...
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         """The state of cells with the unknown w (n,)."""

@@ -11,35 +11,33 @@ from frbcli.film.cavitation.law import Array, CellState, Scales
 
 @dataclass(frozen=True)
 class Peeken:
-    """bunsen: alpha_B, the volume of dissolved air per volume of oil."""
+    """bunsen: alpha_B, the volume of dissolved air per volume of oil, in (0, 1]."""
 
     bunsen: float
     conserves = True
+    clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:
-        """theta = 1 / (1 + r), r = alpha (p_cav - p) / p: with y = p / p_cav, theta = y / (y + alpha (1 - y)) below p_cav.
+        """theta = 1 / (1 + r), r = alpha (p_cav - p) / p: with the fall u = 1 - p / p_cav, theta = (1 - u) / (1 - u + alpha u).
 
-        w = theta - 1 + (p - p_cav) / reference is a quadratic in y.
+        w = theta - 1 - u ratio is a quadratic in u. Newton's method may ask below p = 0, where it goes on linearly.
         """
         cavity = scales.cavitation + scales.ambient  # absolute
         ratio, a = cavity / scales.reference, self.bunsen
-        # (w + 1 + ratio (1 - y)) (a + (1 - a) y) = y
-        square = ratio * (1.0 - a)
-        linear = 1.0 + ratio * a - (w + 1.0 + ratio) * (1.0 - a)
-        constant = -(w + 1.0 + ratio) * a
-        root = np.sqrt(np.maximum(linear**2 - 4.0 * square * constant, 0.0))
-        y = np.where(linear > 0.0, -2.0 * constant / (linear + root), (root - linear) / (2.0 * square))
+        partial = np.clip(w, -1.0 - ratio, 0.0)
+        linear = a + ratio - partial * (1.0 - a)
+        root = np.sqrt(np.maximum(linear**2 + 4.0 * ratio * (1.0 - a) * partial, 0.0))
+        fall = -2.0 * partial / (linear + root)
         full = w > 0.0
-        y = np.where(full, 1.0, y)
-        below = y + a * (1.0 - y)
-        steep = np.where(full, 0.0, a / below**2)  # dtheta/dy
-        y_slope = np.where(full, 1.0 / ratio, 1.0 / (steep + ratio))
+        steep = np.where(full, 0.0, a / (1.0 - fall * (1.0 - a)) ** 2)  # dtheta / d(p / p_cav)
+        rise_slope = 1.0 / (steep + ratio)
+        fall = fall - np.minimum(w - partial, 0.0) * rise_slope
         zero = np.zeros_like(w)
         return CellState(
-            pressure=np.where(full, scales.cavitation + w * scales.reference, y * cavity - scales.ambient),
-            fraction=y / below,
+            pressure=scales.cavitation + np.where(full, w * scales.reference, -fall * cavity),
+            fraction=np.where(full, 1.0, 1.0 + w + fall * ratio),
             source=zero,
-            pressure_slope=cavity * y_slope,
-            fraction_slope=steep * y_slope,
+            pressure_slope=cavity * rise_slope,
+            fraction_slope=steep * rise_slope,
             source_slope=zero,
         )

@@ -1,8 +1,4 @@
-"""The penalty model (3.31), (3.32): a source that grows exponentially where the pressure falls below p_cav = p_0.
-
-The unknown is w = P / reference - q / reference: the inverse is found per cell, so that neither the flat nor the steep part of
-the exponential disturbs.
-"""
+"""The penalty model (3.31), (3.32): a source that grows exponentially where the pressure falls below p_cav."""
 
 from __future__ import annotations
 
@@ -13,7 +9,6 @@ import numpy as np
 from frbcli.film.cavitation.law import Array, CellState, Scales
 
 PREFACTOR = 0.01  # a of (3.31)
-SWEEPS = 60
 
 
 @dataclass(frozen=True)
@@ -27,28 +22,25 @@ class Penalty:
     prefactor: float
     steepness: float
     conserves = False
+    clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:
-        # x = P - P_cav solves x - q(x) = w reference; increasing and concave: Newton from the left does not overshoot.
+        """x = P - P_cav solves x - q(x) = w reference, in closed form by Wright's omega function of steepness q."""
+        from scipy.special import wrightomega
+
+        b = self.steepness
         target = w * scales.reference
-        x = np.where(target > 0.0, target, -np.log(np.maximum(-target, self.prefactor) / self.prefactor) / self.steepness)
-        x = np.minimum(x, np.maximum(target, 0.0))
-        for _ in range(SWEEPS):
-            q = self.prefactor * np.exp(-self.steepness * x)
-            step = (x - q - target) / (1.0 + self.steepness * q)
-            x = x - step
-            if np.max(np.abs(step)) <= 1e-14 * scales.reference:
-                break
-        q = self.prefactor * np.exp(-self.steepness * x)
-        slope = scales.reference / (1.0 + self.steepness * q)
-        zero = np.zeros_like(w)
+        omega = wrightomega(np.log(self.prefactor * b) - b * target)
+        # Where the source is large, target + q would be a small difference of large numbers.
+        logarithm = -np.log(np.maximum(omega, 1.0) / (self.prefactor * b)) / b
+        above = np.where(omega > 1.0, logarithm, target + omega / b)
         return CellState(
-            pressure=scales.cavitation + x,
+            pressure=scales.cavitation + above,
             fraction=np.ones_like(w),
-            source=q,
-            pressure_slope=slope,
-            fraction_slope=zero,
-            source_slope=-self.steepness * q * slope,
+            source=omega / b,
+            pressure_slope=scales.reference / (1.0 + omega),
+            fraction_slope=np.zeros_like(w),
+            source_slope=-scales.reference * omega / (1.0 + omega),
         )
 
 

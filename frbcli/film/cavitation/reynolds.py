@@ -17,6 +17,7 @@ class Reynolds:
     """No parameters."""
 
     conserves = False
+    clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         full = w > 0.0

@@ -11,8 +11,9 @@ from frbcli.film.cavitation.law import Array, CellState, Scales
 
 @dataclass(frozen=True)
 class Sommerfeld:
-    """No parameters."""
+    """clips: half-Sommerfeld, the loads take no pressure below p_cav."""
 
+    clips: bool = False
     conserves = True
 
     def cells(self, w: Array, scales: Scales) -> CellState:

@@ -8,72 +8,78 @@ import numpy as np
 
 from frbcli.film.cavitation.law import Array, CellState, Scales
 
-# The slope theta'_0 outside of the step: as published 1e-3, a bulk modulus of 1000 p_cav. With w as the unknown none is needed.
+# theta'_0, the slope outside of the step. As published it makes the full film as compressible as a bulk modulus of
+# 1000 p_cav does; the unknown w needs none, so it may be chosen as small as one likes.
 PUBLISHED_SLOPE = 1e-3
-SMALLEST_SLOPE = 1e-9
-SWEEPS = 80
+POLISHING = 2  # Newton steps after the closed form, whose round-off is large near the ends of the step
 
 
 @dataclass(frozen=True)
 class TwoPhase:
-    """steepness: x_1 of (4.35), the place of the steepest slope over p_cav; outer_slope: theta'_0."""
+    """steepness: x_1 of (4.35), the place of the steepest slope over p_cav; outer_slope: theta'_0, at least 0."""
 
     steepness: float
-    outer_slope: float = SMALLEST_SLOPE
+    outer_slope: float = PUBLISHED_SLOPE
     conserves = True
+    clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:
-        """w = theta(p) - 1 + (p - p_cav) / reference, solved for p in each cell by bracketed Newton steps."""
+        """w = theta - 1 + (p - p_cav) / reference, solved for p: linear beyond the step, a cubic on it."""
         cavity = scales.cavitation + scales.ambient
-        ratio = cavity / scales.reference
-        x_0 = 2.0 * self.steepness - 1.0
-        # y = p / p_cav. Beyond the step all is linear.
-        low = np.where(w < self._w(np.array(x_0), ratio), np.minimum(x_0, x_0 + (w + 1.0) / ratio - 1.0 / ratio), x_0)
-        y = np.where(w > 0.0, 1.0 + w / (ratio + self.outer_slope), low)
-        inside = (w <= 0.0) & (w >= self._w(np.array(x_0), ratio))
-        below = w < self._w(np.array(x_0), ratio)
-        y = np.where(below, x_0 + (w - self._w(np.array(x_0), ratio)) / (ratio + self.outer_slope), y)
-        if np.any(inside):
-            y = y.copy()
-            y[inside] = self._step_inverse(w[inside], ratio)
-        fraction, slope = self.fraction(y)
-        y_slope = 1.0 / (slope + ratio)
-        zero = np.zeros_like(w)
+        ratio, x_0 = cavity / scales.reference, self._start
+        bottom = self.outer_slope * x_0 - 1.0 + (x_0 - 1.0) * ratio  # w where the step begins
+        above, below = w > 0.0, w < bottom
+        place = self._place(np.clip(w, bottom, 0.0), bottom, ratio)
+        beyond = (w - np.where(above, 0.0, bottom)) / (ratio + self.outer_slope)
+        depth = (x_0 - 1.0) * np.where(below, 1.0, 1.0 - place)
+        rise = np.where(above, beyond, depth + np.where(below, beyond, 0.0))  # p / p_cav - 1
+        slope = np.where(above | below, self.outer_slope, self._slope(place))
+        rise_slope = 1.0 / (slope + ratio)
         return CellState(
-            pressure=y * cavity - scales.ambient,
-            fraction=fraction,
-            source=zero,
-            pressure_slope=cavity * y_slope,
-            fraction_slope=slope * y_slope,
-            source_slope=zero,
+            pressure=scales.cavitation + rise * cavity,
+            fraction=1.0 + w - rise * ratio,  # not from the pressure: the step would multiply its round-off
+            source=np.zeros_like(w),
+            pressure_slope=cavity * rise_slope,
+            fraction_slope=slope * rise_slope,
+            source_slope=np.zeros_like(w),
         )
 
     def fraction(self, y: Array) -> tuple[Array, Array]:
-        """theta and its slope at y = p / p_cav, (4.32) and (4.33)."""
-        x_0, s = 2.0 * self.steepness - 1.0, self.outer_slope
-        scaled = np.clip((y - x_0) / (1.0 - x_0), 0.0, 1.0)
-        m = s * (1.0 - x_0) / (1.0 - x_0 * s)
-        height = 1.0 - s * x_0
-        theta = height * ((1.0 - m) * scaled**2 * (3.0 - 2.0 * scaled) + m * scaled) + s * x_0
-        slope = height / (1.0 - x_0) * ((1.0 - m) * 6.0 * scaled * (1.0 - scaled) + m)
+        """theta and its slope at y = p / p_cav (n,), (4.32) and (4.33)."""
+        x_0, s = self._start, self.outer_slope
+        place = np.clip((y - x_0) / (1.0 - x_0), 0.0, 1.0)
+        height, m = self._height_and_slope
+        theta = height * ((1.0 - m) * place**2 * (3.0 - 2.0 * place) + m * place) + s * x_0
         theta = np.where(y > 1.0, 1.0 + s * (y - 1.0), np.where(y < x_0, s * y, theta))
-        return theta, np.where((y > 1.0) | (y < x_0), s, slope)
+        return theta, np.where((y > 1.0) | (y < x_0), s, self._slope(place))
 
-    def _w(self, y: Array, ratio: float) -> Array:
-        return self.fraction(y)[0] - 1.0 + (y - 1.0) * ratio
+    @property
+    def _start(self) -> float:
+        """x_0, where the step begins."""
+        return 2.0 * self.steepness - 1.0
 
-    def _step_inverse(self, w: Array, ratio: float) -> Array:
-        """y in [x_0, 1] with _w(y) = w; _w increases there."""
-        low = np.full_like(w, 2.0 * self.steepness - 1.0)
-        high = np.ones_like(w)
-        y = 0.5 * (low + high)
-        for _ in range(SWEEPS):
-            theta, slope = self.fraction(y)
-            defect = theta - 1.0 + (y - 1.0) * ratio - w
-            low, high = np.where(defect <= 0.0, y, low), np.where(defect >= 0.0, y, high)
-            newton = y - defect / (slope + ratio)
-            following = np.where((newton > low) & (newton < high), newton, 0.5 * (low + high))
-            if np.max(np.abs(following - y)) < 1e-15:
-                break
-            y = following
-        return y
+    @property
+    def _height_and_slope(self) -> tuple[float, float]:
+        """Height of the step and m of (4.34)."""
+        x_0, s = self._start, self.outer_slope
+        return 1.0 - s * x_0, s * (1.0 - x_0) / (1.0 - x_0 * s)
+
+    def _slope(self, place: Array) -> Array:
+        height, m = self._height_and_slope
+        slope: Array = height / (1.0 - self._start) * ((1.0 - m) * 6.0 * place * (1.0 - place) + m)
+        return slope
+
+    def _place(self, w: Array, bottom: float, ratio: float) -> Array:
+        """p~ in [0, 1] of (4.34) with this w: the middle root of A p~^2 (3 - 2 p~) + B p~ = w - bottom."""
+        height, m = self._height_and_slope
+        cubic, linear = height * (1.0 - m), height * m + (1.0 - self._start) * ratio
+        # With u = p~ - 1/2 it reads u^3 - p u = q, whose middle root is a sine.
+        p = (1.5 * cubic + linear) / (2.0 * cubic)
+        q = (0.5 * (cubic + linear) - (w - bottom)) / (2.0 * cubic)
+        radius = np.sqrt(p / 3.0)
+        place = 0.5 - 2.0 * radius * np.sin(np.arcsin(np.clip(q / (2.0 * radius**3), -1.0, 1.0)) / 3.0)
+        for _ in range(POLISHING):
+            place = np.clip(place, 0.0, 1.0)
+            defect = cubic * place**2 * (3.0 - 2.0 * place) + linear * place - (w - bottom)
+            place = place - defect / (6.0 * cubic * place * (1.0 - place) + linear)
+        return np.clip(place, 0.0, 1.0)

@@ -1,0 +1,36 @@
+"""What leaves a section at its ends z = 0 and z = 1 (sections 3.2.1 and 4.2.1.2)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from frbcli.film.gap import Edge
+from frbcli.film.grid import Array
+
+PREFACTOR, STEEPNESS = 0.01, 100.0  # a in 1/s and b of (4.37)
+
+
+def end_outflow(
+    kind: Edge, pressure: Array, conductance: Array, length: Array, groove: float, ambient: float
+) -> tuple[Array, Array]:
+    """Outflow of the last cells (n,) through an end and its derivative by their pressure.
+
+    pressure: of the cells; conductance: from their middle to the end; length: of their share of the end, each (n,);
+    groove: pressure in a groove at this end; ambient: absolute ambient pressure. Pressures are scaled (1/s), all but the
+    last over the ambient pressure.
+    """
+    if kind == "symmetry":
+        return np.zeros_like(pressure), np.zeros_like(pressure)
+    if kind == "oil-bath":
+        return conductance * pressure, conductance
+    if kind == "groove":
+        return conductance * (pressure - groove), conductance
+    return _free_to_air(pressure, conductance, length, STEEPNESS / ambient)
+
+
+def _free_to_air(pressure: Array, conductance: Array, length: Array, steepness: float) -> tuple[Array, Array]:
+    """conductance (p - p_edge) = a exp(b p_edge) length, (4.36) and (4.37), solved by Wright's omega function."""
+    from scipy.special import wrightomega
+
+    omega = wrightomega(np.log(PREFACTOR * steepness * length / conductance) + steepness * pressure)
+    return conductance / steepness * omega, conductance * omega / (1.0 + omega)
