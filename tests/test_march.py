@@ -19,7 +19,9 @@ from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor, planar
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.scene.system import System
-from frbcli.solve.march import (
+from frbcli.solve.march import advance
+from frbcli.solve.start import rotor_data, state_at
+from frbcli.solve.state import (
     CONTACT,
     FINISHED,
     LARGEST_EPS,
@@ -30,9 +32,7 @@ from frbcli.solve.march import (
     TIME,
     Control,
     State,
-    advance,
 )
-from frbcli.solve.start import rotor_data, state_at
 from frbcli.solve.tableau import METHODS, Method, Tableau
 
 Array = NDArray[np.float64]

@@ -154,8 +154,8 @@ def _whirl(motion: Motion, turns: Revolutions, film: str | None, ends_in_contact
         lasts = last == len(amplitude)
         if last - max(first, settled) < sustained and not (lasts and ends_in_contact):
             continue
-        if first > max(settled, 0):
-            yield _whirl_event("onset", motion, turns, first + middle, film)
+        # A stretch that the start of the run leads into began with the run.
+        yield _whirl_event("onset", motion, turns, first + middle, film)
         if not lasts:
             yield _whirl_event("offset", motion, turns, last + middle, film)
 
@@ -207,9 +207,11 @@ def _critical_speed(run: RunLike, turns: Revolutions, films: list[str], before_s
         if len(motion) <= 2 * middle:
             continue
         amplitude = order_amplitude(motion, 1.0, CRITICAL_REVOLUTIONS)
+        whirling = order_amplitude(motion, SUBSYNCHRONOUS, CRITICAL_REVOLUTIONS) > amplitude
         background = float(np.median(order_amplitude(motion, ORDER_WITHOUT_MOTION, CRITICAL_REVOLUTIONS)))
         peaks, found = find_peaks(amplitude, prominence=max(floor, CRITICAL_OVER_BACKGROUND * background))
-        clear = found["prominences"] >= CRITICAL_PROMINENCE * amplitude[peaks]
+        # Whirl that is about to break out spills over into all orders.
+        clear = (found["prominences"] >= CRITICAL_PROMINENCE * amplitude[peaks]) & ~whirling[peaks]
         for peak, prominence in zip(peaks[clear], found["prominences"][clear], strict=True):
             if best is None or prominence > best[0]:
                 best = (float(prominence), settled + int(peak))

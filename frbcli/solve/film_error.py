@@ -9,7 +9,7 @@ from frbcli.film.direct import direct_force
 from frbcli.film.table import LARGEST_ECCENTRICITY, Mesh
 from frbcli.scene.plan import Plan
 from frbcli.scene.system import System
-from frbcli.solve.march import Array
+from frbcli.solve.state import Array
 
 SAMPLES = 48  # states of a run
 FINER = 2  # elements more in each direction

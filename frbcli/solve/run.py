@@ -20,7 +20,9 @@ from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_down_profile, run_up_profile
 from frbcli.solve.film_error import SAMPLES, film_force_error
 from frbcli.solve.interrupt import held_back
-from frbcli.solve.march import (
+from frbcli.solve.march import advance
+from frbcli.solve.start import first_state, rotor_data
+from frbcli.solve.state import (
     CONTACT,
     ERROR_LARGEST,
     FINISHED,
@@ -34,9 +36,7 @@ from frbcli.solve.march import (
     Array,
     Control,
     State,
-    advance,
 )
-from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.tableau import METHODS
 
 BUFFER = 4096  # output samples between two looks at the clock, at least

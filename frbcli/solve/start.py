@@ -8,8 +8,8 @@ from frbcli.case.schema import Start
 from frbcli.film.bearing import evaluate
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.system import System
-from frbcli.solve.march import HISTORY, NUMBERS, STEP, Array, RotorData, State
 from frbcli.solve.resting import held_rotor, resting_position
+from frbcli.solve.state import HISTORY, NUMBERS, STEP, Array, RotorData, State
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
 

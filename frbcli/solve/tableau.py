@@ -21,6 +21,7 @@ class Tableau(NamedTuple):
     times: Array
     defect: Array
     order: int
+    error_order: int
 
 
 @dataclass(frozen=True)
@@ -33,12 +34,16 @@ class Method:
     tableau: Tableau
 
 
-def _tableau(rows: list[list[float]], embedded: list[float], order: int) -> Tableau:
+def _method(
+    name: str, source: str, rows: list[list[float]], embedded: list[float], order: int, embedded_order: int
+) -> Method:
     s = len(rows)
     stage = np.zeros((s, s))
     for i, row in enumerate(rows):
         stage[i, : len(row)] = row
-    return Tableau(stage, stage.sum(axis=1), stage[-1] - np.array(embedded), order)
+    defect = stage[-1] - np.array(embedded)
+    tableau = Tableau(stage, stage.sum(axis=1), defect, order, min(order, embedded_order) + 1)
+    return Method(name, source, embedded_order, tableau)
 
 
 def _trbdf2() -> Method:
@@ -46,7 +51,7 @@ def _trbdf2() -> Method:
     w = np.sqrt(2.0) / 4.0
     rows = [[0.0], [gamma, gamma], [w, w, gamma]]
     embedded = [(1.0 - w) / 3.0, (3.0 * w + 1.0) / 3.0, gamma / 3.0]
-    return Method("trbdf2", "Bank et al. 1985; Hosea and Shampine 1996", 3, _tableau(rows, embedded, 2))
+    return _method("trbdf2", "Bank et al. 1985; Hosea and Shampine 1996", rows, embedded, 2, 3)
 
 
 def _esdirk3() -> Method:
@@ -59,7 +64,7 @@ def _esdirk3() -> Method:
     ]
     embedded = [2756255671327 / 12835298489170, -10771552573575 / 22201958757719, 9247589265047 / 10645013368117,
                 2193209047091 / 5459859503100]
-    return Method("esdirk3", "Kennedy and Carpenter 2003, ARK3(2)4L[2]SA", 2, _tableau(rows, embedded, 3))
+    return _method("esdirk3", "Kennedy and Carpenter 2003, ARK3(2)4L[2]SA", rows, embedded, 3, 2)
 
 
 def _esdirk4() -> Method:
@@ -74,7 +79,7 @@ def _esdirk4() -> Method:
     ]
     embedded = [4586570599 / 29645900160, 0.0, 178811875 / 945068544, 814220225 / 1159782912, -3700637 / 11593932,
                 61727 / 225920]
-    return Method("esdirk4", "Kennedy and Carpenter 2003, ARK4(3)6L[2]SA", 3, _tableau(rows, embedded, 4))
+    return _method("esdirk4", "Kennedy and Carpenter 2003, ARK4(3)6L[2]SA", rows, embedded, 4, 3)
 
 
 METHODS: dict[str, Method] = {method.name: method for method in (_trbdf2(), _esdirk3(), _esdirk4())}

@@ -1,0 +1,250 @@
+"""One implicit stage of the time loop. Compiled.
+
+The rotor is linear. One inverse E = (M + g D + g^2 K)^-1 with g = gamma h turns each implicit stage into an equation
+for the velocities u of the journals alone,
+
+    u = u_0 + S F(x(u), u),      x = x_0 + g u,      S = g P E P^T,
+
+which Newton's method solves with the films' analytic derivatives: 2 x 2 for one bearing, however large the rotor is.
+The products of E with D, K, G and the loads are made when the step changes, not in every stage.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from frbcli.film.kernel import film_force
+from frbcli.solve.dense import solve_dense
+
+CLOSEST = 0.5  # share of the remaining gap that one Newton correction may close
+
+# Rows of the scratch arrays: of a stage at the rotor's n degrees of freedom, and at the journals' m = 2 films.
+# FREE is the acceleration without the films' forces; LATE the same with the gyroscopic term at the stage's own speed.
+V, Q, FREE, LATE, STAGE_ROWS = range(5)
+# u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y.
+U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, JOURNAL_ROWS = range(8)
+# Products of the inverse E with the matrices and the loads.
+E_DAMPING, E_STIFFNESS, E_GYROSCOPIC = range(3)
+E_STATIC, E_COS, E_SIN = range(3)
+
+
+@njit(cache=True, error_model="numpy")
+def norm(x, y):  # type: ignore[no-untyped-def]
+    return math.sqrt(x * x + y * y)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _bearing(film, d_x, d_y, v_x, v_y, speed, clearance, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+    """film_force plus, beyond the contact eccentricity, the elastic contact of the case."""
+    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_force(film, d_x, d_y, v_x, v_y, speed)
+    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
+    if contact_stiffness > 0.0 and eccentricity > contact_at:
+        k = contact_stiffness * clearance
+        along = k * (1.0 - contact_at / eccentricity)
+        n_x, n_y = d_x / eccentricity, d_y / eccentricity
+        f_x -= along * d_x
+        f_y -= along * d_y
+        k_xx -= along + (k - along) * n_x * n_x
+        k_xy -= (k - along) * n_x * n_y
+        k_yx -= (k - along) * n_x * n_y
+        k_yy -= along + (k - along) * n_y * n_y
+    return f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
+    """CORRECTION <- matrix^-1 CORRECTION for the few journals' equations; closed form for one bearing."""
+    if matrix.shape[0] == 2:
+        det = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
+        x, y = film[CORRECTION, 0], film[CORRECTION, 1]
+        film[CORRECTION, 0] = (matrix[1, 1] * x - matrix[0, 1] * y) / det
+        film[CORRECTION, 1] = (matrix[0, 0] * y - matrix[1, 0] * x) / det
+    else:
+        right = film[CORRECTION : CORRECTION + 1].reshape(-1, 1)  # a view: solved in place
+        solve_dense(matrix, right)
+
+
+@njit(cache=True, error_model="numpy")
+def _reach(d_x, d_y, c_x, c_y, limit):  # type: ignore[no-untyped-def]
+    """Largest factor <= 1 by which the correction c may be applied: the gap to `limit` keeps a share of itself."""
+    here = norm(d_x, d_y)
+    there = norm(d_x + c_x, d_y + c_y)
+    allowed = here + CLOSEST * (limit - here)
+    factor = 1.0
+    while there > allowed and factor > 1e-6:
+        factor *= 0.5
+        there = norm(d_x + factor * c_x, d_y + factor * c_y)
+    return factor
+
+
+@njit(cache=True, error_model="numpy")
+def prepare(rotor, pick, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
+    """Make the inverse E for this g and speed and keep its products, see advance for their shapes."""
+    n, m = rotor.mass.shape[0], pick.shape[0]
+    # One elimination for all right-hand sides: the three matrices, the three loads, the journals.
+    dynamic, right = np.empty((n, n)), np.empty((n, 3 * n + 3 + m))
+    for i in range(n):
+        for j in range(n):
+            dynamic[i, j] = rotor.mass[i, j] + g * (
+                rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j])
+            right[i, j] = rotor.damping[i, j]
+            right[i, n + j] = rotor.stiffness[i, j]
+            right[i, 2 * n + j] = rotor.gyroscopic[i, j]
+        right[i, 3 * n] = rotor.static_load[i]
+        right[i, 3 * n + 1] = rotor.unbalance_cos[i]
+        right[i, 3 * n + 2] = rotor.unbalance_sin[i]
+        for k in range(m):
+            right[i, 3 * n + 3 + k] = pick[k, i] * rotor.multiplicity[k // 2]
+    solve_dense(dynamic, right)
+    for i in range(n):
+        for j in range(n):
+            products[E_DAMPING, i, j] = right[i, j]
+            products[E_STIFFNESS, i, j] = right[i, n + j]
+            products[E_GYROSCOPIC, i, j] = right[i, 2 * n + j]
+        for k in range(3):
+            loads[k, i] = right[i, 3 * n + k]
+        for k in range(m):
+            spread[i, k] = right[i, 3 * n + 3 + k]
+    for k in range(m):
+        for j in range(m):
+            total = 0.0
+            for i in range(n):
+                total += pick[k, i] * spread[i, j]
+            compliance[k, j] = g * total
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def start_stage(  # type: ignore[no-untyped-def]
+    weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle, gyroscopic, at, film
+):
+    """Fill V, Q, FREE of `at` and U_0, X_0 of `film`: what stage s knows before its films do. weights: (s,) its row."""
+    n = q.shape[0]
+    for i in range(n):
+        sum_v, sum_a = 0.0, 0.0
+        for j in range(s):
+            sum_v += weights[s, j] * stage_v[i, j]
+            sum_a += weights[s, j] * stage_a[i, j]
+        at[V, i] = v[i] + step * sum_a
+        at[Q, i] = q[i] + step * sum_v
+    # The unbalance (2.3): along the angle with alpha'', outwards with alpha'^2
+    sine, cosine = math.sin(angle), math.cos(angle)
+    along = acceleration * cosine - speed * speed * sine
+    across = acceleration * sine + speed * speed * cosine
+    for i in range(n):
+        total = loads[E_STATIC, i] + along * loads[E_COS, i] + across * loads[E_SIN, i]
+        for j in range(n):
+            total -= products[E_DAMPING, i, j] * at[V, j] + products[E_STIFFNESS, i, j] * (at[Q, j] + g * at[V, j])
+        if gyroscopic:
+            for j in range(n):
+                total -= speed * products[E_GYROSCOPIC, i, j] * at[V, j]
+        at[FREE, i] = total
+    for k in range(pick.shape[0]):
+        place, rate = 0.0, 0.0
+        for i in range(n):
+            place += pick[k, i] * at[Q, i]
+            rate += pick[k, i] * (at[V, i] + g * at[FREE, i])
+        film[X_0, k], film[U_0, k] = place, rate
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def guess(past, pick, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
+    """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
+
+    past: (HISTORY, 1 + m) times and velocities of the last stages; the parabola through them is continued.
+    """
+    a, b, c = past[0, 0], past[1, 0], past[2, 0]
+    weight_a = (t - b) * (t - c) / ((a - b) * (a - c))
+    weight_b = (t - a) * (t - c) / ((b - a) * (b - c))
+    weight_c = (t - a) * (t - b) / ((c - a) * (c - b))
+    for i in range(pick.shape[0]):
+        film[U, i] = weight_a * past[0, 1 + i] + weight_b * past[1, 1 + i] + weight_c * past[2, 1 + i]
+    for f in range(clearances.shape[0]):
+        x, y = 2 * f, 2 * f + 1
+        if norm(film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]) > 0.999 * limit * clearances[f]:
+            here_x, here_y = 0.0, 0.0
+            for i in range(q.shape[0]):
+                here_x += pick[x, i] * q[i]
+                here_y += pick[y, i] * q[i]
+            film[U, x], film[U, y] = (here_x - film[X_0, x]) / g, (here_y - film[X_0, y]) / g
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def forces(films, clearances, contact_at, contact_stiffness, g, speed, film):  # type: ignore[no-untyped-def]
+    """Fill FORCE, BY_X, BY_Y at the velocities U."""
+    for f in range(clearances.shape[0]):
+        x, y, c = 2 * f, 2 * f + 1, clearances[f]
+        f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _bearing(
+            films[f], (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c,
+            film[U, x] / c, film[U, y] / c, speed, c, contact_at, contact_stiffness)
+        film[FORCE, x], film[FORCE, y] = f_x, f_y
+        film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
+        film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def correct(compliance, clearances, g, speed, limit, film, newton):  # type: ignore[no-untyped-def]
+    """One correction of U by Newton's method. Returns (share of it that was applied, what may be left of the error).
+
+    What may be left is infinite for a correction that is not finite.
+    """
+    m = compliance.shape[0]
+    for i in range(m):
+        total = film[U_0, i] - film[U, i]
+        for j in range(m):
+            total += compliance[i, j] * film[FORCE, j]
+            x = j - j % 2
+            slope = BY_X + j % 2
+            newton[i, j] = -(compliance[i, x] * film[slope, x] + compliance[i, x + 1] * film[slope, x + 1])
+        newton[i, i] += 1.0
+        film[CORRECTION, i] = total
+    _solve_small(newton, film)
+    share, moved, left = 1.0, 0.0, 0.0
+    for f in range(clearances.shape[0]):
+        x, y, c = 2 * f, 2 * f + 1, clearances[f]
+        at_x, at_y = (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c
+        c_x, c_y = g * film[CORRECTION, x] / c, g * film[CORRECTION, y] / c
+        move = norm(c_x, c_y)
+        if not math.isfinite(move):
+            return 0.0, math.inf
+        moved = max(moved, move)
+        share = min(share, _reach(at_x, at_y, c_x, c_y, limit))
+        # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
+        # |w|, over the size of w.
+        film_speed = norm(film[U, x] / c + 0.5 * speed * at_y, film[U, y] / c - 0.5 * speed * at_x)
+        left = max(left, move * move * (1.0 / (limit - norm(at_x, at_y)) + 1.0 / (g * film_speed + 1e-30)))
+    for i in range(m):
+        film[U, i] += share * film[CORRECTION, i]
+    for i in range(m):  # the forces at the corrected velocities, to first order: what Newton's equations have used
+        x = i - i % 2
+        film[FORCE, i] += share * (film[BY_X, i] * film[CORRECTION, x] + film[BY_Y, i] * film[CORRECTION, x + 1])
+    return share, min(left, moved)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a):  # type: ignore[no-untyped-def]
+    """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
+
+    lag: g times the difference between the stage's speed and that of the inverse, for the rest of the gyroscopic term.
+    """
+    n, m = at.shape[1], pick.shape[0]
+    row = FREE if lag == 0.0 else LATE
+    for i in range(n):
+        total = at[row, i]
+        for j in range(m):
+            total += spread[i, j] * film[FORCE, j]
+        stage_a[i, s] = total
+        stage_v[i, s] = at[V, i] + g * total
+    if lag != 0.0:
+        for i in range(n):
+            total = at[FREE, i]
+            for j in range(n):
+                total -= lag * products[E_GYROSCOPIC, i, j] * stage_a[j, s]
+            at[LATE, i] = total
+        for k in range(m):
+            rate = 0.0
+            for i in range(n):
+                rate += pick[k, i] * (at[V, i] + g * at[LATE, i])
+            film[U_0, k] = rate
