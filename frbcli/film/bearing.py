@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.film.chain import chain_grid, chain_table
 from frbcli.film.fields import field_grid, field_table
+from frbcli.film.gap import AxialGroove, groove_pressure
 from frbcli.film.grid import Array
-from frbcli.film.kernel import FIELDS, SHORT, SHORT_GENERAL, TABLE, FilmData, film_force
+from frbcli.film.kernel import CHAIN, FIELDS, SHORT, SHORT_GENERAL, TABLE, FilmData, film_force
 from frbcli.film.table import Mesh, force_table
 
 EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
@@ -19,7 +21,8 @@ class RectangularBearing:
     """A bearing whose developed gap consists of `sections` equal rectangles side by side, SI units.
 
     sections: 1 for a plain bearing, 2 for one with a central circumferential groove (figure 4.1); supply_pressure: in
-    the groove, None without one. Pressures are absolute.
+    the groove, None without one. Pressures are absolute. grooves: axial grooves of a plain bearing, which part its
+    rectangle.
     """
 
     width: float
@@ -30,6 +33,7 @@ class RectangularBearing:
     ambient_pressure: float
     cavitation_pressure: float
     supply_pressure: float | None
+    grooves: tuple[AxialGroove, ...] = ()
 
     @property
     def section_width(self) -> float:
@@ -54,6 +58,8 @@ def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: M
     supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
     sigma = (supply - bearing.ambient_pressure) / bearing.pressure_scale
     level = (bearing.cavitation_pressure - bearing.ambient_pressure) / bearing.pressure_scale
+    if bearing.grooves:
+        return _grooved_film(bearing, clipped, level, mesh)
     limit = EQUAL_PRESSURES * bearing.ambient_pressure / bearing.pressure_scale
     # Without cavitation the hydrostatic pressure carries nothing: it is the same all around.
     equal = not clipped or (abs(sigma) <= limit and abs(level) <= limit)
@@ -66,6 +72,29 @@ def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: M
     else:
         kind, table, grid = FIELDS, field_table(mesh, radius_to_width), field_grid(mesh)
     return FilmData(kind, int(clipped), bearing.force_scale, radius_to_width**-2, sigma, level, table, grid)
+
+
+def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh: Mesh) -> FilmData:
+    """The film between axial grooves, finite length; all grooves have the same pressure."""
+    scale, pressure = bearing.pressure_scale, bearing.grooves[0]
+
+    def profile(z: Array) -> Array:
+        distance = np.minimum(z, 1.0 - z) * bearing.width
+        return groove_pressure(pressure, distance, bearing.width) / scale
+
+    grooves = sorted(bearing.grooves, key=lambda groove: groove.position)
+    ends = np.array([groove.position + 0.5 * groove.opening for groove in grooves])
+    starts = np.array([groove.position - 0.5 * groove.opening for groove in grooves])
+    edges = np.column_stack([ends, np.append(starts[1:], starts[0] + 2 * np.pi)])
+    grid = chain_grid(edges, mesh.circumferential)
+    # Over the grooves their own pressure acts; where the films are clipped, the level itself over the rest of the turn.
+    mean = float(np.mean(profile((np.arange(1000) + 0.5) / 1000.0)))
+    across = np.array([np.sum(np.cos(starts) - np.cos(ends)), np.sum(np.sin(starts) - np.sin(ends))])
+    constant = (mean - (level if clipped else 0.0)) * across
+    radius_to_width = 0.5 * bearing.diameter / bearing.width
+    table = chain_table(mesh.axial, radius_to_width, profile, constant)
+    clip_level = level if clipped else 0.0
+    return FilmData(CHAIN, int(clipped), bearing.force_scale, radius_to_width**-2, 0.0, clip_level, table, grid)
 
 
 @dataclass(frozen=True)

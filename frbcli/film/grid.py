@@ -27,6 +27,12 @@ class AxialModes:
     loads: Array
     shapes: Array
     nodes: Array
+    mass: Array
+
+    def project(self, values: Array) -> Array:
+        """(k,) coefficients of a pressure given at the nodes (n,): the modes are orthonormal in M_z."""
+        coefficients: Array = self.shapes @ (self.mass @ values)
+        return coefficients
 
     def at(self, z: Array) -> Array:
         """(k, m) values of the modes at the axial positions z (m,), by the elements' own shape functions."""
@@ -87,4 +93,4 @@ def axial_modes(vertices: Array) -> AxialModes:
     shapes[:, inner] = vectors.T
     loads = shapes @ m_z.sum(axis=1)
     excited = np.abs(loads) > 1e-10 * np.abs(loads).max()
-    return AxialModes(eigenvalues[excited], loads[excited], shapes[excited], nodes)
+    return AxialModes(eigenvalues[excited], loads[excited], shapes[excited], nodes, m_z)

@@ -10,22 +10,23 @@ from typing import NamedTuple
 
 from numba import njit
 
+from frbcli.film.chain import chain_force
 from frbcli.film.fields import fields_force
 from frbcli.film.grid import Array
 from frbcli.film.short import short_closed, short_general
 from frbcli.film.table import LARGEST_ECCENTRICITY, table_force
 
-SHORT, SHORT_GENERAL, TABLE, FIELDS = range(4)
+SHORT, SHORT_GENERAL, TABLE, FIELDS, CHAIN = range(5)
 NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
 
 
 class FilmData(NamedTuple):
     """One film, ready to be evaluated. Arrays that a kind does not use are empty.
 
-    kind: SHORT | SHORT_GENERAL | TABLE | FIELDS; clipped: half-Sommerfeld (1) or Sommerfeld (0);
+    kind: SHORT | SHORT_GENERAL | TABLE | FIELDS | CHAIN; clipped: half-Sommerfeld (1) or Sommerfeld (0);
     force_scale: N s, turns the integral of P over one section into the force of the whole bearing;
     slenderness: (b/R)^2; sigma, level: scaled gauge pressures of supply and cavity, 1/s;
-    table: of force_table (TABLE) or of field_table (FIELDS); grid: of field_grid (FIELDS).
+    table: of force_table (TABLE), field_table (FIELDS) or chain_table (CHAIN); grid: of field_grid or chain_grid.
     """
 
     kind: int
@@ -49,6 +50,8 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     """
     # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
     w_x, w_y = v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x
+    if film.kind == CHAIN:
+        return _standing(film, d_x, d_y, w_x, w_y, omega)
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     c, s = (d_x / eccentricity, d_y / eccentricity) if eccentricity > NEAR_CENTRE else (1.0, 0.0)
     beyond = eccentricity > LARGEST_ECCENTRICITY
@@ -75,19 +78,35 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     t_t = (f_r + w_tr * w_t - w_tt * w_r) / eccentricity
     d_xx, d_xy, d_yx, d_yy = _turned(w_rr, w_rt, w_tr, w_tt, c, s)
     k_xx, k_xy, k_yx, k_yy = _turned(e_r, t_r, e_t, t_t, c, s)
-    scale, half = film.force_scale, 0.5 * omega
-    return (  # dw/dd = -(omega/2) J
-        scale * (c * f_r - s * f_t),
-        scale * (s * f_r + c * f_t),
-        scale * (k_xx - half * d_xy),
-        scale * (k_xy + half * d_xx),
-        scale * (k_yx - half * d_yy),
-        scale * (k_yy + half * d_yx),
-        scale * d_xx,
-        scale * d_xy,
-        scale * d_yx,
-        scale * d_yy,
+    return _with_rotation(
+        film.force_scale, omega, c * f_r - s * f_t, s * f_r + c * f_t, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
     )
+
+
+@njit(cache=True, error_model="numpy")
+def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+    """film_force of a film whose grooves stand still: solved in the frame of the shell."""
+    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
+    if eccentricity > LARGEST_ECCENTRICITY:  # in contact: the film stays as it is just before
+        d_x, d_y = d_x * LARGEST_ECCENTRICITY / eccentricity, d_y * LARGEST_ECCENTRICITY / eccentricity
+    f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy = chain_force(
+        film.table, film.grid, d_x, d_y, w_x, w_y, film.level, film.clipped == 1
+    )
+    return _with_rotation(film.force_scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy)
+
+
+@njit(cache=True, error_model="numpy")
+def _with_rotation(  # type: ignore[no-untyped-def]
+    scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
+):
+    """The ten numbers of film_force from derivatives at fixed w: dw/dd = -(omega/2) J adds to the stiffness."""
+    half = 0.5 * omega
+    return (
+        scale * f_x, scale * f_y,
+        scale * (k_xx - half * d_xy), scale * (k_xy + half * d_xx),
+        scale * (k_yx - half * d_yy), scale * (k_yy + half * d_yx),
+        scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy,
+    )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy")

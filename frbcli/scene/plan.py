@@ -15,11 +15,10 @@ from frbcli.film.table import Mesh
 
 THEORIES = ("short", "finite")
 CAVITATIONS = ("sommerfeld", "half-sommerfeld")
-SECTIONS = {"none": 1, "circumferential-groove": 2}
+SECTIONS = {"none": 1, "circumferential-groove": 2, "axial-grooves": 1}
 
 # A target of 1e-3 is met by the default mesh with a wide margin (docs/validation.md); a factor of ten less doubles it.
 DEFAULT_MESH = Mesh(axial=6, circumferential=96)
-FIELDS_MESH = Mesh(axial=6, circumferential=80)  # where the elements are summed at every call
 FINE_MESH = Mesh(axial=10, circumferential=192)
 FINE_TARGET = 2e-4
 # Local errors of a step that keep the sum of some revolutions below the target, by method.
@@ -27,6 +26,9 @@ LOOSE_TARGET, LOOSE_SHARE, TIGHT_SHARE = 2e-3, 0.02, 0.01
 
 
 TABULATED_FIELDS = "tabulated fields, clipped at every call"
+CHAINS = "solved between the grooves at every call"
+# Where elements are summed or solved at every call, each of them costs.
+MESHES = {TABULATED_FIELDS: Mesh(axial=6, circumferential=80), CHAINS: Mesh(axial=6, circumferential=48)}
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,9 @@ def make_plan(case: Case) -> Plan:
 
     sections = SECTIONS[bearing.supply.kind]
     decide("bearings", "1 of 2", "rotor and bearings are symmetric: both journals move alike, forces count twice")
-    if sections == 2:
+    if bearing.supply.kind == "axial-grooves":
+        decide("gap", f"{bearing.supply.count} rectangles", "axial grooves part the turn; odd axial modes vanish")
+    elif sections == 2:
         decide("gap", "2 equal rectangles", "a central circumferential groove splits the width; one section is solved")
     else:
         decide("gap", "1 rectangle", "plain bearing: the pressure is symmetric about the middle, its odd modes vanish")
@@ -77,10 +81,12 @@ def make_plan(case: Case) -> Plan:
         decide("theory", theory, "set in the case")
     decide("cavitation", cavitation, "set in the case; the film has no state of its own, oil is not balanced")
     form = _film_form(case, bearing, theory)
-    decide("film", form, "rectangular gap: forces depend on the line of centres only")
+    reason = "rectangular gap: forces depend on the line of centres only"
+    if form == CHAINS:
+        reason = "the grooves stand still while the line of centres turns: nothing to tabulate"
+    decide("film", form, reason)
 
-    coarse = FIELDS_MESH if form == TABULATED_FIELDS else DEFAULT_MESH
-    mesh = coarse if case.accuracy.target > FINE_TARGET else FINE_MESH
+    mesh = MESHES.get(form, DEFAULT_MESH) if case.accuracy.target > FINE_TARGET else FINE_MESH
     reason = f"holds the target {case.accuracy.target:g} up to an eccentricity of 0.95"
     if case.accuracy.mesh is not None:
         mesh, reason = Mesh(*case.accuracy.mesh), "set in the case"
@@ -102,6 +108,8 @@ def make_plan(case: Case) -> Plan:
 
 def _film_form(case: Case, bearing: SingleFilmBearing, theory: str) -> str:
     """How the film will be evaluated, in words."""
+    if bearing.supply.kind == "axial-grooves":
+        return CHAINS
     supply = getattr(bearing.supply, "pressure", case.oil.ambient_pressure)
     equal = supply == case.oil.ambient_pressure == case.oil.cavitation_pressure
     if theory == "short":
@@ -124,6 +132,8 @@ def _refuse_what_is_not_modelled(case: Case) -> None:
             missing("bearing.kind", bearing.kind, ("single-film",))
         elif bearing.supply.kind not in SECTIONS:
             missing("bearing.supply.kind", bearing.supply.kind, tuple(SECTIONS))
+        elif bearing.supply.kind == "axial-grooves" and case.film.theory == "short":
+            missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
     if case.film.cavitation not in CAVITATIONS:
         missing("film.cavitation", case.film.cavitation, CAVITATIONS)
     if not faults and len(case.bearings) != 1:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from frbcli.case.bearing import SingleFilmBearing
+from frbcli.case.bearing import AxialGrooves, SingleFilmBearing
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
 from frbcli.film.bearing import RectangularBearing, make_film
+from frbcli.film.gap import AxialGroove
 from frbcli.film.kernel import FilmData
 from frbcli.film.table import Mesh
 from frbcli.rotor.excitation import SpeedProfile, speed_profile
@@ -80,6 +81,14 @@ def run_down_profile(case: Case) -> SpeedProfile:
 
 
 def _bearing(case: Case, bearing: SingleFilmBearing, plan: Plan) -> RectangularBearing:
+    supply = bearing.supply
+    grooves: tuple[AxialGroove, ...] = ()
+    if isinstance(supply, AxialGrooves):
+        gauge = supply.pressure - case.oil.ambient_pressure
+        turn = 2 * math.pi / supply.count
+        grooves = tuple(
+            AxialGroove(supply.position + turn * i, supply.opening_angle, gauge) for i in range(supply.count)
+        )
     return RectangularBearing(
         width=bearing.width,
         diameter=bearing.diameter,
@@ -88,5 +97,6 @@ def _bearing(case: Case, bearing: SingleFilmBearing, plan: Plan) -> RectangularB
         sections=plan.sections,
         ambient_pressure=case.oil.ambient_pressure,
         cavitation_pressure=case.oil.cavitation_pressure,
-        supply_pressure=getattr(bearing.supply, "pressure", None),
+        supply_pressure=None if isinstance(supply, AxialGrooves) else getattr(supply, "pressure", None),
+        grooves=grooves,
     )
