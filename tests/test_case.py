@@ -191,7 +191,8 @@ def test_shipped_cases_load_and_have_titles(name: str) -> None:
     case = load_case(name)
     assert case.name == name
     assert shipped_cases()[name] == case.title != ""
-    assert (case.film.cavitation, case.speed.start, case.speed.end) == ("half-sommerfeld", 0.0, 300.0)
+    if case.motion is None:
+        assert (case.film.cavitation, case.speed.start, case.speed.end) == ("half-sommerfeld", 0.0, 300.0)
 
 
 def test_shipped_cases_are_what_their_names_say() -> None:
@@ -212,7 +213,9 @@ def test_shipped_cases_are_what_their_names_say() -> None:
     assert math.sqrt(rotor.shaft_stiffness / rotor.mass) / (2 * math.pi) == pytest.approx(145.0, rel=0.005)
     assert soft.shaft_stiffness == rotor.shaft_stiffness / 5
     assert cases["rigid"].rotor.mass == rotor.mass + rotor.journal_mass  # type: ignore[union-attr]
-    assert films["rigid"] == films["run-down"] == films["soft-shaft"] == reference
+    assert films["rigid"] == films["run-down"] == reference
+    assert films["soft-shaft"] == films["axial-groove"]
+    assert films["soft-shaft"].supply.kind == "axial-grooves"  # type: ignore[union-attr]
     assert films["jeffcott-supply-2bar"].supply.pressure == 2e5  # type: ignore[union-attr]
 
 
@@ -458,7 +461,7 @@ def test_listing_shows_keys_as_the_file_has_them() -> None:
 
 def test_json_schema_describes_the_file() -> None:
     schema = json_schema()
-    assert set(schema["required"]) == {"rotor", "bearing", "oil", "speed"}
+    assert set(schema["required"]) == {"bearing", "oil"}
     assert "source_text" not in schema["properties"]
     width = schema["$defs"]["SingleFilmBearing"]["properties"]["width"]
     assert {branch["type"] for branch in width["anyOf"]} == {"number", "string"}

@@ -73,7 +73,7 @@ def test_critical_speed_and_rise(tmp_path: Path) -> None:
 def test_threshold_rises_with_the_stiffness_and_falls_with_the_supply_pressure() -> None:
     soft, stiff, rigid = measures.stiffness_thresholds(validate.STIFFNESSES)
     assert soft < stiff < rigid
-    first, second, third, fourth = measures.supply_thresholds(validate.PRESSURES)
+    first, second, third, fourth = measures.supply_thresholds("jeffcott", validate.PRESSURES)
     assert first > second > third > fourth
 
 

@@ -39,9 +39,10 @@ class NoSupply(Model):
 
 
 class CircumferentialGroove(Model):
-    """A groove around the bearing in its middle, which makes two films of half the width."""
+    """A groove around the bearing: in its middle, where it makes two films of half the width, or at one end."""
 
     kind: Literal["circumferential-groove"]
+    axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
     pressure: Pressure
 
 

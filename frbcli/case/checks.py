@@ -47,6 +47,9 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     yield from _rotor(data, bearings)
     yield from _run(data)
     yield from _motion(_table(data, "motion"))
+    for key in ("rotor", "speed"):
+        if key not in data and "motion" not in data:
+            yield Breach((key,), "is missing.", f"Add the table [{key}].")
 
 
 def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -91,7 +94,10 @@ def _film(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) -> Itera
     elif "temperature" in film:
         yield from _vogel(oil, _number(film, "temperature", "K"), (*path, "temperature"))
     ambient = _number(oil, "ambient_pressure", "Pa", ATMOSPHERE)
-    yield from _supply((*path, "supply"), _table(film, "supply"), width, ambient)
+    supply = _table(film, "supply")
+    yield from _supply((*path, "supply"), supply, width, ambient)
+    if supply.get("kind") == "bores":
+        yield from _bores((*path, "supply"), supply, diameter, width)
 
 
 def _supply(path: Path, supply: Mapping[str, Any], width: float | None, ambient: float | None) -> Iterator[Breach]:
@@ -106,6 +112,23 @@ def _supply(path: Path, supply: Mapping[str, Any], width: float | None, ambient:
         size = _number(supply, key, "m")
         if size and width and size > width:
             yield Breach((*path, key), f"is wider than the bearing ({display(width, 'm')}).", "Make it narrower.")
+
+
+def _bores(
+    path: Path, supply: Mapping[str, Any], diameter: float | None, width: float | None
+) -> Iterator[Breach]:
+    count, bore = _number(supply, "count", NUMBER, 1.0), _number(supply, "diameter", "m")
+    place = _number(supply, "axial_position", NUMBER, 0.5)
+    if count and bore and diameter and count * bore >= math.pi * diameter:
+        problem = f"makes {count:.0f} bores overlap on a circumference of {display(math.pi * diameter, 'm')}."
+        yield Breach((*path, "diameter"), problem, "Make it smaller, or take fewer bores.")
+    if bore and width and bore <= width and place is not None and 0 <= place <= 1:
+        over = 0.5 * bore - width * min(place, 1.0 - place)
+        if over > 0.0:
+            problem = f"puts the bores {display(over, 'm')} outside of the film."
+            least = 0.5 * bore / width
+            remedy = f"Take a value from {least:.3g} to {1.0 - least:.3g}, or smaller bores."
+            yield Breach((*path, "axial_position"), problem, remedy)
 
 
 def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:

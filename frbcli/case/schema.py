@@ -30,6 +30,7 @@ from frbcli.case.quantities import (
     OpenFraction,
     Pressure,
     Quantity,
+    Rate,
     Ratio,
     SignedSpeed,
     Speed,
@@ -39,6 +40,7 @@ from frbcli.case.quantities import (
     Viscosity,
 )
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
+from frbcli.errors import Fault, InputError
 from frbcli.units import NUMBER
 
 ATMOSPHERE = 1e5
@@ -106,7 +108,7 @@ class Peeken(Model):
 class Elrod(Model):
     """Elrod's model."""
 
-    bulk_modulus: Modulus = 1e9
+    bulk_modulus: Modulus | None = Field(default=None, description="of the full film; incompressible if not given")
 
 
 class TwoPhase(Model):
@@ -122,6 +124,9 @@ class FilmModel(Model):
 
     theory: Theory = "auto"
     cavitation: Cavitation = "half-sommerfeld"
+    cavitation_factor: Literal["global", "local", "none"] = Field(
+        default="global", description="how missing oil lowers the torque: by its mean (4.46), place by place, or not"
+    )
     penalty: Penalty = Penalty()
     peeken: Peeken = Peeken()
     elrod: Elrod = Elrod()
@@ -149,7 +154,9 @@ class Motion(Model):
     eccentricity: Eccentricity | None = None
     angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
     load: Force | None = Field(default=None, description="in place of the displacement: a resting position")
-    speed: SignedSpeed | None = Field(default=None, description="of the journal")
+    speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is at rest")
+    eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: how fast the eccentricity grows")
+    whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: how fast the displacement turns")
     frequency: Speed | None = Field(default=None, description="of squeeze or whirl")
     periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = 3.0
 
@@ -193,13 +200,17 @@ class Case(Model):
 
     name: Label = Field(default="", description="short name for results; the file's name if not given")
     title: Label = ""
-    rotor: Rotor
+    given_rotor: Rotor | None = Field(
+        default=None, alias="rotor", description="must be given, but for a case with [motion]"
+    )
     shaft: tuple[ShaftSection, ...] = ()
     disks: tuple[Disk, ...] = Field(default=(), alias="disk")
     bearings: Bearings = Field(alias="bearing")
     oil: Oil
     film: FilmModel = FilmModel()
-    speed: SpeedProfile
+    given_speed: SpeedProfile | None = Field(
+        default=None, alias="speed", description="must be given, but for a case with [motion]"
+    )
     motion: Motion | None = None
     start: Start = Start()
     contact: Contact = Contact()
@@ -217,6 +228,25 @@ class Case(Model):
         case = self.model_copy()
         case._source_text = text
         return case
+
+    @property
+    def rotor(self) -> Rotor:
+        """The rotor. Raises InputError for a case of kinematic tests, which has none."""
+        if self.given_rotor is None:
+            raise self._without("rotor")
+        return self.given_rotor
+
+    @property
+    def speed(self) -> SpeedProfile:
+        """The speeds of a run. Raises InputError for a case of kinematic tests, which has none."""
+        if self.given_speed is None:
+            raise self._without("speed")
+        return self.given_speed
+
+    def _without(self, key: str) -> InputError:
+        problem = "is missing: the case is one of kinematic tests, with [motion]."
+        remedy = f"Add the table [{key}], or call `frb rotation`, `frb squeeze` or `frb whirl`."
+        return InputError(self.name or "case", (Fault(key, "", None, problem, remedy),))
 
     def viscosity(self, film: FilmGeometry) -> float:
         """The dynamic viscosity [Pa s] in `film`: its own, by its own temperature, or that of the oil."""

@@ -22,7 +22,10 @@ NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there
 
 @dataclass(frozen=True)
 class Motion:
-    """Motion of the journal relative to the shell: d over the clearance, its rate v in 1/s, omega = omega_J + omega_S in rad/s."""
+    """Motion of the journal relative to the shell.
+
+    d: displacement over the clearance; v: its rate in 1/s; omega: omega_J + omega_S in rad/s.
+    """
 
     d: tuple[float, float]
     v: tuple[float, float]
@@ -35,8 +38,8 @@ class Motion:
 
 
 class Conductances(NamedTuple):
-    """What the gap makes of pressures and motion: around (m, k) through the face after each cell, along (m, k - 1), near
-    and far (m,) at the ends, carried (m, k) by the surfaces through the face after each cell."""
+    """What the gap makes of pressures and motion: around (m, k) through the face after each cell, along (m, k - 1),
+    near and far (m,) at the ends; carried (m, k) by the surfaces through the face after each cell."""
 
     around: Array
     along: Array
@@ -63,7 +66,7 @@ class Stencil(NamedTuple):
 
 
 class Fluxes(NamedTuple):
-    """Oil flows: around (m, k) through the face after each cell, along (m, k - 1), near and far (m,) outward at the ends."""
+    """Oil flows: around (m, k) through the face after each cell, along (m, k - 1), near and far (m,) at the ends."""
 
     around: Array
     along: Array
@@ -94,6 +97,11 @@ def gap_height(d: tuple[float, float], phi: Array) -> Array:
     return 1.0 + d[0] * np.sin(phi) - d[1] * np.cos(phi)
 
 
+def gap_rate(v: tuple[float, float], phi: Array) -> Array:
+    """dH/dt in 1/s at the angles phi (n,) for the velocity v over the clearance."""
+    return v[0] * np.sin(phi) - v[1] * np.cos(phi)
+
+
 def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conductances:
     """The conductances of a section. To a groove or hole the distance counts to its edge, which is a face."""
     dphi, dz, fixed = np.diff(grid.phi), np.diff(grid.z), grid.fixed
@@ -119,11 +127,14 @@ class Balance:
     def fluxes(self, pressure: Array, theta: Array) -> tuple[Fluxes, Array, Array]:
         """Flows for pressures and oil fractions (m, k), and the derivatives (m,) of those at the ends by the pressure.
 
-        The surfaces carry the oil fraction of the cell that they come from (upwind).
+        The surfaces carry the oil of a part-filled film as it is in the cell that they come from (upwind), what a full
+        film is compressed by as it is at the face (second order).
         """
         c = self.conductances
-        upwind = theta if self.motion.omega >= 0.0 else np.roll(theta, -1, axis=0)
-        around = c.around * (pressure - np.roll(pressure, -1, axis=0)) + c.carried * upwind
+        packed = np.maximum(theta - 1.0, 0.0)
+        loose = theta - packed if self.motion.omega >= 0.0 else np.roll(theta - packed, -1, axis=0)
+        carried = c.carried * (loose + 0.5 * (packed + np.roll(packed, -1, axis=0)))
+        around = c.around * (pressure - np.roll(pressure, -1, axis=0)) + carried
         along = c.along * (pressure[:, :-1] - pressure[:, 1:])
         near, near_slope = self._end(self.section.near, 0, pressure, c.near, 0.0)
         groove = self.section.far_pressure / self.section.pressure_scale
@@ -137,7 +148,7 @@ class Balance:
         return np.where(closed, 0.0, out), np.where(closed, 0.0, slope)
 
     def residual(self, state: CellState, storage: Storage) -> tuple[Array, Array, Stencil]:
-        """What does not balance in each cell (m, k), the size of its largest terms, and the stencil of derivatives by w.
+        """What does not balance in each cell (m, k), the size of its terms (m, k), and the stencil of derivatives by w.
 
         state: of the law with arrays (m, k), whose slopes are zero and whose values are given in fixed cells.
         """
@@ -162,13 +173,14 @@ class Balance:
 
     def _stencil(self, state: CellState, storage: Storage, near_slope: Array, far_slope: Array) -> Stencil:
         c, p_w, t_w = self.conductances, state.pressure_slope, state.fraction_slope
-        forward = self.motion.omega >= 0.0
-        from_cell = c.around * p_w + (c.carried * t_w if forward else 0.0)  # through the face after it, by its own w
-        from_next = -c.around * np.roll(p_w, -1, axis=0)
-        if not forward:
-            from_next = from_next + c.carried * np.roll(t_w, -1, axis=0)
+        half = np.where(state.fraction > 1.0, 0.5 * t_w, 0.0)
+        whole = np.where(state.fraction > 1.0, 0.0, t_w)
+        own, other = (half + whole, half) if self.motion.omega >= 0.0 else (half, half + whole)
+        from_cell = c.around * p_w + c.carried * own  # through the face after it, by its own w
+        from_next = c.carried * np.roll(other, -1, axis=0) - c.around * np.roll(p_w, -1, axis=0)  # by w of the next
         low, high = c.along * p_w[:, :-1], c.along * p_w[:, 1:]
-        centre = from_cell - np.roll(from_next, 1, axis=0) + self.grid.area * (storage.factor * t_w - state.source_slope)
+        centre = from_cell - np.roll(from_next, 1, axis=0)
+        centre += self.grid.area * (storage.factor * t_w - state.source_slope)
         centre[:, :-1] += low
         centre[:, 1:] += high
         centre[:, 0] += near_slope * p_w[:, 0]
@@ -177,5 +189,9 @@ class Balance:
         below[:, 1:], above[:, :-1] = -low, -high
         free = ~self.grid.fixed
         return Stencil(
-            np.where(free, centre, 1.0), free * -np.roll(from_cell, 1, axis=0), free * from_next, free * below, free * above
+            centre=np.where(free, centre, 1.0),
+            before=free * -np.roll(from_cell, 1, axis=0),
+            behind=free * from_next,
+            below=free * below,
+            above=free * above,
         )

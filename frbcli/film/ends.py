@@ -16,8 +16,8 @@ def end_outflow(
     """Outflow of the last cells (n,) through an end and its derivative by their pressure.
 
     pressure: of the cells; conductance: from their middle to the end; length: of their share of the end, each (n,);
-    groove: pressure in a groove at this end; ambient: absolute ambient pressure. Pressures are scaled (1/s), all but the
-    last over the ambient pressure.
+    groove: pressure in a groove at this end; ambient: absolute ambient pressure. Pressures are scaled (1/s), and all
+    but the last are over the ambient pressure.
     """
     if kind == "symmetry":
         return np.zeros_like(pressure), np.zeros_like(pressure)

@@ -1,7 +1,8 @@
-"""The developed gap of one section: its size, where the pressure is given, and what happens at its ends (section 4.1)."""
+"""The developed gap of one section: its size, where the pressure is given, what happens at its ends (section 4.1)."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, field
 
@@ -26,9 +27,10 @@ class AxialGroove:
 
 @dataclass(frozen=True)
 class Hole:
-    """A bore or pocket: phi and axial position (m from the end z = 0) of its middle, half extents (rad, m), gauge pressure.
+    """A bore or pocket, at a gauge pressure in Pa.
 
-    round: an ellipse in the developed gap; else a rectangle.
+    position, axial: of its middle, phi in rad and m from the end z = 0; half_angle, half_width: half extents in rad
+    and m; round: an ellipse in the developed gap, else a rectangle.
     """
 
     position: float
@@ -83,7 +85,7 @@ def groove_pressure(groove: AxialGroove, distance: Array, bearing_width: float) 
 def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Array) -> Array:
     """(n + 1,) boundaries of cells over one turn from the first break (or -pi), denser around phi = narrowest.
 
-    breaks: angles that must be boundaries (edges of grooves). The density follows Sommerfeld's angle, see ring_vertices.
+    breaks: angles that must be boundaries (edges of grooves). The density follows Sommerfeld's angle: ring_vertices.
     """
     gamma = np.linspace(-np.pi, np.pi, 20_001)
     angle = narrowest + 2.0 * np.arctan2(contraction * np.sin(0.5 * gamma), np.cos(0.5 * gamma))
@@ -94,7 +96,7 @@ def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Arr
     long_gamma = np.concatenate([gamma[:-1], gamma + 2 * np.pi])
     places = np.interp(turn, long_angle, long_gamma)
     pieces = []
-    for start, end in zip(places[:-1], places[1:], strict=True):
+    for start, end in itertools.pairwise(places):
         count = max(2, round(elements * (end - start) / (2 * math.pi)))
         pieces.append(np.interp(np.linspace(start, end, count + 1)[:-1], long_gamma, long_angle))
     pieces.append(turn[-1:])

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from frbcli.film.gap import Hole, Section, graded_ring, groove_pressure
 from frbcli.film.grid import Array
 
-AXIAL_GRADING = 0.5  # share of Chebyshev's spacing in the axial one: finer at the ends, but not without limit
-SHARPEST_CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angle, which leaves the wide gap coarse
+AXIAL_GRADING = 0.5  # share of Chebyshev's spacing in the axial one
+CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angle, which leaves the wide gap coarse
 
 
 @dataclass(frozen=True)
@@ -49,21 +49,20 @@ class VolumeGrid:
 
 
 def fitted_grid(section: Section, d: tuple[float, float], around: int, along: int) -> VolumeGrid:
-    """About around x along cells, finer at the narrowest gap of the displacement d and at the ends, with grooves on faces."""
+    """About around x along cells, finer at the ends and where d narrows the gap, with the edges of grooves on faces."""
     eccentricity = math.hypot(*d)
     narrowest = math.atan2(-d[0], d[1])  # H = 1 + d_x sin(phi) - d_y cos(phi) is smallest
-    contraction = ((1.0 - eccentricity) / (1.0 + eccentricity)) ** SHARPEST_CONTRACTION
+    contraction = ((1.0 - eccentricity) / (1.0 + eccentricity)) ** CONTRACTION
     edges = [g.position + side * 0.5 * g.opening for g in section.grooves for side in (-1.0, 1.0)]
-    return volume_grid(section, graded_ring(around, narrowest, contraction, np.array(edges)), axial_faces(section, along))
+    ring = graded_ring(around, narrowest, contraction, np.array(edges))
+    return volume_grid(section, ring, axial_faces(section, along))
 
 
 def axial_faces(section: Section, along: int) -> Array:
     """(along + 1,) boundaries over [0, 1], finer where the section ends."""
     even = np.linspace(0.0, 1.0, along + 1)
-    if section.far == "symmetry":
-        graded = 1.0 - np.cos(0.5 * np.pi * even)
-    else:
-        graded = 0.5 * (1.0 - np.cos(np.pi * even))
+    turn = 0.5 * np.pi if section.far == "symmetry" else np.pi  # half of Chebyshev's points, or all
+    graded = (1.0 - np.cos(turn * even)) / (1.0 - math.cos(turn))
     return AXIAL_GRADING * graded + (1.0 - AXIAL_GRADING) * even
 
 
@@ -109,10 +108,7 @@ def hole_area(section: Section, hole: Hole) -> float:
     square = 4.0 * section.radius * hole.half_angle
     low = max(-1.0, -hole.axial / hole.half_width)
     high = min(1.0, (section.width - hole.axial) / hole.half_width)
-    if hole.round:
-        share = 0.25 * (_half_disk(high) - _half_disk(low))
-    else:
-        share = 0.5 * (high - low)
+    share = 0.25 * (_half_disk(high) - _half_disk(low)) if hole.round else 0.5 * (high - low)
     return square * hole.half_width * share
 
 

@@ -30,6 +30,10 @@ RIGID = "rigid"  # a shaft stiffness
 FIRST_SECOND = ("speed.to=30 Hz", "speed.duration=1 s")  # the first tenth of 0 to 300 Hz in 10 s
 FIRST_SECONDS = ("speed.to=90 Hz", "speed.duration=3 s")
 WINDOW_s = 0.1  # at least one turn of a whirl at half of 30 Hz and more
+AXIAL_GROOVE = (
+    'bearing.supply={ kind = "axial-grooves", position = "0 deg", opening_angle = "15 deg", pressure = "1 bar" }'
+)
+TO_600_Hz = "speed.to=600 Hz"
 REFERENCE = ("accuracy.tolerance=1e-8", "accuracy.steps_per_revolution=160", "accuracy.mesh=[12, 256]")
 
 
@@ -62,9 +66,9 @@ def rise(run: Run) -> Rise:
     return Rise(passage, first_event(run, "onset", "t_s"))
 
 
-def eccentricity_at_1s(folder: Path, name: str) -> float:
+def eccentricity_at_1s(folder: Path, name: str, settings: Sequence[str] = ()) -> float:
     """Eccentricity after the first second of a shipped run-up."""
-    return float(runup(load_case(name, FIRST_SECOND), folder / "first-second.h5")["eccentricity"][-1])
+    return float(runup(load_case(name, (*FIRST_SECOND, *settings)), folder / "first-second.h5")["eccentricity"][-1])
 
 
 def film_pressure(case: Case, eccentricity: float, speed_Hz: float) -> float:
@@ -103,16 +107,20 @@ def effective_velocity_zero(run: Run) -> float:
 
 
 def stiffness_thresholds(stiffnesses: Sequence[str]) -> list[float]:
-    """Linear thresholds in Hz of the Jeffcott rotor with shafts of the given stiffnesses, RIGID among them."""
+    """Linear thresholds in Hz with an axial groove and shafts of the given stiffnesses, RIGID among them."""
     return [
-        threshold_Hz(load_case("rigid") if s == RIGID else load_case("jeffcott", (f"rotor.shaft_stiffness={s}",)))
-        for s in stiffnesses
+        threshold_Hz(
+            load_case("rigid", (AXIAL_GROOVE, TO_600_Hz))
+            if stiffness == RIGID
+            else load_case("axial-groove", (f"rotor.shaft_stiffness={stiffness}",))
+        )
+        for stiffness in stiffnesses
     ]
 
 
-def supply_thresholds(pressures: Sequence[str]) -> list[float]:
-    """Linear thresholds in Hz of the Jeffcott rotor at the given supply pressures."""
-    return [threshold_Hz(load_case("jeffcott", (f"bearing.supply.pressure={p}",))) for p in pressures]
+def supply_thresholds(name: str, pressures: Sequence[str]) -> list[float]:
+    """Linear thresholds in Hz of a shipped case at the given supply pressures."""
+    return [threshold_Hz(load_case(name, (f"bearing.supply.pressure={p}",))) for p in pressures]
 
 
 def accuracy_before(folder: Path, case: Case, reference: Case, before_s: float) -> float:

@@ -18,6 +18,7 @@ from validation.measures import DATA, REFERENCE, RIGID
 PAGE = Path(__file__).parent.parent.parent / "docs" / "validation.md"
 STIFFNESSES = ("1000 N/mm", "5000 N/mm", RIGID)
 PRESSURES = ("1 bar", "2 bar", "3 bar", "4 bar")
+AXIAL_PRESSURES = ("1 bar", "2 bar", "4 bar")
 TARGETS = ("1e-2", "1e-3", "1e-4")
 WHIRLING = 0.05  # amplitude over the clearance
 THRESHOLDS_Hz = {"jeffcott-table-4-1": 167.4, "jeffcott": 177.2}  # by an independent finite-volume program
@@ -57,7 +58,12 @@ def measure(folder: Path) -> dict[str, Measured]:
     rises = {name: measures.rise(run) for name, run in runs.items()}
     zero = measures.effective_velocity_zero(runs["rigid"])
     stiff = measures.stiffness_thresholds(STIFFNESSES)
-    supply = measures.supply_thresholds(PRESSURES)
+    supply = measures.supply_thresholds("jeffcott", PRESSURES)
+    axial = measures.supply_thresholds("axial-groove", AXIAL_PRESSURES)
+    resting = [
+        measures.eccentricity_at_1s(folder, "axial-groove", (f"bearing.supply.pressure={pressure}",))
+        for pressure in AXIAL_PRESSURES
+    ]
     whirl = measures.smallest_whirl(folder, PRESSURES[-1])
 
     def risen(name: str) -> Measured:
@@ -82,6 +88,12 @@ def measure(folder: Path) -> dict[str, Measured]:
         "eccentricity-2bar": number(measures.eccentricity_at_1s(folder, "jeffcott-supply-2bar"), 3),
         "largest-pressure-1bar": number(measures.film_pressure(case, 0.485, 30.0), 2),
         "largest-pressure-2bar": number(measures.film_pressure(raised, 0.393, 30.0), 2),
+        "axial-groove-eccentricities": number(resting[0], 3),
+        "axial-groove-eccentricity-2bar": number(resting[1], 3),
+        "axial-groove-supply-order": Measured(
+            f"{speeds(axial)}; {', '.join(f'{value:.3f}' for value in resting)}",
+            holds=axial[0] < axial[1] < axial[2] and resting[0] < resting[1] < resting[2],
+        ),
         "soft-shaft-critical": number(measures.first_event(runs["soft-shaft"], "critical-speed", "speed_Hz"), 1),
         "effective-angular-velocity": Measured(
             f"zero at {zero:.2f} s, jump at {rises['rigid'].passage_s:.2f} s",

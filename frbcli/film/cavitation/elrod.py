@@ -1,4 +1,4 @@
-"""Jakobsson, Floberg and Olsson's condition in Elrod's manner (3.34) to (3.37): full at a pressure, or empty in part at p_cav."""
+"""Jakobsson, Floberg and Olsson's condition in Elrod's manner (3.34) to (3.37): full, or at p_cav and partly empty."""
 
 from __future__ import annotations
 
@@ -20,13 +20,15 @@ class Elrod:
     def cells(self, w: Array, scales: Scales) -> CellState:
         full = w > 0.0
         above = np.where(full, w, 0.0) * scales.reference
-        fraction = np.exp(above / self.bulk_modulus) + np.where(full, 0.0, w)  # (3.35)
+        packed = above / self.bulk_modulus  # ln(theta), (3.35); beyond 1 the law goes on linearly, for Newton's method
+        fraction = np.exp(np.minimum(packed, 1.0)) * np.maximum(packed, 1.0) + np.where(full, 0.0, w)
+        steep = np.exp(np.minimum(packed, 1.0)) * scales.reference / self.bulk_modulus
         zero = np.zeros_like(w)
         return CellState(
             pressure=scales.cavitation + above,
             fraction=fraction,
             source=zero,
             pressure_slope=np.where(full, scales.reference, 0.0),
-            fraction_slope=np.where(full, fraction * scales.reference / self.bulk_modulus, 1.0),
+            fraction_slope=np.where(full, steep, 1.0),
             source_slope=zero,
         )

@@ -13,8 +13,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CellState:
-    """What a law says of cells with the unknown w, each (n,): pressure over the ambient pressure, scaled, in 1/s; oil fraction
-    theta; source of oil in 1/s; and the derivatives of the three by w."""
+    """What a law says of cells with the unknown w, arrays of its shape: pressure over the ambient pressure, scaled, in
+    1/s; oil fraction theta; source of oil in 1/s; and the derivatives of the three by w."""
 
     pressure: Array
     fraction: Array
@@ -46,5 +46,5 @@ class Law(Protocol):
     def clips(self) -> bool: ...
 
     def cells(self, w: Array, scales: Scales) -> CellState:
-        """The state of cells with the unknown w (n,)."""
+        """The state of cells with the unknown w, of any shape."""
         ...

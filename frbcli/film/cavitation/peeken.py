@@ -18,7 +18,7 @@ class Peeken:
     clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:
-        """theta = 1 / (1 + r), r = alpha (p_cav - p) / p: with the fall u = 1 - p / p_cav, theta = (1 - u) / (1 - u + alpha u).
+        """theta = 1 / (1 + r), r = alpha (p_cav - p) / p: (1 - u) / (1 - u + alpha u) of the fall u = 1 - p / p_cav.
 
         w = theta - 1 - u ratio is a quadratic in u. Newton's method may ask below p = 0, where it goes on linearly.
         """

@@ -82,4 +82,5 @@ class TwoPhase:
             place = np.clip(place, 0.0, 1.0)
             defect = cubic * place**2 * (3.0 - 2.0 * place) + linear * place - (w - bottom)
             place = place - defect / (6.0 * cubic * place * (1.0 - place) + linear)
-        return np.clip(place, 0.0, 1.0)
+        clipped: Array = np.clip(place, 0.0, 1.0)
+        return clipped

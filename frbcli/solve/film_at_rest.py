@@ -1,0 +1,99 @@
+"""Where a journal that turns rests in its film under a load."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.volumes import Motion
+from frbcli.scene.kinematic import KinematicPlan, kinematic_plan
+from frbcli.solve.steady_film import film_force
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 40
+SETTLED = 1e-5  # force left over, relative to the load
+NUDGE = 1e-3  # share of the gap by which the position is moved for a derivative
+GAP_KEPT = 0.3  # a step may shrink the narrowest gap to this share of it
+COARSE_CELLS = (80, 20)
+SMALLEST_SHARE = 0.05  # of a step that is tried
+STARTS = (0.6, 0.85, 0.3, 0.95)
+
+
+def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: float) -> Array:
+    """(2,) displacement over the clearance at which the film carries a load in N along -y, omega in rad/s.
+
+    Sought with few cells first, then with those of the plan. Raises NotConverged if no start leads to one.
+    """
+    target = np.array([0.0, load])
+    position: Array | None = None
+    if plan.rectangle is not None and not plan.modal:
+        position = resting_displacement(case, kinematic_plan(case, "half-sommerfeld"), load, omega)
+    starts = [] if position is None else [position]
+    starts += [e * np.array([math.sin(a), -math.cos(a)]) for e in STARTS for a in (math.radians(40.0 * (omega > 0) - 20.0),)]
+    problems = []
+    for start in starts:
+        try:
+            coarse = start if plan.modal else _newton(case, plan, target, omega, start, COARSE_CELLS)
+            return _newton(case, plan, target, omega, coarse, plan.cells)
+        except NotConverged as problem:
+            problems.append(str(problem))
+    raise NotConverged(
+        f"{plan.cavitation}: no resting position under {load:g} N from {len(starts)} starts; the last one: {problems[-1]} "
+        "Give a higher speed or more viscosity, width or supply, or a smaller clearance."
+    )
+
+
+def _newton(
+    case: Case, plan: KinematicPlan, target: Array, omega: float, start: Array, cells: tuple[int, int]
+) -> Array:
+    """Newton's method with derivatives by differences, kept up to date by Broyden's formula while that works."""
+    size = float(np.linalg.norm(target))
+
+    def missing(d: Array) -> Array:
+        return film_force(case, plan, Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega), cells) - target
+
+    position, fresh = start, True
+    residual = missing(position)
+    slope = _differences(missing, position, residual)
+    for _ in range(ITERATIONS):
+        left = float(np.linalg.norm(residual))
+        if left < SETTLED * size:
+            return position
+        step = _limited(position, -np.linalg.solve(slope, residual))
+        share = 1.0
+        while True:
+            following = position + share * step
+            new = missing(following)
+            if np.linalg.norm(new) < left or share < SMALLEST_SHARE:
+                break
+            share *= 0.4
+        if np.linalg.norm(new) >= left and fresh:
+            break
+        moved = following - position
+        poor = np.linalg.norm(new) > 0.3 * left
+        position, change, residual = following, new - residual, new
+        fresh = bool(poor)
+        slope = (
+            _differences(missing, position, residual)
+            if poor
+            else slope + np.outer(change - slope @ moved, moved) / (moved @ moved)
+        )
+    raise NotConverged(f"{np.linalg.norm(residual) / size:.1e} of the load is left over at {np.round(position, 3)}.")
+
+
+def _differences(missing, position: Array, residual: Array) -> Array:  # type: ignore[no-untyped-def]
+    nudge = NUDGE * (1.0 - float(np.linalg.norm(position)))
+    return np.column_stack([(missing(position + nudge * unit) - residual) / nudge for unit in np.eye(2)])
+
+
+def _limited(position: Array, step: Array) -> Array:
+    """A step that leaves the narrowest gap a share of what it was."""
+    limit = 1.0 - GAP_KEPT * (1.0 - np.linalg.norm(position))
+    a, b, c = step @ step, position @ step, position @ position - limit**2
+    share: float = min(1.0, (math.sqrt(b * b - a * c) - b) / a) if a > 0.0 else 1.0
+    return share * step
