@@ -6,6 +6,26 @@ The public names below are imported when they are first used, so that `import fr
 from __future__ import annotations
 
 import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # so that types are known where they are checked
+    from frbcli.analysis.compare import compare as compare
+    from frbcli.analysis.events import find_events as find_events
+    from frbcli.analysis.spectrum import waterfall as waterfall
+    from frbcli.analysis.stability import stability as stability
+    from frbcli.case.load import load_case as load_case
+    from frbcli.case.load import load_case_text as load_case_text
+    from frbcli.case.schema import Case as Case
+    from frbcli.case.shipped import shipped_cases as shipped_cases
+    from frbcli.errors import Fault as Fault
+    from frbcli.errors import FrbError as FrbError
+    from frbcli.errors import InputError as InputError
+    from frbcli.errors import NotConverged as NotConverged
+    from frbcli.errors import RunFileError as RunFileError
+    from frbcli.results.store import read_run as read_run
+    from frbcli.scene.plan import make_plan as make_plan
+    from frbcli.solve.run import rundown as rundown
+    from frbcli.solve.run import runup as runup
 
 __version__ = "0.1.0"
 
@@ -16,13 +36,17 @@ _PUBLIC = {
     "InputError": "frbcli.errors",
     "NotConverged": "frbcli.errors",
     "RunFileError": "frbcli.errors",
+    "compare": "frbcli.analysis.compare",
+    "find_events": "frbcli.analysis.events",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",
+    "make_plan": "frbcli.scene.plan",
     "read_run": "frbcli.results.store",
     "rundown": "frbcli.solve.run",
     "runup": "frbcli.solve.run",
     "shipped_cases": "frbcli.case.shipped",
     "stability": "frbcli.analysis.stability",
+    "waterfall": "frbcli.analysis.spectrum",
 }
 
 __all__ = ["__version__", *_PUBLIC]

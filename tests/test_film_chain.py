@@ -163,8 +163,8 @@ def test_supply_pressure_of_one_groove_pushes_the_resting_journal_down() -> None
 
 
 def test_a_narrow_groove_leaves_the_plain_film() -> None:
-    """At the widest gap Sommerfeld's pressure is ambient by symmetry: a groove at ambient pressure there changes little,
-    and less the narrower it is."""
+    """At the widest gap Sommerfeld's pressure is ambient by symmetry: a groove at ambient pressure there changes
+    little, and less the narrower it is."""
     plain = RectangularBearing(0.02, 0.025, CLEARANCE, 0.01, 1, 1e5, 1e5, None)
     place, omega = CLEARANCE * np.array([0.3, -0.5]), 200.0
     film = make_film(plain, "finite", "half-sommerfeld", Mesh(6, 96))

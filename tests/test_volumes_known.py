@@ -96,7 +96,8 @@ def test_plates_fill_again_as_the_front_equation_has_it(rate: float) -> None:
     """Olsson's front between two parallel plates that stand still or close, fed at both edges.
 
     Full over the length l from each edge: q(l) = A H^3 p / l - H' l / 2 and (1 - theta) H dl/dt = q(l), with theta H
-    of the cavity constant. Where hardly anything flows around, in a very short bearing, a strip is such a pair of plates.
+    of the cavity constant. In a very short bearing, where hardly anything flows around, a strip is such a pair of
+    plates.
     """
     section = replace(section_of("none"), width=1e-4, cavitation_pressure=AMBIENT - 20.0)
     start_fraction, start_gap = 0.6, 0.9

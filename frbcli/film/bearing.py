@@ -88,7 +88,8 @@ def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh
     edges = np.column_stack([ends, np.append(starts[1:], starts[0] + 2 * np.pi)])
     grid = chain_grid(edges, mesh.circumferential)
     # Over the grooves their own pressure acts; where the films are clipped, the level itself over the rest of the turn.
-    mean = float(np.mean(profile((np.arange(1000) + 0.5) / 1000.0)))
+    middles: Array = (np.arange(1000) + 0.5) / 1000.0
+    mean = float(np.mean(profile(middles)))
     across = np.array([np.sum(np.cos(starts) - np.cos(ends)), np.sum(np.sin(starts) - np.sin(ends))])
     constant = (mean - (level if clipped else 0.0)) * across
     radius_to_width = 0.5 * bearing.diameter / bearing.width

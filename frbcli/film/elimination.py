@@ -1,7 +1,7 @@
 """Gaussian elimination of the cells' equations in an order that is found once for a grid, compiled.
 
-Without pivoting: oil that leaves one cell enters others, so that no diagonal entry is smaller than the others of its column
-together, but for what a closing gap takes away and what a law makes.
+Without pivoting: oil that leaves one cell enters others, so that no diagonal entry is smaller than the others of its
+column together, but for what a closing gap takes away and what a law makes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class Elimination(NamedTuple):
     """The order of elimination and the places of all entries that arise.
 
     order: (n,) new index of each unknown; starts (n + 1,), columns (e,): the rows of L and U together, columns rising;
-    diagonal: (n,) places of the diagonal; places: where the entries of the matrix go, in the order that they are given in.
+    diagonal: (n,) places of the diagonal; places: where the entries of the matrix go, in the order in which they come.
     """
 
     order: NDArray[np.int64]
@@ -30,7 +30,7 @@ class Elimination(NamedTuple):
 
 
 def plan_elimination(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> Elimination:
-    """The elimination of a matrix with entries at rows and columns (e,), symmetric in its pattern, by minimum degree."""
+    """The elimination, by minimum degree, of a matrix with entries at rows and columns (e,) in a symmetric pattern."""
     from scipy.sparse import csc_matrix, csr_matrix
     from scipy.sparse.linalg import splu
 

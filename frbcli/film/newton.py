@@ -20,7 +20,7 @@ from frbcli.film.grid import Array
 from frbcli.film.volume_grid import VolumeGrid
 
 ROUND_OFF = 1e-15  # residual of a cell over the terms that it is the sum of
-SETTLED = 1e-13  # the same, for a residual that does not fall any more
+SETTLED = 1e-12  # the same, for a residual that does not fall any more
 LARGEST = 1e9  # beyond this, w is the mark of a singular matrix
 SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iteration
 

@@ -56,6 +56,7 @@ class _Steps:
     ) -> None:
         self._film, self._motion, self._method = film, motion, method
         self._w, self._time = w, time
+        self._drift: Array | None = None  # how fast w changed in the step before
         self._content = film.content(motion(time), w)
         # A law that makes oil, or clips the pressure of a full film, knows the motion of the moment only.
         self._remembers = film.law.conserves and not film.law.clips
@@ -84,7 +85,9 @@ class _Steps:
         if self._method == "midpoint":
             shown = 0.5 * (self._time + time)
             flowing = self._motion(shown)
-        solution, content = self._film.keep(motion, self._w, rate, past, flowing)
+        begin = self._w if self._drift is None else self._w + dt * self._drift
+        solution, content = self._film.keep(motion, begin, rate, past, flowing)
+        self._drift = (solution.w - self._w) / dt
         self._before = dt, self._content
         self._w, self._time, self._content = solution.w, time, content
         return Moment(shown, flowing, solution, content)

@@ -12,6 +12,7 @@ from frbcli.film.gap import Hole, Section, graded_ring, groove_pressure
 from frbcli.film.grid import Array
 
 AXIAL_GRADING = 0.5  # share of Chebyshev's spacing in the axial one
+NO_HOLE = 0.02
 CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angle, which leaves the wide gap coarse
 
 
@@ -49,11 +50,13 @@ class VolumeGrid:
 
 
 def fitted_grid(section: Section, d: tuple[float, float], around: int, along: int) -> VolumeGrid:
-    """About around x along cells, finer at the ends and where d narrows the gap, with the edges of grooves on faces."""
+    """About around x along cells, finer at the ends and where d narrows the gap, edges of grooves and pockets on faces."""
     eccentricity = math.hypot(*d)
     narrowest = math.atan2(-d[0], d[1])  # H = 1 + d_x sin(phi) - d_y cos(phi) is smallest
     contraction = ((1.0 - eccentricity) / (1.0 + eccentricity)) ** CONTRACTION
-    edges = [g.position + side * 0.5 * g.opening for g in section.grooves for side in (-1.0, 1.0)]
+    spans = [(groove.position, 0.5 * groove.opening) for groove in section.grooves]
+    spans += [(hole.position, hole.half_angle) for hole in section.holes if not hole.round]
+    edges = [middle + side * half for middle, half in spans for side in (-1.0, 1.0)]
     ring = graded_ring(around, narrowest, contraction, np.array(edges))
     return volume_grid(section, ring, axial_faces(section, along))
 
@@ -86,7 +89,8 @@ def volume_grid(section: Section, phi: Array, z: Array) -> VolumeGrid:
 def _hole_cells(section: Section, hole: Hole, grid: VolumeGrid) -> NDArray[np.bool_]:
     """(m, k) cells of a hole: those nearest to its middle, as many as come closest to its area.
 
-    A hole much smaller than a cell takes none. Cells at the same distance go together, so that symmetry is kept.
+    A hole smaller than NO_HOLE of the cells at its middle takes none; a larger one always takes those, so that a coarse
+    mesh does not close a supply. Cells at the same distance go together, so that symmetry is kept.
     """
     across = np.abs(wrapped(grid.centre - hole.position))[:, None] / hole.half_angle
     along = np.abs(grid.height * section.width - hole.axial)[None, :] / hole.half_width
@@ -97,7 +101,7 @@ def _hole_cells(section: Section, hole: Hole, grid: VolumeGrid) -> NDArray[np.bo
     covered = np.cumsum(grid.area.ravel()[order])
     last = np.flatnonzero(np.append(np.diff(sorted_distance) > 0.0, True))  # the last cell of each distance
     best = last[np.argmin(np.abs(covered[last] - area))]
-    reach = sorted_distance[best] if abs(covered[best] - area) < area else -1.0
+    reach = sorted_distance[best] if area > NO_HOLE * covered[last[0]] else -1.0
     inside: NDArray[np.bool_] = distance <= reach
     return inside
 

@@ -26,13 +26,14 @@ __all__ = [
 ]
 
 
-STILL = 1e-6  # a film that exchanges less than this share of its oil in a time step is at rest
+# A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
+STILL_MOTION, STILL_STEP = 1e-4, 1e-6
 
 
 @dataclass(frozen=True)
 class Flows:
     """Oil per time in scaled units (R b C, 1/s), by one section: in and out at its ends, grooves and holes; made by the
-    law; stored; fed by grooves and holes net; leaving at the ends net; all oil over a time step."""
+    law; stored; fed by grooves and holes net; leaving at the ends net; still: what is too little to count."""
 
     inflow: float
     outflow: float
@@ -40,12 +41,12 @@ class Flows:
     stored: float
     supply: float
     ends: float
-    kept: float
+    still: float
 
     @property
     def defect(self) -> float:
         """What does not balance, over the larger of inflow and outflow; oil that the law makes is such."""
-        size = max(self.inflow, self.outflow, abs(self.stored), STILL * self.kept)
+        size = max(self.inflow, self.outflow, abs(self.stored), self.still)
         return (self.inflow - self.outflow - self.stored) / size if size > 0.0 else 0.0
 
 
@@ -140,9 +141,9 @@ class VolumeFilm:
         w, iterations = solve(self._unknowns, lambda x: balance.residual(self.cells(x), storage), w, motion.rate)
         state = self.cells(w)
         fluxes, _, _ = balance.fluxes(self.pressure(state), state.fraction)
-        return VolumeSolution(w, state, iterations, self._flows(fluxes, state, storage))
+        return VolumeSolution(w, state, iterations, self._flows(fluxes, state, storage, motion.rate))
 
-    def _flows(self, fluxes: Fluxes, state: CellState, storage: Storage) -> Flows:
+    def _flows(self, fluxes: Fluxes, state: CellState, storage: Storage, rate: float) -> Flows:
         fixed, area = self.grid.fixed, self.grid.area
         ends = np.concatenate([fluxes.near, fluxes.far])
         fed = fluxes.net_outflow()[fixed]  # what leaves a groove net is what it feeds into the film
@@ -154,7 +155,7 @@ class VolumeFilm:
             stored=float(stored[~fixed].sum()),
             supply=float(fed.sum()),
             ends=float(ends.sum()),
-            kept=float((area * np.abs(storage.past))[~fixed].sum()),
+            still=float((area * (STILL_MOTION * rate + STILL_STEP * np.abs(storage.past)))[~fixed].sum()),
         )
 
     def from_coarser(self, coarse: VolumeFilm, w: Array) -> Array:
