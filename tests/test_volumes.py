@@ -146,7 +146,7 @@ def test_film_without_inlet_fails_with_a_reason() -> None:
     """Free ends and no supply: the equations have no solution but an empty film."""
     section = section_of("none", ends="free-to-air")
     film = VolumeFilm(section, fitted_grid(section, ROTATION.d, 16, 4), Elrod(), 50.0)
-    with pytest.raises(NotConverged, match=r"no oil can enter|do not balance"):
+    with pytest.raises(NotConverged, match=r"no oil can enter|runs dry|do not balance.*a supply above"):
         film.steady(ROTATION)
 
 
@@ -210,3 +210,12 @@ def test_missing_oil_lowers_the_torque() -> None:
     assert found["global"].torque.couette == pytest.approx(found["none"].oil_fraction * found["none"].torque.couette)
     # Oil is missing where the gap is wide, where there is little shear: the local factor lowers the torque less.
     assert abs(found["none"].torque.couette) > abs(found["local"].torque.couette) > abs(found["global"].torque.couette)
+
+
+def test_dry_film_is_an_error_and_no_number() -> None:
+    """Elrod's film fed at p_cav between free ends: only an oil fraction below zero would balance what leaves."""
+    section = section_of("circumferential-groove", 1e5, "free-to-air")
+    motion = polar_motion(0.3, 0.0, 0.0, 0.0, 2.0 * math.pi)
+    film = VolumeFilm(section, fitted_grid(section, motion.d, 24, 6), Elrod(), reference_pressure(section, motion))
+    with pytest.raises(NotConverged, match=r"runs dry|a supply above"):
+        film.steady(motion)

@@ -90,7 +90,7 @@ def solve(unknowns: Unknowns, assemble: Assembly, start: Array, rate: float) -> 
     tried = "plain, damped, and damped more"
     raise NotConverged(
         f"the film did not converge in {spent} Newton iterations ({tried}): {failure}; "
-        "try another mesh, a shorter time step, or a less steep cavitation model"
+        "try another mesh, a shorter time step, a less steep model, or a supply above the cavitation pressure"
     )
 
 

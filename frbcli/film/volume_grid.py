@@ -50,7 +50,7 @@ class VolumeGrid:
 
 
 def fitted_grid(section: Section, d: tuple[float, float], around: int, along: int) -> VolumeGrid:
-    """About around x along cells, finer at the ends and where d narrows the gap, edges of grooves and pockets on faces."""
+    """About around x along cells, finer at the ends and where d narrows the gap; grooves and pockets end on faces."""
     eccentricity = math.hypot(*d)
     narrowest = math.atan2(-d[0], d[1])  # H = 1 + d_x sin(phi) - d_y cos(phi) is smallest
     contraction = ((1.0 - eccentricity) / (1.0 + eccentricity)) ** CONTRACTION

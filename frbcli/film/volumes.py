@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.errors import NotConverged
 from frbcli.film.balance import Balance, Fluxes, Motion, Storage, gap_height, gap_rate
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.gap import Section
@@ -26,6 +27,7 @@ __all__ = [
 ]
 
 
+DRY = -1e-6  # an oil fraction below this is none
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
 STILL_MOTION, STILL_STEP = 1e-4, 1e-6
 
@@ -140,6 +142,11 @@ class VolumeFilm:
         balance = Balance(self.section, self.grid, motion)
         w, iterations = solve(self._unknowns, lambda x: balance.residual(self.cells(x), storage), w, motion.rate)
         state = self.cells(w)
+        if np.min(state.fraction) < DRY:
+            raise NotConverged(
+                "the film runs dry: more oil leaves at its free ends than can enter it; raise the supply above the "
+                "cavitation pressure, or let the ends lie in an oil bath"
+            )
         fluxes, _, _ = balance.fluxes(self.pressure(state), state.fraction)
         return VolumeSolution(w, state, iterations, self._flows(fluxes, state, storage, motion.rate))
 

@@ -83,7 +83,7 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
     numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
-    weights, moments, defect = tableau.stage, tableau.times, tableau.defect
+    weights, moments, defect, three = tableau.stage, tableau.times, tableau.defect, tableau.guess
     tolerance, contact_at, contact_stiffness = (
         control.tolerance, control.contact_eccentricity, control.contact_stiffness)
     n, m, stages = q.shape[0], 2 * clearances.shape[0], moments.shape[0]
@@ -98,7 +98,7 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
     spread, compliance, newton = np.zeros((n, m)), np.zeros((m, m)), np.zeros((m, m))
     at, film = np.zeros((STAGE_ROWS, n)), np.zeros((JOURNAL_ROWS, m))
     stage_v, stage_a = np.zeros((n, stages)), np.zeros((n, stages))
-    past, q_new = np.zeros((HISTORY, 1 + m)), np.zeros(n)
+    past, q_new = np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n)
     inverse_g, inverse_speed = numbers[INVERSE_G], numbers[INVERSE_SPEED]
     if inverse_g > 0.0:
         prepare(rotor, pick, inverse_g, inverse_speed, products, loads, spread, compliance)
@@ -133,7 +133,7 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
                 prepare(rotor, pick, g, speed, products, loads, spread, compliance)
             start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle,
                          gyroscopic, at, film)
-            guess(past, pick, q, clearances, g, t_s, limit, film)
+            guess(past, three, s, pick, q, clearances, g, t_s, limit, film)
             lag = g * (speed - inverse_speed) if gyroscopic else 0.0
             if lag != 0.0:  # begin with the acceleration of the stage before
                 for i in range(n):
@@ -152,11 +152,9 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
                         break
             if not solved:
                 break
-            for i in range(1 + m):
-                past[0, i], past[1, i] = past[1, i], past[2, i]
-            past[2, 0] = t_s
+            past[HISTORY + s - 1, 0] = t_s
             for i in range(m):
-                past[2, 1 + i] = film[U, i]
+                past[HISTORY + s - 1, 1 + i] = film[U, i]
         error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance if solved else UNSOLVED
         if not error <= 1.0:  # not a number counts as too large
             numbers[REJECTED] += 1
@@ -177,9 +175,9 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
         written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
         for i in range(n):
             q[i], v[i], a[i] = q_new[i], stage_v[i, last], stage_a[i, last]
-        for k in range(HISTORY):
-            for i in range(1 + m):
-                past_now[k, i] = past[k, i]
+        for i in range(1 + m):  # the start of this step, its first stage, and its end
+            past_now[0, i], past_now[1, i] = past[2, i], past[3, i]
+            past_now[2, i] = past[HISTORY + last - 1, i]
         numbers[TIME] = t_new
         numbers[STEPS] += 1
         numbers[TURNS] += abs(speed) * step / (2.0 * math.pi)

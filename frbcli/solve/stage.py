@@ -150,17 +150,19 @@ def start_stage(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def guess(past, pick, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
+def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
     """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
 
-    past: (HISTORY, 1 + m) times and velocities of the last stages; the parabola through them is continued.
+    points: (p, 1 + m) times and journals' velocities of this step and the one before; three: (s, 3) which of them carry
+    the parabola of stage s.
     """
-    a, b, c = past[0, 0], past[1, 0], past[2, 0]
+    i_a, i_b, i_c = three[s, 0], three[s, 1], three[s, 2]
+    a, b, c = points[i_a, 0], points[i_b, 0], points[i_c, 0]
     weight_a = (t - b) * (t - c) / ((a - b) * (a - c))
     weight_b = (t - a) * (t - c) / ((b - a) * (b - c))
     weight_c = (t - a) * (t - b) / ((c - a) * (c - b))
     for i in range(pick.shape[0]):
-        film[U, i] = weight_a * past[0, 1 + i] + weight_b * past[1, 1 + i] + weight_c * past[2, 1 + i]
+        film[U, i] = weight_a * points[i_a, 1 + i] + weight_b * points[i_b, 1 + i] + weight_c * points[i_c, 1 + i]
     for f in range(clearances.shape[0]):
         x, y = 2 * f, 2 * f + 1
         if norm(film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]) > 0.999 * limit * clearances[f]:

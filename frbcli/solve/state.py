@@ -47,12 +47,13 @@ class Control(NamedTuple):
 # Positions in the state's array of numbers; what a run must keep to go on as if it had not stopped.
 (TIME, STEP, ERROR_BEFORE, PIECE, OUTPUTS, STEPS, REJECTED, SOLVES, TURNS, ERROR_NOW, ERROR_LARGEST, LARGEST_EPS,
  INVERSE_G, INVERSE_SPEED, STEP_BEFORE, NUMBERS) = range(16)
-HISTORY = 3  # stages remembered to predict the next one
+HISTORY = 3  # points of the step before that help to predict the stages of the next
 
 
 class State(NamedTuple):
     """Everything that changes. numbers: (NUMBERS,); q, v, a: (n,) displacement, velocity, acceleration;
-    past: (HISTORY, 1 + 2 films) time and journals' velocities of the last stages."""
+    past: (HISTORY, 1 + 2 films) time and journals' velocities at the start, the first stage and the end of the last
+    step."""
 
     numbers: Array
     q: Array

@@ -6,12 +6,16 @@ Every implicit stage then has the same linear rotor behind it, so that one small
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+NOISE = 0.1  # how much the amplification of errors counts against the reach of an extrapolation
 
 
 class Tableau(NamedTuple):
@@ -22,6 +26,7 @@ class Tableau(NamedTuple):
     defect: Array
     order: int
     error_order: int
+    guess: Indices
 
 
 @dataclass(frozen=True)
@@ -42,8 +47,25 @@ def _method(
     for i, row in enumerate(rows):
         stage[i, : len(row)] = row
     defect = stage[-1] - np.array(embedded)
-    tableau = Tableau(stage, stage.sum(axis=1), defect, order, min(order, embedded_order) + 1)
+    times = stage.sum(axis=1)
+    tableau = Tableau(stage, times, defect, order, min(order, embedded_order) + 1, _guess_points(times))
     return Method(name, source, embedded_order, tableau)
+
+
+def _guess_points(times: Array) -> Indices:
+    """(s, 3) the points of the parabola that guesses each stage: near to it, and not so near to each other that the
+    errors of the stages are blown up. Steps are taken as equal."""
+    points = np.concatenate([[-1.0, times[1] - 1.0], times])
+    chosen = np.zeros((len(times), 3), dtype=np.int64)
+    for s in range(1, len(times)):
+
+        def badness(three: tuple[int, ...], at: float = times[s]) -> float:
+            x = points[list(three)]
+            weights = [np.prod([(at - b) / (a - b) for b in x if b != a]) for a in x]
+            return float(np.abs(np.prod(at - x)) + NOISE * np.sum(np.abs(weights)))
+
+        chosen[s] = min(combinations(range(2 + s), 3), key=badness)
+    return chosen
 
 
 def _trbdf2() -> Method:
