@@ -42,10 +42,13 @@ _PUBLIC = {
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",
     "read_run": "frbcli.results.store",
+    "rotation": "frbcli.solve.kinematic",
     "rundown": "frbcli.solve.run",
     "runup": "frbcli.solve.run",
     "shipped_cases": "frbcli.case.shipped",
+    "squeeze": "frbcli.solve.kinematic",
     "stability": "frbcli.analysis.stability",
+    "whirl": "frbcli.solve.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
 }
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TESTS = ("runup",)
-LATER_TESTS = ("rotation", "squeeze", "whirl")  # kinematic tests of a bearing, which need films that this version lacks
+LATER_TESTS = ("rotation", "squeeze", "whirl")  # kinematic tests of a bearing, which compare models themselves
 INTERRUPTED = "interrupted"
 UNTIL = ("onset", "contact")  # from there on two runs differ in phase, whatever their films
 
@@ -158,7 +158,7 @@ def _check_test(test: str) -> None:
     if test in TESTS:
         return
     later = test in LATER_TESTS
-    problem = "comes with the kinematic bearing tests, in a later version." if later else "is no test."
+    problem = f"is a command of its own: `frb {test} CASE --cavitation A,B`." if later else "is no test."
     raise InputError("comparison", (Fault("--test", test, None, problem, f"There is: {', '.join(TESTS)}."),))
 
 

@@ -18,6 +18,9 @@ from frbcli.errors import Fault, FrbError, InputError, NotConverged
 # name: (module, one line of help); the module is imported when its command is called
 COMMANDS = {
     "check": ("frbcli.cli.check", "Validate a case; show its SI values and what will be modelled."),
+    "rotation": ("frbcli.cli.rotation", "Turn a journal at a displacement or under a load: films compared."),
+    "squeeze": ("frbcli.cli.squeeze", "Move a journal up and down: force over time."),
+    "whirl": ("frbcli.cli.whirl", "Move a journal on a circle: pressure over time."),
     "runup": ("frbcli.cli.runup", "Run a rotor up and write the run to a file."),
     "rundown": ("frbcli.cli.rundown", "Run a rotor up, hold it, run it down."),
     "waterfall": ("frbcli.cli.waterfall", "Draw the spectra of a run over time or rotor speed."),

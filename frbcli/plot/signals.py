@@ -18,7 +18,8 @@ Values = NDArray[np.float64]
 
 DRAWN_POINTS = 4000  # more than a picture has columns of pixels
 MICRO = 1e6
-CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerfeld", "reynolds": "Reynolds"}
+CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerfeld", "reynolds": "Reynolds",
+                    "peeken": "Peeken", "elrod": "Elrod"}  # fmt: skip
 
 
 def suffixes(run: Run, stem: str) -> list[str]:

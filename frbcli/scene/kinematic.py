@@ -1,9 +1,9 @@
-"""The plan of a kinematic bearing test (section 4.2.2): which section of the film is solved, with which law, on which cells."""
+"""The plan of a kinematic bearing test (section 4.2.2): which section of the film is solved, which law, which cells."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from frbcli.case.bearing import AxialGrooves, Bores, CircumferentialGroove, Pocket, SingleFilmBearing
 from frbcli.case.schema import Case, Motion
@@ -23,19 +23,20 @@ TESTS = ("rotation", "squeeze", "whirl")
 MODELS = ("half-sommerfeld", "sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")
 REMEMBERING = ("peeken", "elrod", "two-phase")  # oil is kept from one moment to the next; the others have no state
 
-STEADY_CELLS, FINE_CELLS = (160, 40), (240, 60)  # around, along: of the whole section, or of half of a symmetric one
-MOVING_CELLS = (72, 18)
+# around, along; of a section that is half the film half as many along
+STEADY_CELLS, FINE_CELLS = (160, 40), (240, 60)
+MOVING_CELLS = (64, 16)
 FINE_TARGET = 2e-4
-STEPS_PER_PERIOD = 240
+STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its force, hangs on the step
 FEWEST_CELLS = (12, 3)
 TWO_PI = 2.0 * math.pi
 
 
 @dataclass(frozen=True)
 class KinematicPlan:
-    """What will be modelled. section: of the film, copied section.copies times; rectangle: the bearing of the accurate modal
-    film, None where grooves or bores are cut out; cells: (around, along); steps: per period; rate: reference speed of the
-    test in rad/s, for the penalty model on the dimensionless pressure."""
+    """What will be modelled. section: of the film, copied section.copies times; rectangle: the bearing of the accurate
+    modal film, None where grooves or bores are cut out; cells: (around, along); steps: per period; rate: reference
+    speed of the test in rad/s, for the penalty model on the dimensionless pressure."""
 
     test: str
     cavitation: str
@@ -68,8 +69,15 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     assert isinstance(bearing, SingleFilmBearing)
     assert case.motion is not None
     section = _section(case, bearing)
-    rectangle = _rectangle(case, bearing, section)
+    rectangle = _rectangle(bearing, section)
+    closed = cavitation in ("sommerfeld", "half-sommerfeld") and bearing.ends == "free-to-air"
+    if closed:
+        far = "oil-bath" if section.far == "free-to-air" else section.far
+        section = replace(section, near="oil-bath", far=far)
     decisions = [_gap_decision(section, bearing), _film_decision(cavitation, rectangle is not None)]
+    if closed:
+        reason = f"{cavitation} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
+        decisions.append(Decision("ends", "ambient pressure", reason))
     cells, why = _cells(case, test)
     decisions.append(Decision("cells", f"{cells[0]} x {cells[1]}", f"around x along; {why}"))
     if test != "rotation":
@@ -140,7 +148,7 @@ def _section(case: Case, bearing: SingleFilmBearing) -> Section:
     )
 
 
-def _rectangle(case: Case, bearing: SingleFilmBearing, section: Section) -> RectangularBearing | None:
+def _rectangle(bearing: SingleFilmBearing, section: Section) -> RectangularBearing | None:
     if section.grooves or section.holes:
         return None
     return RectangularBearing(
@@ -169,7 +177,8 @@ def _gap_decision(section: Section, bearing: SingleFilmBearing) -> Decision:
     if section.far == "groove" and section.copies == 2:
         return Decision("gap", "1 of 2 sections", "a central circumferential groove parts two equal films")
     if section.far == "symmetry":
-        return Decision("gap", "half the width", f"supply {bearing.supply.kind}: the film is symmetric about its middle")
+        reason = f"supply {bearing.supply.kind}: the film is symmetric about its middle"
+        return Decision("gap", "half the width", reason)
     return Decision("gap", "the whole width", f"supply {bearing.supply.kind}: the film is not symmetric")
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from frbcli.case.bearing import SingleFilmBearing
+from frbcli.case.bearing import CircumferentialGroove, SingleFilmBearing
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
@@ -15,6 +15,7 @@ from frbcli.film.table import Mesh
 
 THEORIES = ("short", "finite")
 CAVITATIONS = ("sommerfeld", "half-sommerfeld")
+MIDDLE = 0.5  # axial position of a circumferential groove that parts two equal films
 SECTIONS = {"none": 1, "circumferential-groove": 2, "axial-grooves": 1}
 
 # A target of 1e-3 is met by the default mesh with a wide margin (docs/validation.md); a factor of ten less doubles it.
@@ -65,11 +66,15 @@ def make_plan(case: Case) -> Plan:
         decisions.append(Decision(choice, str(value), reason))
 
     sections = SECTIONS[bearing.supply.kind]
+    if isinstance(bearing.supply, CircumferentialGroove) and bearing.supply.axial_position != MIDDLE:
+        sections = 1
     decide("bearings", "1 of 2", "rotor and bearings are symmetric: both journals move alike, forces count twice")
     if bearing.supply.kind == "axial-grooves":
         decide("gap", f"{bearing.supply.count} rectangles", "axial grooves part the turn; odd axial modes vanish")
     elif sections == 2:
         decide("gap", "2 equal rectangles", "a central circumferential groove splits the width; one section is solved")
+    elif isinstance(bearing.supply, CircumferentialGroove):
+        decide("gap", "1 rectangle", "a circumferential groove at one end: one section of the whole width")
     else:
         decide("gap", "1 rectangle", "plain bearing: the pressure is symmetric about the middle, its odd modes vanish")
 
@@ -132,6 +137,8 @@ def _refuse_what_is_not_modelled(case: Case) -> None:
             missing("bearing.kind", bearing.kind, ("single-film",))
         elif bearing.supply.kind not in SECTIONS:
             missing("bearing.supply.kind", bearing.supply.kind, tuple(SECTIONS))
+        elif getattr(bearing.supply, "axial_position", MIDDLE) not in (0.0, MIDDLE, 1.0):
+            missing("bearing.supply.axial_position", "", ("0.5, 0 and 1",))
         elif bearing.supply.kind == "axial-grooves" and case.film.theory == "short":
             missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
     if case.film.cavitation not in CAVITATIONS:

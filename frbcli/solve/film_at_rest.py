@@ -22,6 +22,7 @@ GAP_KEPT = 0.3  # a step may shrink the narrowest gap to this share of it
 COARSE_CELLS = (80, 20)
 SMALLEST_SHARE = 0.05  # of a step that is tried
 STARTS = (0.6, 0.85, 0.3, 0.95)
+ATTITUDE = math.radians(20.0)
 
 
 def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: float) -> Array:
@@ -34,7 +35,8 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
     if plan.rectangle is not None and not plan.modal:
         position = resting_displacement(case, kinematic_plan(case, "half-sommerfeld"), load, omega)
     starts = [] if position is None else [position]
-    starts += [e * np.array([math.sin(a), -math.cos(a)]) for e in STARTS for a in (math.radians(40.0 * (omega > 0) - 20.0),)]
+    side = math.copysign(1.0, omega)  # the journal gives way in the sense of rotation
+    starts += [e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)]) for e in STARTS]
     problems = []
     for start in starts:
         try:
@@ -43,7 +45,8 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
         except NotConverged as problem:
             problems.append(str(problem))
     raise NotConverged(
-        f"{plan.cavitation}: no resting position under {load:g} N from {len(starts)} starts; the last one: {problems[-1]} "
+        f"no resting position under {load:g} N from {len(starts)} starts; the last one: "
+        f"{problems[-1].rstrip('.')}. "
         "Give a higher speed or more viscosity, width or supply, or a smaller clearance."
     )
 
@@ -91,9 +94,10 @@ def _differences(missing, position: Array, residual: Array) -> Array:  # type: i
     return np.column_stack([(missing(position + nudge * unit) - residual) / nudge for unit in np.eye(2)])
 
 
-def _limited(position: Array, step: Array) -> Array:
+def _limited(position: Array, step: NDArray[np.floating]) -> Array:
     """A step that leaves the narrowest gap a share of what it was."""
     limit = 1.0 - GAP_KEPT * (1.0 - np.linalg.norm(position))
     a, b, c = step @ step, position @ step, position @ position - limit**2
-    share: float = min(1.0, (math.sqrt(b * b - a * c) - b) / a) if a > 0.0 else 1.0
-    return share * step
+    share = min(1.0, float((math.sqrt(b * b - a * c) - b) / a)) if a > 0.0 else 1.0
+    limited: Array = np.asarray(share * step, dtype=np.float64)
+    return limited

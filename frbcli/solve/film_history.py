@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.loads import Loads, loads
+from frbcli.film.transient import march
 from frbcli.film.volumes import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.scene.kinematic import KinematicPlan, make_law
-from frbcli.solve.steady_film import FilmField, film_field, modal_force, pressure_at
+from frbcli.solve.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
 
 Array = NDArray[np.float64]
 Path = Callable[[float], Motion]
@@ -22,26 +23,24 @@ Path = Callable[[float], Motion]
 RISE_TIME = 0.01  # s, t_1 of (4.49)
 PROBE = math.pi  # phi of the probe and of the gap that is told: the bottom of the bearing
 PROBE_WIDTH = 0.25  # of the bearing's width from the end z = 0
-MOST_PARTS = 64  # of a time step that does not converge
 
 
 @dataclass(frozen=True)
 class History:
-    """A film over time, n moments. displacement: (n, 2) over the clearance; force: (n, 2) N on the journal; probe_pressure:
-    (n,) Pa absolute at the probe; gap_ratio: (n,) H there; defect: the largest relative defect of the oil balance."""
+    """A film over time, n moments. displacement: (n, 2) over the clearance; force: (n, 2) N on the journal;
+    probe_pressure: (n,) Pa absolute at the probe; gap_ratio: (n,) H there."""
 
     time_s: Array
     displacement: Array
     force: Array
     probe_pressure: Array
     gap_ratio: Array
-    defect: float
 
 
 @dataclass(frozen=True)
 class Course:
-    """What a moved film went through: its history, the field and loads at the moment of the largest force, cost, and why it
-    ended early, or nothing."""
+    """What a moved film went through: its history, the field and loads at the moment of the largest force, cost, and
+    why it ended early, or nothing."""
 
     history: History
     field: FilmField
@@ -53,6 +52,7 @@ class Course:
 
 @dataclass(frozen=True)
 class _Moment:
+    time: float
     motion: Motion
     solution: VolumeSolution
     loads: Loads
@@ -89,34 +89,38 @@ def film_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> Co
     A film that does not converge ends the course with a problem; NotConverged is raised if that is at once.
     """
     film = _film(case, plan, path, times)
-    w, moments, problem, spent = film.full(), [], "", 0
-    content = film.content(path(times[0]), w)
-    for before, now in zip(times[:-1], times[1:], strict=True):
-        motion = path(now)
-        try:
-            if plan.remembers:
-                solution, content, iterations = _advance(film, path, w, content, before, now)
-            else:
-                its = _lawful(case, plan, film, motion)
-                solution = its.steady(motion, w)
-                iterations = solution.iterations
-        except NotConverged as failure:
-            if not moments:
-                raise
-            problem = f"stopped at {before:.4g} s: {failure}"
-            break
-        w, spent = solution.w, spent + iterations
-        moments.append(_moment(case, plan, film, motion, solution))
-    time_s = times[1 : len(moments) + 1]
+    moments, problem = [], ""
+    try:
+        for time, motion, solution in _solutions(case, plan, film, path, times):
+            moments.append(_moment(case, plan, film, time, motion, solution))
+    except NotConverged as failure:
+        if not moments:
+            raise
+        problem = f"stopped at {moments[-1].time:.4g} s: {failure}"
     worst = max(moments, key=lambda moment: math.hypot(*moment.loads.force))
     return Course(
-        history=_history(moments, time_s, plan.remembers),
+        history=_history(moments),
         field=film_field(film, worst.motion, worst.solution),
         loads=worst.loads,
         unknowns=int(np.count_nonzero(~film.grid.fixed)),
-        iterations=spent,
+        iterations=sum(moment.solution.iterations for moment in moments),
         problem=problem,
     )
+
+
+def _solutions(
+    case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array
+) -> Iterator[tuple[float, Motion, VolumeSolution]]:
+    """Of each time after the first; in the middle of its step where the film has a state of its own."""
+    if plan.remembers:
+        yield from ((moment.time, moment.motion, moment.solution) for moment in march(film, path, times))
+        return
+    w = film.full()
+    for time in times[1:]:
+        motion = path(time)
+        solution = _lawful(case, plan, film, motion).steady(motion, w)
+        w = solution.w
+        yield float(time), motion, solution
 
 
 def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFilm:
@@ -135,43 +139,22 @@ def _lawful(case: Case, plan: KinematicPlan, film: VolumeFilm, motion: Motion) -
     return VolumeFilm(film.section, film.grid, make_law(case, plan, math.hypot(*motion.d)), film.scales.reference)
 
 
-def _advance(
-    film: VolumeFilm, path: Path, w: Array, content: Array, before: float, now: float
-) -> tuple[VolumeSolution, Array, int]:
-    """From one moment to the next, in as few equal parts as converge."""
-    parts = 1
-    while True:
-        try:
-            here, held, spent = w, content, 0
-            for i in range(parts):
-                t = before + (now - before) * (i + 1) / parts
-                solution, held = film.step(path(t), here, held, (now - before) / parts)
-                here, spent = solution.w, spent + solution.iterations
-            return solution, held, spent
-        except NotConverged:
-            parts *= 4
-            if parts > MOST_PARTS:
-                raise
-
-
-def _moment(case: Case, plan: KinematicPlan, film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> _Moment:
+def _moment(
+    case: Case, plan: KinematicPlan, film: VolumeFilm, time: float, motion: Motion, solution: VolumeSolution
+) -> _Moment:
     found = loads(film, motion, solution, factor=case.film.cavitation_factor)
     if plan.modal:
-        found = replace(found, force=modal_force(plan, motion))
+        found = replace(found, force=modal_force(plan, motion, COARSE_MODAL_MESH))
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
-    return _Moment(motion, solution, found, pressure_at(film_field(film, motion, solution), PROBE, place))
+    return _Moment(time, motion, solution, found, pressure_at(film_field(film, motion, solution), PROBE, place))
 
 
-def _history(moments: list[_Moment], times: Array, conserves: bool) -> History:
-    """Of what happened after the start, whose moment is added: a centred journal moves, but has built up nothing yet."""
-    defects = [abs(moment.loads.oil.defect_relative) for moment in moments]
+def _history(moments: list[_Moment]) -> History:
     motions = [moment.motion for moment in moments]
-    del conserves
     return History(
-        time_s=times,
+        time_s=np.array([moment.time for moment in moments]),
         displacement=np.array([motion.d for motion in motions]),
         force=np.array([moment.loads.force for moment in moments]),
         probe_pressure=np.array([moment.probe for moment in moments]),
         gap_ratio=np.array([1.0 + motion.d[1] for motion in motions]),  # H (4.4) at phi = pi
-        defect=max(defects),
     )

@@ -1,0 +1,180 @@
+"""What `frb rotation`, `frb squeeze`, `frb whirl` and their comparison share: options, table, JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from frbcli.cli.common import Terminal
+from frbcli.cli.runs import OUTPUT, here
+from frbcli.errors import NotConverged
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.solve.kinematic import KinematicResult, KinematicTest
+
+BAR = 1e5
+FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.", "CPU")
+OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance")
+EXPLANATION = (
+    "Forces in N on the journal, by the whole bearing; angle: of the force from the\n"
+    "x-axis; So: Sommerfeld number (3.14); p: bar, absolute; err.: of the force,\n"
+    "estimated from half the cells; CPU: s; torque: on the journal, N m; oil: mean\n"
+    "oil fraction; in, out: mm^3/s; balance: oil that appears from nowhere (negative)\n"
+    "or vanishes, over what passes through."
+)
+LARGEST = "Values are those of the moment of the largest force."
+
+
+class Names(click.ParamType[tuple[str, ...]]):
+    """Names separated by commas."""
+
+    name = "names"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
+        names = value if isinstance(value, tuple) else str(value).split(",")
+        return tuple(name.strip() for name in names if name.strip())
+
+
+def kinematic_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command --cavitation, -o and --picture."""
+    cavitation = click.option(
+        "--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]"
+    )
+    output = click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-TEST.png]")
+    picture = click.option("--picture/--no-picture", default=True, help="A picture of all models.")
+    decorated: Callable[..., Any] = cavitation(output(picture(function)))
+    return decorated
+
+
+def run_test(
+    case: Case, test: str, cavitation: tuple[str, ...], output: Path | None, picture: bool, terminal: Terminal
+) -> int | None:
+    """Run a test, tell it, draw it; its exit code."""
+    from frbcli.plot.style import check_picture
+    from frbcli.solve import kinematic
+
+    target = output or here(case.name, f"-{test}.png")
+    if picture:
+        check_picture(target)
+    tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
+    found = tests[test](case, cavitation)
+    report(found, terminal)
+    if picture:
+        draw(found, target, terminal)
+    results = [result_document(result) for result in found.results]
+    terminal.emit({"command": test, "case": case.name, "results": results})
+    return exit_code(found)
+
+
+def exit_code(found: KinematicTest) -> int | None:
+    """3 if a model did not converge."""
+    return NotConverged.exit_code if any(result.status != "ok" for result in found.results) else None
+
+
+def draw(found: KinematicTest, target: Path, terminal: Terminal) -> None:
+    """The picture of a test, if there is anything to see."""
+    from frbcli.plot.film import film_figure
+    from frbcli.plot.history import history_figure
+    from frbcli.plot.style import save_figure
+
+    if all(result.loads is None for result in found.results):
+        return
+    save_figure(film_figure(found) if found.test == "rotation" else history_figure(found), target)
+    terminal.say(f"picture: {target}")
+
+
+def report(found: KinematicTest, terminal: Terminal) -> None:
+    """Two tables: forces, and what the oil does."""
+    title = found.case.title or found.case.name
+    terminal.table(f"{title}: {found.test}", FORCES, map(_forces, found.results))
+    terminal.table("", OIL, map(_oil, found.results))
+    terminal.say(EXPLANATION)
+    if found.test != "rotation":
+        terminal.say(LARGEST)
+    for result in found.results:
+        if result.problem:
+            terminal.say(f"{result.cavitation}: {result.status}: {result.problem}")
+
+
+def _forces(result: KinematicResult) -> tuple[str, ...]:
+    loads = result.loads
+    if loads is None:
+        return (result.cavitation, "none", *[""] * (len(FORCES) - 3), f"{result.cpu_s:.1f}")
+    x, y = loads.force
+    size = math.hypot(x, y)
+    error = result.force_error
+    return (
+        result.cavitation,
+        f"{math.hypot(*result.displacement):.3f}",
+        _number(x, size),
+        _number(y, size),
+        _number(size, size),
+        "-" if math.isnan(result.sommerfeld_number) else f"{result.sommerfeld_number:.3g}",
+        f"{math.degrees(math.atan2(y, x)):.0f}°",
+        f"{loads.p_max / BAR:.4g}",
+        "-" if math.isnan(error) else f"{error:.0e}".replace("e-0", "e-"),
+        f"{result.cpu_s:.1f}",
+    )
+
+
+def _number(value: float, size: float) -> str:
+    """With the decimals that suit numbers of this size."""
+    decimals = max(0, 2 - math.floor(math.log10(size))) if size > 0.0 else 0
+    return f"{value:.{min(decimals, 6)}f}"
+
+
+def _oil(result: KinematicResult) -> tuple[str, ...]:
+    loads = result.loads
+    if loads is None:
+        return (result.cavitation, *[""] * (len(OIL) - 1))
+    return (
+        result.cavitation,
+        f"{loads.p_min / BAR:.4g}",
+        f"{loads.torque.journal:.4g}",
+        f"{loads.oil_fraction:.3f}",
+        f"{loads.oil.in_m3_s * 1e9:.4g}",
+        f"{loads.oil.out_m3_s * 1e9:.4g}",
+        f"{loads.oil.defect_relative:.0e}",
+    )
+
+
+def result_document(result: KinematicResult) -> dict[str, Any]:
+    """A result in JSON; null where there is no solution."""
+    loads, history = result.loads, result.history
+    oil = None if loads is None else loads.oil
+    document: dict[str, Any] = {
+        "cavitation": result.cavitation,
+        "theory": "finite",
+        "status": result.status,
+        "displacement": result.displacement,
+        "force_N": None if loads is None else loads.force,
+        "torque_journal_N_m": None if loads is None else loads.torque.journal,
+        "torque_shell_N_m": None if loads is None else loads.torque.shell,
+        "p_max_Pa": None if loads is None else loads.p_max,
+        "p_min_Pa": None if loads is None else loads.p_min,
+        "oil_fraction": None if loads is None else loads.oil_fraction,
+        "oil_balance": {
+            "in_m3_s": None if oil is None else oil.in_m3_s,
+            "out_m3_s": None if oil is None else oil.out_m3_s,
+            "defect_relative": None if oil is None else oil.defect_relative,
+        },
+        "error": {"force_relative": result.force_error},
+        "cost": {
+            "cpu_s": result.cpu_s,
+            "unknowns": result.unknowns,
+            "newton_iterations": result.newton_iterations,
+        },
+    }
+    if result.plan.test != "rotation":
+        document |= {
+            "t_s": None if history is None else history.time_s,
+            "force_history_N": None if history is None else history.force,
+            "probe_pressure_Pa": None if history is None else history.probe_pressure,
+            "gap_ratio": None if history is None else history.gap_ratio,
+        }
+    return document

@@ -1,0 +1,25 @@
+"""`frb rotation`: a kinematic bearing test of section 4.2.2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.kinematic import kinematic_options, run_test
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+
+
+@click.command()
+@case_argument
+@kinematic_options
+@output_options
+def command(
+    case: Case, cavitation: tuple[str, ...], output: Path | None, picture: bool, terminal: Terminal
+) -> int | None:
+    """A journal that turns at a displacement, or rests under a load: pressure, forces, torque, oil."""
+    return run_test(case, "rotation", cavitation, output, picture, terminal)

@@ -1,0 +1,119 @@
+"""A rotation: pressure, gap and oil fraction along the mid-line (figures 4.13, 4.14), and maps of one section."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from frbcli.plot.signals import CAVITATION_NAMES
+from frbcli.plot.style import COLOURS, GREY, LEVEL_MAP, new_figure, styled
+from frbcli.solve.kinematic import KinematicResult, KinematicTest
+from frbcli.solve.steady_film import FilmField
+
+Array = NDArray[np.float64]
+
+BAR = 1e5
+DEGREES = 180.0 / np.pi
+LINES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
+MAP_HEIGHT = 1.15  # inches of the maps of a model
+
+
+def film_figure(found: KinematicTest) -> Figure:
+    """Mid-lines of all models above, maps of pressure and oil fraction below, a row for each model with a solution."""
+    solved = [result for result in found.results if result.field is not None]
+    with styled():
+        motion = found.case.motion
+        speed = motion.speed if motion is not None and motion.speed else 0.0
+        words = f"rotation with {speed:g} Hz"
+        if len(solved) == 1 or motion is None or motion.load is None:
+            words += f", eccentricity {float(np.hypot(*solved[0].displacement)):.4g}"
+        height = 5.6 + MAP_HEIGHT * len(solved)
+        figure = new_figure(found.case.title or found.case.name, words, height=height)
+        parts: Any = figure.subfigures(2, 1, height_ratios=(5.2, MAP_HEIGHT * len(solved) + 0.4))
+        above, below = parts
+        _draw_lines(above, solved)
+        _draw_maps(below, solved)
+    return figure
+
+
+def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
+    pressure, gap, oil = figure.subplots(3, 1, sharex=True, height_ratios=(2.4, 1.0, 1.3))
+    for number, result in enumerate(solved):
+        field = result.field
+        assert field is not None
+        colour, line = COLOURS[number % len(COLOURS)], LINES[number % len(LINES)]
+        phi, values = mid_line(field, field.pressure, result.plan.section.far)
+        pressure.plot(phi, values / BAR, color=colour, linestyle=line, label=name_of(result.cavitation))
+        phi, values = mid_line(field, field.fraction, result.plan.section.far)
+        oil.plot(phi, values, color=colour, linestyle=line)
+        phi, values = _turn(field, field.gap)
+        gap.plot(phi, values, color=colour if _moved(solved) else GREY, linestyle=line if _moved(solved) else "-")
+    if len(solved) > 1:
+        pressure.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    pressure.set_title("along the middle of the film")
+    pressure.set_ylabel("pressure in bar")
+    gap.set_ylabel("gap H")
+    gap.set_ylim(bottom=0.0)
+    oil.set_ylabel("oil fraction")
+    oil.set_ylim(0.0, 1.05)
+    oil.set_xlim(0.0, 360.0)
+    oil.set_xticks(range(0, 361, 45))
+    oil.set_xlabel("phi in deg (0 at the top, counter-clockwise)")
+
+
+def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
+    rows = figure.subplots(len(solved), 2, sharex=True, sharey=True, squeeze=False)
+    fields = [result.field for result in solved if result.field is not None]
+    ranges = [
+        (min(float(f.pressure.min()) for f in fields) / BAR, max(float(f.pressure.max()) for f in fields) / BAR),
+        (min(float(f.fraction.min()) for f in fields), 1.0),
+    ]
+    meshes: list[Any] = []
+    for (left, right), result, field in zip(rows, solved, fields, strict=True):
+        for axes, values, (low, high) in zip(
+            (left, right), (field.pressure / BAR, field.fraction), ranges, strict=True
+        ):
+            phi, turned = _turn(field, values)
+            axes.grid(visible=False)
+            high = high if high > low else low + 1.0
+            mesh = axes.pcolormesh(
+                phi, field.z, turned.T, cmap=LEVEL_MAP, vmin=low, vmax=high, shading="nearest", rasterized=True
+            )
+            meshes.append(mesh)
+        left.set_title(name_of(result.cavitation), fontsize=9.0)
+        left.set_ylabel("z of section", fontsize=8.0)
+    for column, label in ((0, "pressure in bar"), (1, "oil fraction")):
+        bar = figure.colorbar(meshes[column], ax=rows[:, column], location="bottom", shrink=0.8, aspect=35)
+        bar.set_label(label)
+        bar.outline.set_visible(False)
+        rows[-1][column].set_xlim(0.0, 360.0)
+        rows[-1][column].set_xticks(range(0, 361, 90))
+
+
+def mid_line(field: FilmField, values: Array, far: str) -> tuple[Array, Array]:
+    """(phi in deg, values) in the middle: at the plane of symmetry of half a film, else half-way along the section."""
+    if far == "symmetry":
+        return _turn(field, values[:, -1])
+    return _turn(field, np.array([np.interp(0.5, field.z, row) for row in values]))
+
+
+def name_of(cavitation: str) -> str:
+    """A model as pictures call it."""
+    return CAVITATION_NAMES.get(cavitation, cavitation)
+
+
+def _turn(field: FilmField, values: Array) -> tuple[Array, Array]:
+    """(phi in deg, values) over one turn from 0 to 360, closed by its neighbours on both sides."""
+    phi = np.mod(field.phi, 2.0 * np.pi)
+    order = np.argsort(phi)
+    phi, values = phi[order] * DEGREES, values[order]
+    closed = np.concatenate([[phi[-1] - 360.0], phi, [phi[0] + 360.0]])
+    return closed, np.concatenate([values[-1:], values, values[:1]])
+
+
+def _moved(solved: list[KinematicResult]) -> bool:
+    """Whether the models' journals rest at different places."""
+    return len({result.displacement for result in solved}) > 1

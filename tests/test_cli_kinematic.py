@@ -1,0 +1,97 @@
+"""`frb rotation`, `frb squeeze`, `frb whirl`: JSON keys, exit codes, pictures, 80 columns."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from frbcli.cli.main import run
+
+ROTATION_KEYS = {
+    "cavitation", "theory", "status", "displacement", "force_N", "torque_journal_N_m", "torque_shell_N_m", "p_max_Pa",
+    "p_min_Pa", "oil_fraction", "oil_balance", "error", "cost",
+}  # fmt: skip
+HISTORY_KEYS = {"t_s", "force_history_N", "probe_pressure_Pa", "gap_ratio"}
+COARSE = ("--set", "accuracy.mesh=[8, 32]")
+
+
+def document(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> dict[str, Any]:
+    assert run([*arguments, "--json"]) == code
+    loaded: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return loaded
+
+
+def test_rotation_of_a_shipped_case(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    picture = tmp_path / "film.png"
+    found = document(
+        capsys, "rotation", "bearing-axial-groove", "--cavitation", "half-sommerfeld,elrod", *COARSE, "-o", str(picture)
+    )
+    assert set(found) == {"command", "case", "results"}
+    assert [result["cavitation"] for result in found["results"]] == ["half-sommerfeld", "elrod"]
+    for result in found["results"]:
+        assert set(result) == ROTATION_KEYS
+        assert result["status"] == "ok"
+        assert result["force_N"] == pytest.approx([0.0, 29.9], abs=0.01)
+        assert set(result["oil_balance"]) == {"in_m3_s", "out_m3_s", "defect_relative"}
+        assert set(result["cost"]) == {"cpu_s", "unknowns", "newton_iterations"}
+    assert abs(found["results"][1]["oil_balance"]["defect_relative"]) < 1e-10
+    assert picture.stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("test", ["squeeze", "whirl"])
+def test_histories(test: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    picture = tmp_path / "history.png"
+    arguments = (test, test, "--cavitation", "half-sommerfeld,elrod", "--set", "motion.periods=1", *COARSE)
+    found = document(capsys, *arguments, "-o", str(picture))
+    for result in found["results"]:
+        assert set(result) == ROTATION_KEYS | HISTORY_KEYS
+        assert len({len(result[key]) for key in HISTORY_KEYS}) == 1
+        assert min(result["gap_ratio"]) == pytest.approx(0.4, abs=0.005)
+    assert picture.stat().st_size > 10_000
+
+
+def test_tables_fit_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    models = "half-sommerfeld,two-phase"
+    assert run(["rotation", "bearing-axial-groove", "--cavitation", models, *COARSE, "--no-picture"]) == 0
+    told = capsys.readouterr().err
+    assert max(map(len, told.splitlines())) <= 80
+    assert "half-sommerfeld" in told  # not folded
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key"),
+    [
+        (("bearing", "--cavitation", "nonsense"), "--cavitation"),
+        (("bearing", "--set", "motion={eccentricity=1, speed='20 Hz'}"), "motion.eccentricity"),
+        (("bearing", "--set", "bearing.supply={kind='none'}"), "bearing.supply.kind"),
+        (("bearing", "--set", "film.two-phase.form=published"), "film.two-phase.form"),
+        (("bearing", "--set", "bearing.supply.axial_position=0.3"), "bearing.supply.axial_position"),
+        (
+            ("bearing", "--set", "bearing.supply={kind='bores', count=40, diameter='2.5 mm', pressure='2 bar'}"),
+            "bearing.supply.diameter",
+        ),
+        (
+            ("bearing", "--set", "bearing.supply={kind='bores', count=2, diameter='2 mm', axial_position=0.01, "
+                                 "pressure='2 bar'}"),
+            "bearing.supply.axial_position",
+        ),
+        (("jeffcott",), "motion"),
+    ],
+)  # fmt: skip
+def test_wrong_input_names_its_key(arguments: tuple[str, ...], key: str, capsys: pytest.CaptureFixture[str]) -> None:
+    found = document(capsys, "rotation", *arguments, code=2)
+    assert key in {fault["key"] for fault in found["faults"]}
+
+
+def test_run_up_of_a_kinematic_case_says_what_is_missing(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    found = document(capsys, "runup", "bearing", "-o", str(tmp_path / "run.h5"), code=2)
+    assert {fault["key"] for fault in found["faults"]} <= {"rotor", "speed"}
+
+
+def test_check_plans_a_kinematic_case(capsys: pytest.CaptureFixture[str]) -> None:
+    found = document(capsys, "check", "squeeze")
+    assert {"gap", "film", "cells", "steps"} <= {decision["choice"] for decision in found["plan"]}
