@@ -48,18 +48,13 @@ def test_load_finds_the_position_that_its_force_belongs_to() -> None:
 
 @pytest.mark.parametrize("row", SQUEEZE, ids=lambda row: f"{row['cavitation']} {row['ends']}")
 def test_squeeze_force_of_each_period(row: dict[str, str]) -> None:
-    """Largest vertical force of each period. The first one and, for the two-phase model, all three are held to 3 %; the
-    reference is stated to 1 to 2 %."""
+    """Largest vertical force of each period, to 3 %; the reference is stated to 1 to 2 %."""
     model = row["cavitation"].split()[0]
     history = squeeze(load_case("squeeze", [f"bearing.ends={row['ends']}"]), [model]).results[0].history
     assert history is not None
     periods = history.force[:, 1].reshape(3, -1).max(axis=1)
     expected = [float(row[f"period_{number}_Fy_max_N"]) for number in (1, 2, 3)]
-    if model == "elrod":  # the force that is left later on hangs on the last cells that fill up
-        assert periods[0] == pytest.approx(expected[0], rel=0.03)
-        assert periods[0] > 2.0 * periods[1] > 4.0 * periods[2] > 0.0
-    else:
-        assert periods == pytest.approx(expected, rel=0.03)
+    assert periods == pytest.approx(expected, rel=0.03)
 
 
 def test_history_as_a_table() -> None:

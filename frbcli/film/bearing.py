@@ -88,7 +88,7 @@ def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh
     edges = np.column_stack([ends, np.append(starts[1:], starts[0] + 2 * np.pi)])
     grid = chain_grid(edges, mesh.circumferential)
     # Over the grooves their own pressure acts; where the films are clipped, the level itself over the rest of the turn.
-    middles: Array = (np.arange(1000) + 0.5) / 1000.0
+    middles = np.asarray((np.arange(1000) + 0.5) / 1000.0, dtype=np.float64)
     mean = float(np.mean(profile(middles)))
     across = np.array([np.sum(np.cos(starts) - np.cos(ends)), np.sum(np.sin(starts) - np.sin(ends))])
     constant = (mean - (level if clipped else 0.0)) * across
