@@ -95,3 +95,14 @@ def test_run_up_of_a_kinematic_case_says_what_is_missing(capsys: pytest.CaptureF
 def test_check_plans_a_kinematic_case(capsys: pytest.CaptureFixture[str]) -> None:
     found = document(capsys, "check", "squeeze")
     assert {"gap", "film", "cells", "steps"} <= {decision["choice"] for decision in found["plan"]}
+
+
+def test_compare_runs_the_test_with_all_models_unless_told_otherwise(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("compare", "bearing-axial-groove", "--test", "rotation", *COARSE, "--no-picture")
+    found = document(capsys, *words)
+    assert (found["command"], found["test"]) == ("compare", "rotation")
+    models = [result["cavitation"] for result in found["results"]]
+    assert models == ["half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase"]
+    alone = document(capsys, "rotation", "bearing-axial-groove", "--cavitation", "elrod", *COARSE, "--no-picture")
+    assert found["results"][4]["force_N"] == alone["results"][0]["force_N"]
+    assert document(capsys, *words, "--theory", "short", code=2)["status"] == "input-error"

@@ -80,6 +80,16 @@ class Terminal:
             click.echo(json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False))
 
 
+class Names(click.ParamType[tuple[str, ...]]):
+    """Names separated by commas."""
+
+    name = "names"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
+        names = value if isinstance(value, tuple) else str(value).split(",")
+        return tuple(name.strip() for name in names if name.strip())
+
+
 def case_argument(function: Function) -> Function:
     """Give a command the argument CASE and the option --set; it receives the loaded `case: Case`."""
     settings = click.option(

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import exit_code, live_lines, progress_line
+from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from frbcli.analysis.compare import Comparison, VariantResult
@@ -24,21 +25,12 @@ EXPLANATION = (
 )
 
 
-class Names(click.ParamType[tuple[str, ...]]):
-    """Names separated by commas."""
-
-    name = "names"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
-        names = value if isinstance(value, tuple) else str(value).split(",")
-        return tuple(name.strip() for name in names if name.strip())
-
-
 @click.command()
 @case_argument
 @click.option("--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]")
 @click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [that of CASE]")
-@click.option("--test", default="runup", show_default=True, metavar="TEST", help="The scene: runup.")
+@click.option("--test", default="runup", show_default=True, metavar="TEST",
+              help="The scene: runup, rotation, squeeze, whirl.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
 @click.option("--picture/--no-picture", default=True, help="A picture of all.")
 @click.option("--keep", metavar="DIR", type=OUTPUT, help="Keep the run files in this directory.")
@@ -57,10 +49,12 @@ def command(
 
     With neither --cavitation nor --theory all models of this version are compared.
     """
-    from frbcli.analysis.compare import compare
+    from frbcli.analysis.compare import LATER_TESTS, compare
     from frbcli.plot.style import check_picture
 
     target = output or here(case.name, "-compare.png")
+    if test in LATER_TESTS:
+        return _kinematic(case, test, cavitation, theory, target, picture, terminal)
     check_picture(target)
     with live_lines(terminal) as show:
         watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
@@ -75,6 +69,25 @@ def command(
     results = [_document(result) for result in found.results]
     terminal.emit({"command": "compare", "case": case.name, "test": found.test, "results": results})
     return max((exit_code(result.run.status) for result in found.results), default=0)
+
+
+def _kinematic(
+    case: Case,
+    test: str,
+    cavitation: tuple[str, ...],
+    theory: tuple[str, ...],
+    target: Path,
+    picture: bool,
+    terminal: Terminal,
+) -> int:
+    """A kinematic test with several models; their films all have finite length."""
+    from frbcli.cli.kinematic import run_test
+    from frbcli.scene.kinematic import COMPARED
+
+    if set(theory) - {"finite"}:
+        problem = f"is not for a {test}, which solves the whole film."
+        raise InputError(case.name, (Fault("--theory", ",".join(theory), None, problem, "Leave it out."),))
+    return run_test(case, test, cavitation or COMPARED, target, picture, terminal, compared=True) or 0
 
 
 def _report(found: Comparison, terminal: Terminal) -> None:

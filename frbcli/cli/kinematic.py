@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.common import Terminal
+from frbcli.cli.common import Names, Terminal
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import NotConverged
 
@@ -30,16 +30,6 @@ EXPLANATION = (
 LARGEST = "Values are those of the moment of the largest force."
 
 
-class Names(click.ParamType[tuple[str, ...]]):
-    """Names separated by commas."""
-
-    name = "names"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
-        names = value if isinstance(value, tuple) else str(value).split(",")
-        return tuple(name.strip() for name in names if name.strip())
-
-
 def kinematic_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command --cavitation, -o and --picture."""
     cavitation = click.option(
@@ -52,9 +42,15 @@ def kinematic_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def run_test(
-    case: Case, test: str, cavitation: tuple[str, ...], output: Path | None, picture: bool, terminal: Terminal
+    case: Case,
+    test: str,
+    cavitation: tuple[str, ...],
+    output: Path | None,
+    picture: bool,
+    terminal: Terminal,
+    compared: bool = False,
 ) -> int | None:
-    """Run a test, tell it, draw it; its exit code."""
+    """Run a test, tell it, draw it; its exit code. compared: the document is that of `frb compare`."""
     from frbcli.plot.style import check_picture
     from frbcli.solve import kinematic
 
@@ -67,7 +63,8 @@ def run_test(
     if picture:
         draw(found, target, terminal)
     results = [result_document(result) for result in found.results]
-    terminal.emit({"command": test, "case": case.name, "results": results})
+    head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
+    terminal.emit({**head, "results": results})
     return exit_code(found)
 
 

@@ -21,6 +21,7 @@ from frbcli.scene.plan import Decision
 
 TESTS = ("rotation", "squeeze", "whirl")
 MODELS = ("half-sommerfeld", "sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")
+COMPARED = tuple(model for model in MODELS if model != "sommerfeld")  # where nothing else is said
 REMEMBERING = ("peeken", "elrod", "two-phase")  # oil is kept from one moment to the next; the others have no state
 
 # around, along; of a section that is half the film half as many along
