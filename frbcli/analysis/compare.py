@@ -16,6 +16,7 @@ from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run
+from frbcli.scene.kinematic import TESTS as KINEMATIC_TESTS
 from frbcli.scene.plan import CAVITATIONS, THEORIES, make_plan
 from frbcli.solve.run import Progress, runup
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TESTS = ("runup",)
-LATER_TESTS = ("rotation", "squeeze", "whirl")  # kinematic tests of a bearing, which compare models themselves
 INTERRUPTED = "interrupted"
 UNTIL = ("onset", "contact")  # from there on two runs differ in phase, whatever their films
 
@@ -157,8 +157,8 @@ def _rms(values: NDArray[np.float64]) -> float:
 def _check_test(test: str) -> None:
     if test in TESTS:
         return
-    later = test in LATER_TESTS
-    problem = f"is a command of its own: `frb {test} CASE --cavitation A,B`." if later else "is no test."
+    kinematic = test in KINEMATIC_TESTS
+    problem = f"is a function of its own: frbcli.{test}(case, cavitations)." if kinematic else "is no test."
     raise InputError("comparison", (Fault("--test", test, None, problem, f"There is: {', '.join(TESTS)}."),))
 
 

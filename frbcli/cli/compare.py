@@ -49,11 +49,12 @@ def command(
 
     With neither --cavitation nor --theory all models of this version are compared.
     """
-    from frbcli.analysis.compare import LATER_TESTS, compare
+    from frbcli.analysis.compare import compare
     from frbcli.plot.style import check_picture
+    from frbcli.scene.kinematic import TESTS
 
     target = output or here(case.name, "-compare.png")
-    if test in LATER_TESTS:
+    if test in TESTS:
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
     check_picture(target)
     with live_lines(terminal) as show:
