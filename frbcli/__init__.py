@@ -9,10 +9,13 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # so that types are known where they are checked
+    from frbcli.analysis.accuracy import accuracy as accuracy
     from frbcli.analysis.compare import compare as compare
     from frbcli.analysis.events import find_events as find_events
+    from frbcli.analysis.modes import natural_modes as natural_modes
     from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.analysis.stability import stability as stability
+    from frbcli.analysis.sweep import sweep as sweep
     from frbcli.case.load import load_case as load_case
     from frbcli.case.load import load_case_text as load_case_text
     from frbcli.case.schema import Case as Case
@@ -36,11 +39,13 @@ _PUBLIC = {
     "InputError": "frbcli.errors",
     "NotConverged": "frbcli.errors",
     "RunFileError": "frbcli.errors",
+    "accuracy": "frbcli.analysis.accuracy",
     "compare": "frbcli.analysis.compare",
     "find_events": "frbcli.analysis.events",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",
+    "natural_modes": "frbcli.analysis.modes",
     "read_run": "frbcli.results.store",
     "rotation": "frbcli.solve.kinematic",
     "rundown": "frbcli.solve.run",
@@ -48,6 +53,7 @@ _PUBLIC = {
     "shipped_cases": "frbcli.case.shipped",
     "squeeze": "frbcli.solve.kinematic",
     "stability": "frbcli.analysis.stability",
+    "sweep": "frbcli.analysis.sweep",
     "whirl": "frbcli.solve.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
 }

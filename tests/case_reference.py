@@ -42,6 +42,7 @@ TABLES = {
     "[bearing.ring]": "Ring",
     "[bearing.inner], [bearing.outer]": "FilmGeometry",
     "clearance = { cold = ... }": "ColdClearance",
+    "lobes = { ... }": "Lobes",
     'supply = { kind = "none" }': "NoSupply",
     'supply = { kind = "circumferential-groove" }': "CircumferentialGroove",
     'supply = { kind = "axial-grooves" }': "AxialGrooves",

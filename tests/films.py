@@ -11,7 +11,10 @@ import numpy as np
 from frbcli.film.bearing import RectangularBearing, evaluate, make_film
 from frbcli.film.kernel import FilmData
 from frbcli.film.table import Mesh
+from frbcli.rotor.linear import LinearRotor
+from frbcli.scene.films import HOUSING, ROTOR
 from frbcli.scene.plan import DEFAULT_MESH
+from frbcli.scene.system import System
 
 CLEARANCE, RADIUS, VISCOSITY, AMBIENT = 40e-6, 12.5e-3, 10e-3, 1e5
 GROOVED = RectangularBearing(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, AMBIENT)
@@ -51,3 +54,18 @@ def sommerfeld_number(bearing: RectangularBearing, force_N: float, omega: float)
     """So = psi^2 F / (D B eta omega), (3.14)."""
     psi = bearing.clearance / (0.5 * bearing.diameter)
     return psi**2 * force_N / (bearing.diameter * bearing.width * bearing.viscosity * omega)
+
+
+def system_of(rotor: LinearRotor, bearings: tuple[RectangularBearing, ...], films: tuple[FilmData, ...]) -> System:
+    """A rotor on single films in shells at rest."""
+    count = len(films)
+    return System(
+        rotor=rotor,
+        films=films,
+        names=tuple(str(i) for i in range(count)),
+        clearances=tuple(bearing.clearance for bearing in bearings),
+        bodies=np.tile([[ROTOR, HOUSING]], (count, 1)),
+        turning=np.tile([[[1.0], [1.0], [0.0]]], (count, 1, 1)),
+        drags=(0.0,) * count,
+        bearings=bearings,
+    )

@@ -191,8 +191,8 @@ def test_shipped_cases_load_and_have_titles(name: str) -> None:
     case = load_case(name)
     assert case.name == name
     assert shipped_cases()[name] == case.title != ""
-    if case.motion is None:
-        assert (case.film.cavitation, case.speed.start, case.speed.end) == ("half-sommerfeld", 0.0, 300.0)
+    if case.motion is None and case.bearings[0].kind == "single-film" and case.rotor.kind != "turbocharger":
+        assert (case.speed.start, case.speed.end) == (0.0, 300.0)
 
 
 def test_shipped_cases_are_what_their_names_say() -> None:

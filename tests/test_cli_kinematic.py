@@ -50,7 +50,16 @@ def test_histories(test: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
         assert set(result) == ROTATION_KEYS | HISTORY_KEYS
         assert len({len(result[key]) for key in HISTORY_KEYS}) == 1
         assert min(result["gap_ratio"]) == pytest.approx(0.4, abs=0.005)
+        assert 0.0 < result["error"]["force_relative"] < 0.1
     assert picture.stat().st_size > 10_000
+
+
+def test_starving_film_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("rotation", "bearing", "--cavitation", "elrod", "--no-picture")
+    found = document(capsys, *words, code=3)
+    assert found["results"][0]["status"] == "not-converged"
+    assert run(list(words)) == 3
+    assert "carries 0 N, at any eccentricity" in capsys.readouterr().err
 
 
 def test_tables_fit_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,7 +77,7 @@ def test_tables_fit_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: 
         (("bearing", "--cavitation", "nonsense"), "--cavitation"),
         (("bearing", "--set", "motion={eccentricity=1, speed='20 Hz'}"), "motion.eccentricity"),
         (("bearing", "--set", "bearing.supply={kind='none'}"), "bearing.supply.kind"),
-        (("bearing", "--set", "film.two-phase.form=published"), "film.two-phase.form"),
+        (("bearing", "--cavitation", "two-phase", "--set", "film.theory=short"), "film.theory"),
         (("bearing", "--set", "bearing.supply.axial_position=0.3"), "bearing.supply.axial_position"),
         (
             ("bearing", "--set", "bearing.supply={kind='bores', count=40, diameter='2.5 mm', pressure='2 bar'}"),

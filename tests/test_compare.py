@@ -105,14 +105,26 @@ def test_options_combine_and_repeat_nothing() -> None:
     assert len(set(everything)) == len(everything) == 4
 
 
+def test_models_that_keep_oil_are_compared_where_they_are_asked_for() -> None:
+    case = quick_case("film.theory=finite")
+    assert make_variants(case, ["elrod", HALF]) == (Variant("finite", "elrod"), Variant("finite", HALF))
+    assert {variant.cavitation for variant in make_variants(case)} == {HALF, FULL}
+
+
+def test_models_that_do_not_fit_the_case_are_refused_before_any_work(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"film[.]theory"):
+        compare(quick_case("film.theory=short"), [HALF, "elrod"], keep=tmp_path / "kept")
+    assert not (tmp_path / "kept").exists()
+
+
 def test_every_unknown_model_is_named_with_what_there_is() -> None:
     with pytest.raises(InputError) as caught:
-        make_variants(quick_case(), ["elrod", FULL, "wet"], ["long"])
+        make_variants(quick_case(), ["foam", FULL, "wet"], ["long"])
     faults = caught.value.faults
     assert [(fault.key, fault.value) for fault in faults] == [
-        ("--cavitation", "elrod"), ("--cavitation", "wet"), ("--theory", "long")
+        ("--cavitation", "foam"), ("--cavitation", "wet"), ("--theory", "long")
     ]  # fmt: skip
-    assert "sommerfeld, half-sommerfeld" in faults[0].remedy
+    assert "half-sommerfeld, sommerfeld, reynolds, penalty, peeken, elrod, two-phase" in faults[0].remedy
     assert "short, finite" in faults[2].remedy
 
 
@@ -194,7 +206,7 @@ def test_command_says_one_json_document_one_table_one_picture(
     assert len(found["results"]) == 4
     for result in found["results"]:
         assert list(result) == ["cavitation", "theory", "coupling", "status", "events", "deviation", "cost", "error"]
-        assert result["coupling"] is None
+        assert result["coupling"] == "dynamic-static"
         assert list(result["deviation"]) == ["eccentricity_largest", "eccentricity_rms", "until_s"]
     assert max(map(len, said.err.splitlines())) <= 80
     assert all(f"{result['cavitation']} {result['theory']}" in said.err for result in found["results"])

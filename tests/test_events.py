@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pytest
+from scipy.special import expit
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.analysis.events import SAMPLES_PER_REVOLUTION, WHIRL_BEGINS, Event, find_events, order_amplitude
+from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.results.store import Run
 
 
@@ -151,7 +153,8 @@ def test_each_bearing_has_its_own_events() -> None:
     calm, restless = signals(Rotor(whirl_s=None, critical_Hz=None)), signals(Rotor(critical_Hz=None))
     columns = {"time_s": calm["time_s"], "speed_Hz": calm["speed_Hz"]}
     for bearing, motion in (("left", calm), ("right", restless)):
-        columns |= {f"{name}_{bearing}": motion[name] for name in ("journal_x_m", "journal_y_m", "eccentricity")}
+        columns |= {f"journal_{bearing}_{axis}_m": motion[f"journal_{axis}_m"] for axis in "xy"}
+        columns[f"eccentricity_{bearing}"] = motion["eccentricity"]
     events = find_events(as_run(columns))
     assert [(event.kind, event.film) for event in events] == [("onset", "right")]
 
@@ -175,3 +178,107 @@ def test_two_hundred_thousand_samples_take_less_than_half_a_second() -> None:
     start = time.perf_counter()
     find_events(run)
     assert time.perf_counter() - start < 0.5
+
+
+# --------------------------------------------------------------------------------------------------- floating rings
+
+ROOM = 90e-6
+
+
+@dataclass(frozen=True)
+class RingWhirl:
+    """A whirl with the frequency of its film until it locks into lock_Hz, from begin_s to end_s."""
+
+    side: str
+    begin_s: float
+    end_s: float
+    lock_Hz: float
+    amplitude: float = 0.3
+
+
+def ring_run(*whirls: RingWhirl, name: str = "", noise: float = 0.0) -> Run:
+    """A run-up to 900 Hz in 3 s on a floating ring that turns with a quarter of the rotor's speed."""
+    time_s = np.arange(0.0, 3.0, 5e-5)
+    speed = 300.0 * time_s
+    ring = 0.25 * speed
+    motion = 0.2 * np.exp(-3.0 * time_s) + 0.01 * np.exp(1j * np.pi * speed * time_s)
+    for whirl in whirls:
+        free = 0.5 * (ring if whirl.side == "outer" else speed + ring)
+        turned = 2j * np.pi * np.cumsum(np.minimum(free, whirl.lock_Hz)) * 5e-5
+        there = expit(100.0 * (time_s - whirl.begin_s)) * expit(100.0 * (whirl.end_s - time_s))
+        motion = motion + whirl.amplitude * there * np.exp(turned)
+    if noise:
+        motion = motion + noise * np.random.default_rng(0).normal(size=(2, len(time_s))).T.copy().view(complex)[:, 0]
+    end = f"_{name}" if name else ""
+    columns = {"time_s": time_s, "speed_Hz": speed, f"ring_speed{end}_Hz": ring}
+    for kind, share in (("journal", 1.0), ("ring", 0.6)):
+        columns |= {f"{kind}{end}_x_m": share * ROOM * motion.real, f"{kind}{end}_y_m": share * ROOM * motion.imag}
+    clearances = {f"clearance_m{end}_inner": 40e-6, f"clearance_m{end}_outer": 50e-6}
+    return replace(as_run(columns), references=clearances)
+
+
+def kinds(events: tuple[Event, ...]) -> list[tuple[str, str | None]]:
+    return [(event.kind, event.film) for event in events if event.kind != "critical-speed"]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_inner_whirl_locks_into_a_mode_and_the_outer_one_follows(noise: float) -> None:
+    run = ring_run(RingWhirl("inner", 0.5, 2.0, 150.0), RingWhirl("outer", 2.3, 9.0, 1e3), noise=noise)
+    events = [event for event in find_events(run) if event.kind != "critical-speed"]
+    assert kinds(tuple(events)) == [("onset", "inner"), ("lock-in", "inner"), ("offset", "inner"), ("onset", "outer")]
+    onset, lock_in, offset, outer = events
+    assert onset.t_s == pytest.approx(0.5 - np.log(0.3 / 0.025) / 100.0, abs=0.03)
+    assert onset.frequency_Hz == pytest.approx(0.625 * onset.speed_Hz, rel=0.05)  # seen is rather what grows after it
+    assert lock_in.t_s == pytest.approx(150.0 / 0.95 / 187.5, abs=0.02)  # 5 % below the line of the free whirl
+    assert lock_in.frequency_Hz == pytest.approx(150.0, rel=0.02)
+    assert offset.t_s == pytest.approx(2.0 + np.log(0.3 / 0.0125) / 100.0, abs=0.04)
+    assert outer.frequency_Hz == pytest.approx(0.125 * outer.speed_Hz, rel=0.03)
+    assert outer.frequency_ratio == pytest.approx(0.125, rel=0.03)
+    assert whirl_names([asdict(event) for event in events]) == ["Sub_i"] * 3 + ["Sub_o"]
+
+
+def test_three_whirls_of_a_turbocharger_have_their_names() -> None:
+    """Conical, then cylindrical, then the outer film; the second goes on beside the third."""
+    run = ring_run(
+        RingWhirl("inner", 0.3, 1.0, 100.0),
+        RingWhirl("inner", 1.0, 9.0, 260.0),
+        RingWhirl("outer", 2.5, 9.0, 1e3, 0.1),
+        name="turbine",
+    )
+    events = find_events(run)
+    named = {
+        (event.kind, name): event
+        for event, name in zip(events, whirl_names([asdict(event) for event in events]), strict=True) if name
+    }  # fmt: skip
+    assert set(named) == {("onset", "Sub 1"), ("lock-in", "Sub 1"), ("offset", "Sub 1"), ("onset", "Sub 2"),
+                          ("lock-in", "Sub 2"), ("onset", "Sub 3")}  # fmt: skip
+    assert {event.film for event in events if event.film} == {"turbine_inner", "turbine_outer"}
+    assert named["offset", "Sub 1"].t_s == pytest.approx(1.0, abs=0.05)
+    assert named["onset", "Sub 2"].t_s == pytest.approx(1.0, abs=0.06)
+    assert named["onset", "Sub 2"].frequency_Hz == pytest.approx(187.5, rel=0.05)
+    assert named["onset", "Sub 3"].t_s == pytest.approx(2.5, abs=0.05)
+
+
+def test_combinations_of_two_whirls_are_no_whirls() -> None:
+    two = ring_run(RingWhirl("inner", 0.3, 9.0, 100.0), RingWhirl("inner", 1.2, 9.0, 1e3, 0.5))
+    difference = two["journal_x_m"] + 1j * two["journal_y_m"]
+    made = 0.1 * difference * np.abs(difference / ROOM) ** 2  # contains 2 f_1 - f_2 and 2 f_2 - f_1
+    columns = {name: two[name] for name in two.signals}
+    columns |= {"journal_x_m": (difference + made).real, "journal_y_m": (difference + made).imag}
+    events = find_events(replace(as_run(columns), references=two.references))
+    assert [kind for kind in kinds(events) if kind[0] == "onset"] == [("onset", "inner")] * 2
+
+
+def test_rings_without_whirl_have_no_events() -> None:
+    assert kinds(find_events(ring_run())) == []
+    assert kinds(find_events(ring_run(noise=0.05))) == []
+    assert kinds(find_events(ring_run(RingWhirl("inner", 1.0, 1.02, 1e3)))) == []  # a burst
+
+
+def test_the_film_that_touches_is_the_one_that_ends_a_run() -> None:
+    run = ring_run()
+    columns = {name: run[name] for name in run.signals}
+    columns["eccentricity_inner"] = np.full(len(run), 0.4)
+    columns["eccentricity_outer"] = np.linspace(0.1, 0.99, len(run))
+    events = find_events(replace(as_run(columns, "contact"), references=run.references))
+    assert kinds(events) == [("contact", "outer")]

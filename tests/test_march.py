@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from films import system_of
 from numpy.typing import NDArray
 from scipy.integrate import simpson, solve_ivp
 from scipy.linalg import block_diag, expm
@@ -63,12 +64,12 @@ class Result:
 
 def without_films(rotor: LinearRotor) -> System:
     count = len(rotor.journals)
-    return System(rotor, (WIDE,) * count, (NO_FILM,) * count)
+    return system_of(rotor, (WIDE,) * count, (NO_FILM,) * count)
 
 
 def with_short_films(rotor: LinearRotor) -> System:
     count = len(rotor.journals)
-    return System(rotor, (BEARING,) * count, (SHORT_FILM,) * count)
+    return system_of(rotor, (BEARING,) * count, (SHORT_FILM,) * count)
 
 
 def control(
@@ -114,7 +115,7 @@ def march(
     written, status = 0, RUNNING
     while status == RUNNING:
         status, fresh = advance(
-            data, system.films, tableau, limits, state, budget, out_q[written:], out_v[written:]
+            data, system.films, tableau, limits, state, budget, out_q[written:], out_v[written:], np.empty((rows, 0))
         )
         written += fresh
     assert written == int(state.numbers[OUTPUTS])
@@ -457,7 +458,9 @@ def test_numbers_do_not_depend_on_the_size_of_the_buffers() -> None:
     out_q, out_v = np.empty((20, 4)), np.empty((20, 4))
     rows, status = [], RUNNING
     while status == RUNNING:
-        status, written = advance(data, system.films, METHODS["esdirk4"].tableau, limits, state, 10**9, out_q, out_v)
+        status, written = advance(
+            data, system.films, METHODS["esdirk4"].tableau, limits, state, 10**9, out_q, out_v, np.empty((20, 0))
+        )
         rows.append(out_q[:written].copy())
     np.testing.assert_array_equal(np.concatenate(rows), whole.q)
 

@@ -15,10 +15,13 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
+from frbcli.case.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.displacement import displacement_figure
 from frbcli.plot.eccentricity import eccentricity_figure
+from frbcli.plot.oil_content import oil_content_figure
 from frbcli.plot.orbit import orbit_figure
+from frbcli.plot.ring_speed import ring_speed_figure
 from frbcli.plot.signals import DRAWN_POINTS, clearance, labels, model, thin
 from frbcli.plot.style import save_figure
 from frbcli.plot.summary import summary_figure
@@ -76,7 +79,8 @@ def test_waterfall_draws_the_rotor_speed_and_its_half_and_names_them(run: Run) -
 
 def test_waterfall_of_a_ring_draws_the_ring_lines(run: Run) -> None:
     columns = {name: run[name] for name in run.signals}
-    ringed = as_run(columns | {"ring_speed_Hz": 0.25 * run["speed_Hz"]})
+    ring = {"ring_x_m": run["journal_x_m"], "ring_y_m": run["journal_y_m"]}
+    ringed = as_run(columns | ring | {"ring_speed_Hz": 0.25 * run["speed_Hz"]})
     drawn = [np.asarray(line.get_ydata())[-1] for line in waterfall_figure(ringed).axes[0].get_lines()]
     np.testing.assert_allclose(np.array(drawn) / drawn[0], [1.0, 0.625, 0.125])
 
@@ -136,6 +140,67 @@ def test_bearings_have_a_curve_each() -> None:
     columns["eccentricity_right"] = 0.5 * columns["eccentricity_left"]
     figure = eccentricity_figure([as_run(columns)])
     assert [line.get_label() for line in figure.axes[0].get_lines()] == ["left", "right"]
+
+
+@pytest.fixture(scope="module")
+def ringed() -> Run:
+    """A run-up and run-down on a floating ring that turns with a quarter of the rotor's speed."""
+    columns = signals(Rotor(duration_s=3.0, whirl_s=None, step_s=2e-4, speeds_Hz=(0.0, 300.0, 300.0, 0.0)))
+    inner = columns.pop("eccentricity")
+    columns |= {"eccentricity_inner": inner, "eccentricity_outer": 0.5 * inner, "oil_fraction_inner": 1 - 0.2 * inner}
+    columns |= {"ring_x_m": 0.5 * columns["journal_x_m"], "ring_y_m": 0.5 * columns["journal_y_m"]}
+    columns["ring_speed_Hz"] = 0.25 * columns["speed_Hz"]
+    clearances = {"clearance_m_inner": 4e-5, "clearance_m_outer": 5e-5}
+    return replace(as_run(columns), case_text=load_case("floating-ring").source_text, references=clearances)
+
+
+def test_inner_and_outer_films_have_a_panel_each(ringed: Run) -> None:
+    above, below = eccentricity_figure([ringed]).axes
+    assert (above.get_title("left"), below.get_title("left")) == ("inner film", "outer film")
+    assert np.max(below.get_lines()[0].get_ydata()) == np.max(ringed["eccentricity_outer"])
+
+
+def test_the_way_up_and_the_way_down_are_two_curves_over_speed(ringed: Run) -> None:
+    figure = eccentricity_figure([ringed], over="speed")
+    up, down = figure.axes[0].get_lines()
+    assert [line.get_label() for line in (up, down)] == ["run-up", "run-down"]
+    assert (np.diff(up.get_xdata()) > 0).all()
+    assert (np.diff(down.get_xdata()) < 0).all()
+    assert "rotor speed in Hz" in texts(figure)
+    with pytest.raises(RunFileError, match="constant speed"):
+        eccentricity_figure([ringed], 1.2, 1.8, over="speed")
+
+
+def test_ring_speed_is_drawn_over_the_torque_balance(ringed: Run) -> None:
+    axes = ring_speed_figure([ringed]).axes[0]
+    curve, concentric = axes.get_lines()
+    assert np.nanmax(curve.get_ydata()) == pytest.approx(0.25)
+    inner, outer = 12.0 * 12.5**3 * 20 / 40, 14.0 * 20.0**3 * 16 / 50
+    assert np.unique(concentric.get_ydata()) == pytest.approx([inner / (inner + outer)])
+
+
+def test_ring_speed_and_oil_content_need_their_signals(run: Run, ringed: Run) -> None:
+    with pytest.raises(RunFileError, match="no ring that turns"):
+        ring_speed_figure([run])
+    with pytest.raises(RunFileError, match="how full"):
+        oil_content_figure([run])
+    (curve,) = oil_content_figure([ringed]).axes[0].get_lines()
+    assert np.min(curve.get_ydata()) == np.min(ringed["oil_fraction_inner"])
+
+
+def test_levels_of_a_ring_bearing_refer_to_both_clearances(ringed: Run, run: Run) -> None:
+    assert "C$_i$ + C$_o$" in texts(waterfall_figure(ringed, signal="disk"))
+    assert "C$_i$" not in texts(waterfall_figure(run))
+    assert clearance(ringed) == pytest.approx(9e-5)
+
+
+def test_the_summary_of_a_ring_names_its_whirls(ringed: Run) -> None:
+    told = [{"kind": kind, "film": film, "t_s": t, "speed_Hz": 100.0 * t, "frequency_ratio": 0.5}
+            for kind, film, t in (("onset", "inner", 0.5), ("lock-in", "inner", 0.8), ("onset", "outer", 2.2))]  # fmt: skip
+    written = texts(summary_figure(replace(ringed, events=told)))
+    for text in ("Sub$_i$ inner\n50.0 Hz", "Sub$_o$ outer\n220.0 Hz"):
+        assert text in written
+    assert "lock-in" not in written
 
 
 def test_orbit_lies_in_its_clearance_circle(run: Run) -> None:
@@ -202,7 +267,7 @@ def test_a_run_without_samples_is_refused(run: Run, figure: object) -> None:
 def test_a_run_without_clearance_has_no_waterfall(run: Run) -> None:
     with pytest.raises(RunFileError, match="clearance"):
         waterfall_figure(replace(run, references={}))
-    assert clearance(replace(run, references={"clearance_m": 1e-5, "clearance_m_left": 2e-5}), "_left") == 2e-5
+    assert clearance(replace(run, references={"clearance_m": 1e-5, "clearance_m_left": 2e-5}), "left") == 2e-5
 
 
 def test_thinned_curves_keep_their_extremes() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from films import system_of
 
 import frbcli
 from frbcli.analysis.stability import Stability, eigenvalues, stability
@@ -19,7 +20,7 @@ from frbcli.film.direct import direct_force
 from frbcli.film.table import Mesh
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.system import make_system
 from frbcli.solve.resting import resting_position
 
 EQUILIBRIUM = Path(__file__).parent / "data" / "equilibrium.csv"
@@ -180,7 +181,7 @@ def rigid_on_two_bearings(offset: float) -> LinearRotor:
 def test_two_equal_bearings_rest_and_swing_as_one_that_counts_twice() -> None:
     case = load_case("rigid", ["film.theory=short", "rotor.gravity=9.81 m/s^2"])
     one = make_system(case, make_plan(case))
-    two = System(rigid_on_two_bearings(0.0), one.bearings * 2, one.films * 2)
+    two = system_of(rigid_on_two_bearings(0.0), one.bearings * 2, one.films * 2)
     omega = 2 * math.pi * 100.0
     single, both = resting_position(one, omega), resting_position(two, omega)
     np.testing.assert_allclose(two.rotor.journals @ both, [single, single], rtol=1e-9)
@@ -199,7 +200,7 @@ def test_unequal_loads_are_shared_by_the_levers() -> None:
     one = make_system(case, make_plan(case))
     rotor = rigid_on_two_bearings(0.01)
     omega = 2 * math.pi * 60.0
-    journals = rotor.journals @ resting_position(System(rotor, one.bearings * 2, one.films * 2), omega)
+    journals = rotor.journals @ resting_position(system_of(rotor, one.bearings * 2, one.films * 2), omega)
     for journal, share in zip(journals, (0.6, 0.4), strict=True):
         carried = evaluate(one.films[0], one.clearances[0], journal, np.zeros(2), omega).force
         np.testing.assert_allclose(carried, [0.0, share * 6.1 * 9.81], atol=1e-7)
@@ -216,7 +217,7 @@ def test_elastic_rotor_on_three_bearings_is_in_equilibrium() -> None:
     load = 30.0 * rng.normal(size=9)
     rotor = LinearRotor(eye, none, none, 1e6 * root @ root.T, load, np.zeros(9), np.zeros(9), journals, np.ones(3), ())
     omega = 2 * math.pi * 40.0
-    q = resting_position(System(rotor, one.bearings * 3, one.films * 3), omega)
+    q = resting_position(system_of(rotor, one.bearings * 3, one.films * 3), omega)
     forces = [
         pick.T @ evaluate(one.films[0], one.clearances[0], pick @ q, np.zeros(2), omega).force for pick in journals
     ]

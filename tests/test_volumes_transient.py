@@ -20,7 +20,7 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.gap import Section
 from frbcli.film.loads import force, loads
 from frbcli.film.transient import Method, Moment, march, total_balance
-from frbcli.film.volume_grid import axial_faces, volume_grid
+from frbcli.film.volume_grid import volume_grid
 from frbcli.film.volumes import VolumeFilm, reference_pressure
 
 FREQUENCY, LARGEST_ECCENTRICITY = 10.0, 0.6
@@ -50,7 +50,7 @@ def film_of(law: Law, ends: str, around: int, along: int) -> VolumeFilm:
         RADIUS, WIDTH, WIDTH, CLEARANCE, VISCOSITY, AMBIENT, AMBIENT, copies=1, near=ends, far="groove"
     )
     phi = np.linspace(-math.pi, math.pi, around + 1)
-    grid = volume_grid(section, phi, axial_faces(section, along))
+    grid = volume_grid(section, phi, np.linspace(0.0, 1.0, along + 1))
     return VolumeFilm(section, grid, law, reference_pressure(section, squeeze(0.0)))
 
 
@@ -123,12 +123,13 @@ def whirl_costs() -> tuple[int, list[int]]:
 def test_no_steepness_makes_a_whirl_expensive() -> None:
     """All take the same time steps, and a few iterations in each: the steepest no more than the mildest."""
     steps, costs = whirl_costs()
-    assert max(costs) < 8 * steps
+    assert max(costs) < 7 * steps
     assert costs[3] <= costs[0]
+    assert max(costs[:4]) < 1.5 * min(costs[:4])  # measured 411 (x_1 = 0.9999) to 575 (0.9), a factor of 1.40
 
 
-@pytest.mark.xfail(strict=True, reason="measured 342 (Elrod) to 629 (x_1 = 0.9) iterations, a factor of 1.84")
-def test_every_steepness_costs_the_same_on_a_whirl() -> None:
+@pytest.mark.xfail(strict=True, reason="measured 273 (Elrod) to 575 (x_1 = 0.9) iterations, a factor of 2.1")
+def test_elrods_film_costs_on_a_whirl_what_every_steepness_does() -> None:
     """The aim: iterations within a factor of 1.5 of each other."""
     costs = whirl_costs()[1]
     assert max(costs) < 1.5 * min(costs)
@@ -160,7 +161,7 @@ def test_rotating_film_settles_to_its_steady_state() -> None:
     section = section_of("axial-groove", 2e5)
     motion = Motion((0.3, -0.4), (0.0, 0.0), 300.0)
     phi = math.radians(7.5) + np.linspace(0.0, 2.0 * math.pi, 49)
-    film = VolumeFilm(section, volume_grid(section, phi, axial_faces(section, 8)), TwoPhase(0.99), 100.0)
+    film = VolumeFilm(section, volume_grid(section, phi, np.linspace(0.0, 1.0, 9)), TwoPhase(0.99), 100.0)
     *_, last = march(film, lambda _: motion, np.linspace(0.0, 1.0, 200))
     steady = film.steady(motion)
     assert last.solution.state.fraction == pytest.approx(steady.state.fraction, abs=1e-6)

@@ -16,8 +16,10 @@ from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run
+from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.kinematic import MODELS
 from frbcli.scene.kinematic import TESTS as KINEMATIC_TESTS
-from frbcli.scene.plan import CAVITATIONS, THEORIES, make_plan
+from frbcli.scene.plan import CLOSED, THEORIES, make_plan
 from frbcli.solve.run import Progress, runup
 
 if TYPE_CHECKING:
@@ -32,15 +34,21 @@ UNTIL = ("onset", "contact")  # from there on two runs differ in phase, whatever
 
 @dataclass(frozen=True)
 class Variant:
-    """One model of the films."""
+    """One model of the films, and how they are coupled to the rotor."""
 
     theory: str
     cavitation: str
+    coupling: str = "auto"
 
     @property
     def name(self) -> str:
         """For tables and file names."""
-        return f"{self.cavitation} {self.theory}"
+        return f"{self.cavitation} {self.theory}" + ("" if self.coupling == "auto" else f" {self.coupling}")
+
+    @property
+    def coupled(self) -> str:
+        """The coupling that "auto" stands for, too."""
+        return chosen_coupling(self.coupling, self.cavitation)
 
 
 @dataclass(frozen=True)
@@ -61,6 +69,12 @@ class VariantResult:
     run: Run
     deviation: Deviation
 
+    @property
+    def ms_per_step(self) -> float:
+        """CPU time of a step, of one of the films' own if they have them."""
+        cost = self.run.cost
+        return 1e3 * float(cost["cpu_s"]) / max(float(cost.get("micro_steps", cost["steps"])), 1.0)
+
     def first(self, kind: str) -> dict[str, Any] | None:
         """The first event of a kind, None if there is none."""
         return next((event for event in self.run.events if event["kind"] == kind), None)
@@ -75,7 +89,7 @@ class Comparison:
     results: tuple[VariantResult, ...]
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row per variant: models, status, first events, deviation, cost, error."""
+        """One row per variant: models, coupling, status, first events, deviation, cost, error."""
         import pandas as pd
 
         return pd.DataFrame([_row(result) for result in self.results])
@@ -91,16 +105,22 @@ def compare(
     test: str = "runup",
     keep: str | Path | None = None,
     observe: Observer | None = None,
+    couplings: Sequence[str] = (),
 ) -> Comparison:
-    """Run a case with every combination of the given cavitation models and theories; () stands for that of the case.
+    """Run a case with every combination of the given cavitation models, theories and couplings; () stands for that of
+    the case.
 
-    With neither given, all models of this version are compared, that of the case first. keep: a directory for the run
-    files, made if need be; observe: called some times a second. Ctrl-C ends the comparison with an "interrupted" run.
-    Raises InputError for models or tests that there are not, fewer than two models, or files that cannot be written.
+    With none given, that of the case is compared with all that have no state and cost little. keep: a directory for
+    the run files, made if need be; observe: called some times a second. Ctrl-C ends the comparison with an
+    "interrupted" run.
+    Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
+    allow, or files that cannot be written; nothing is run then.
     """
     _check_test(test)
-    variants = make_variants(case, cavitations, theories)
+    variants = make_variants(case, cavitations, theories, couplings)
     cases = [_with_models(case, variant) for variant in variants]
+    for its_case in cases:
+        make_plan(its_case)
     runs: list[Run] = []
     with _directory(keep) as folder:
         for variant, its_case in zip(variants, cases, strict=True):
@@ -115,25 +135,31 @@ def compare(
     return Comparison(case, test, tuple(results))
 
 
-def make_variants(case: Case, cavitations: Sequence[str] = (), theories: Sequence[str] = ()) -> tuple[Variant, ...]:
+def make_variants(
+    case: Case, cavitations: Sequence[str] = (), theories: Sequence[str] = (), couplings: Sequence[str] = ()
+) -> tuple[Variant, ...]:
     """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
-    faults = [*_unknown("--cavitation", cavitations, CAVITATIONS), *_unknown("--theory", theories, THEORIES)]
+    faults = [*_unknown("--cavitation", cavitations, MODELS), *_unknown("--theory", theories, THEORIES)]
+    faults += _unknown("--coupling", couplings, COUPLINGS)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
     plan = make_plan(case)
-    own = Variant(plan.theory, plan.cavitation)
-    if not cavitations and not theories:
-        found = [own, *(Variant(theory, cavitation) for cavitation in CAVITATIONS for theory in THEORIES)]
+    own = Variant(plan.theory, plan.cavitation, case.film.coupling)
+    if not cavitations and not theories and not couplings:
+        others = (Variant(theory, cavitation, own.coupling) for cavitation in CLOSED for theory in THEORIES)
+        found = [own, *(variant for variant in others if _fits(case, variant))]
     else:
         found = [
-            Variant(theory, cavitation)
+            Variant(theory, cavitation, coupling)
             for cavitation in cavitations or (own.cavitation,)
             for theory in theories or (own.theory,)
+            for coupling in couplings or (own.coupling,)
         ]
     variants = tuple(dict.fromkeys(found))
     if len(variants) < 2:
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
-        remedy = f"There are --cavitation {','.join(CAVITATIONS)} and --theory {','.join(THEORIES)}."
+        remedy = f"There are --cavitation {','.join(MODELS)} and --theory {','.join(THEORIES)}, "
+        remedy += f"--coupling {','.join(COUPLINGS)}."
         raise InputError(case.name or "case", (Fault("comparison", "", None, problem, remedy),))
     return variants
 
@@ -168,8 +194,18 @@ def _unknown(option: str, names: Sequence[str], known: Sequence[str]) -> list[Fa
 
 
 def _with_models(case: Case, variant: Variant) -> Case:
-    settings = (f"film.theory={variant.theory}", f"film.cavitation={variant.cavitation}")
+    settings = (
+        f"film.theory={variant.theory}", f"film.cavitation={variant.cavitation}", f"film.coupling={variant.coupling}")
     return load_case_text(case.source_text, settings, name=case.name)
+
+
+def _fits(case: Case, variant: Variant) -> bool:
+    """Whether a run-up of the case can be made with the model: no short bearing with openings, for instance."""
+    try:
+        make_plan(_with_models(case, variant))
+    except InputError:
+        return False
+    return True
 
 
 @contextmanager
@@ -196,6 +232,7 @@ def _row(result: VariantResult) -> dict[str, Any]:
     return {
         "cavitation": result.variant.cavitation,
         "theory": result.variant.theory,
+        "coupling": result.variant.coupled,
         "status": result.run.status,
         "t_end_s": result.run.t_end_s,
         "critical_speed_Hz": np.nan if critical is None else critical["speed_Hz"],
@@ -205,5 +242,8 @@ def _row(result: VariantResult) -> dict[str, Any]:
         "deviation_rms": result.deviation.rms,
         "deviation_until_s": result.deviation.until_s,
         "cpu_s": result.run.cost["cpu_s"],
+        "ms_per_step": result.ms_per_step,
+        "micro_steps_per_macro_step": result.run.cost.get("micro_steps_per_macro_step", np.nan),
+        "simulated_ms_per_hour": result.run.cost["simulated_ms_per_hour"],
         "film_force_relative": result.run.error["film_force_relative"],
     }

@@ -1,25 +1,28 @@
-"""Events of a run, found from its signals alone: critical speed, onset and offset of sub-synchronous motion, contact.
+"""Events of a run, found from its signals alone: critical speed, onset, offset and lock-in of whirl, contact.
 
 The motion x + iy is read at even steps of the rotor's angle, where the synchronous motion turns once per revolution
 whatever the speed does. A Hann window of R revolutions that turns with order q (times the rotor speed) then gives the
 amplitude of that order, and is blind to the orders q + j/R for |j| >= 2. With R = 4 the window for half the rotor
-speed sees 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance (order 1).
+speed sees 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance (order 1). Floating rings whirl at
+lower orders, and with several frequencies at once: see subsynchronous.py.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks, oaconvolve
 from scipy.signal.windows import hann
 
-Values = NDArray[np.float64]
-Motion = NDArray[np.complex128]
-Kind = Literal["critical-speed", "onset", "offset", "contact"]
+from frbcli.analysis import signals
+from frbcli.analysis.signals import Motion, RunLike, Values, joined, points
+from frbcli.analysis.subsynchronous import find_whirls
+
+Kind = Literal["critical-speed", "onset", "offset", "lock-in", "contact"]
 
 SAMPLES_PER_REVOLUTION = 32  # a rotor's natural frequency then lies below the limit of sampling from some 10 Hz upwards
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
@@ -46,7 +49,8 @@ CONTACT_PAUSE_s = 0.1  # a journal that bounces touches many times in one contac
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened at t_s, at rotor speed speed_Hz. film: the bearing's name, None where there is but one.
+    """Something that happened at t_s, at rotor speed speed_Hz. film: the name of the film, None where there is but one;
+    of a whirl in floating rings the film that drives it.
 
     frequency_Hz, frequency_ratio (to the rotor speed): of the motion, where it has one.
     """
@@ -57,18 +61,6 @@ class Event:
     speed_Hz: float
     frequency_Hz: float | None
     frequency_ratio: float | None
-
-
-class RunLike(Protocol):
-    """What is read of a run: its signals by name, lengths in m to compare them with, how it ended."""
-
-    @property
-    def signals(self) -> Iterable[str]: ...
-    @property
-    def references(self) -> dict[str, float]: ...
-    @property
-    def status(self) -> str: ...
-    def __getitem__(self, name: str) -> Values: ...
 
 
 @dataclass(frozen=True)
@@ -83,26 +75,30 @@ class Revolutions:
 def find_events(run: RunLike) -> tuple[Event, ...]:
     """The events of a run, in the order of time.
 
-    Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (the names followed
-    by _ and the bearing's name if there are several) and the reference clearance_m, one for all or one per bearing;
-    uses disk_x_m, disk_y_m where there are any.
+    Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
+    bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film; uses
+    ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any.
     """
     time_s, speed = run["time_s"], run["speed_Hz"]
     if len(time_s) < 2:
         return ()
     events: list[Event] = []
     turns = _revolutions(time_s, speed)
-    films = list(_suffixes(run.signals, "journal_x_m"))
-    for suffix in films:
-        clearance = run.references.get("clearance_m" + suffix, run.references.get("clearance_m"))
-        if clearance is not None:
-            motion = _by_angle(run, "journal", suffix, turns) / clearance
-            events += _whirl(motion, turns, suffix[1:] or None, run.status == "contact")
-    events += _critical_speed(run, turns, films, min((e.t_s for e in events), default=np.inf))
-    for suffix in _suffixes(run.signals, "eccentricity"):
-        ended = run.status == "contact" and len(films) < 2
+    bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
+    for name in bearings:
+        room = signals.bearing_clearance(run, name)
+        if room is not None and name in rings:
+            events += _ring_whirls(run, name, room, turns)
+        elif room is not None:
+            motion = _by_angle(run, "journal", name, turns) / room
+            events += _whirl(motion, turns, name or None, run.status == "contact")
+    events += _critical_speed(run, turns, bearings, min((e.t_s for e in events), default=np.inf))
+    named = list(signals.films(run.signals))
+    touching = max(named, key=lambda film: float(run[joined("eccentricity", film)][-1]), default="")
+    for film in named:
+        ended = run.status == "contact" and film == touching
         limit = run.references.get("contact_eccentricity", CONTACT_ECCENTRICITY)
-        events += _contacts(time_s, speed, run["eccentricity" + suffix] >= limit, suffix[1:] or None, ended)
+        events += _contacts(time_s, speed, run[joined("eccentricity", film)] >= limit, film or None, ended)
     return tuple(sorted(events, key=lambda event: event.t_s))
 
 
@@ -127,14 +123,8 @@ def _revolutions(time_s: Values, speed: Values) -> Revolutions:
     return Revolutions(even, time_even, np.interp(time_even, time_s, speed))
 
 
-def _by_angle(run: RunLike, node: str, suffix: str, turns: Revolutions) -> Motion:
-    motion = run[f"{node}_x_m{suffix}"] + 1j * run[f"{node}_y_m{suffix}"]
-    return np.asarray(np.interp(turns.time_s, run["time_s"], motion))
-
-
-def _suffixes(names: Iterable[str], stem: str) -> Iterator[str]:
-    """What follows `stem` in the names of the signals: "" or "_name" of a bearing."""
-    return (name[len(stem) :] for name in names if name == stem or name.startswith(stem + "_"))
+def _by_angle(run: RunLike, kind: str, name: str, turns: Revolutions) -> Motion:
+    return np.asarray(np.interp(turns.time_s, run["time_s"], signals.motion_of(run, kind, name)))
 
 
 def _settled(turns: Revolutions) -> int:
@@ -142,6 +132,24 @@ def _settled(turns: Revolutions) -> int:
     by_angle = np.searchsorted(turns.revolution, START_REVOLUTIONS)
     by_time = np.searchsorted(turns.time_s, (turns.time_s[0] if len(turns.time_s) else 0.0) + START_s)
     return int(max(by_angle, by_time))
+
+
+def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> Iterator[Event]:
+    """Onset, lock-in and offset of each whirl of a floating ring bearing; room in m: C_i + C_o."""
+    time_s, speed_Hz = run["time_s"], run["speed_Hz"]
+    settled_s = float(turns.time_s[min(_settled(turns), len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
+    motion = signals.motion_of(run, "journal", name) / room
+    whirls = find_whirls(time_s, motion, speed_Hz, signals.ring_speed(run, name), settled_s, run.status == "contact")
+    for whirl in whirls:
+        moments: list[tuple[Kind, int]] = [("onset", 0)]
+        if whirl.lock_in is not None:
+            moments.append(("lock-in", whirl.lock_in))
+        if not whirl.lasts:
+            moments.append(("offset", len(whirl.time_s) - 1))
+        for kind, at in moments:
+            t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
+            speed = float(np.interp(t, time_s, speed_Hz))
+            yield Event(kind, joined(name, whirl.side), t, speed, frequency, frequency / speed)
 
 
 def _whirl(motion: Motion, turns: Revolutions, film: str | None, ends_in_contact: bool) -> Iterator[Event]:
@@ -193,17 +201,17 @@ def _whirl_event(kind: Kind, motion: Motion, turns: Revolutions, sample: int, fi
     return Event(kind, film, float(turns.time_s[sample]), speed, ratio * speed, ratio)
 
 
-def _critical_speed(run: RunLike, turns: Revolutions, films: list[str], before_s: float) -> Iterator[Event]:
+def _critical_speed(run: RunLike, turns: Revolutions, bearings: list[str], before_s: float) -> Iterator[Event]:
     """The resonance with the unbalance, if the run passes one before the time of its first whirl."""
-    nodes = [("disk", suffix) for suffix in _suffixes(run.signals, "disk_x_m")] or [("journal", s) for s in films]
+    nodes = [("disk", name) for name in points(run.signals, "disk")] or [("journal", name) for name in bearings]
     middle = CRITICAL_REVOLUTIONS * SAMPLES_PER_REVOLUTION // 2
     settled = _settled(turns) + middle
     until = int(np.searchsorted(turns.time_s, before_s)) - middle
     clearances = [length for name, length in run.references.items() if name.startswith("clearance_m")]
     floor = CRITICAL_FLOOR * min(clearances, default=0.0)
     best: tuple[float, int] | None = None
-    for node, suffix in nodes:
-        motion = _by_angle(run, node, suffix, turns)[settled - middle : until + middle]
+    for kind, name in nodes:
+        motion = _by_angle(run, kind, name, turns)[settled - middle : until + middle]
         if len(motion) <= 2 * middle:
             continue
         amplitude = order_amplitude(motion, 1.0, CRITICAL_REVOLUTIONS)

@@ -19,11 +19,12 @@ from scipy.optimize import brentq
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.film.bearing import FilmForce, evaluate
+from frbcli.film.bearing import FilmForce
 from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.ring import without_spins
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
-from frbcli.solve.resting import resting_position
+from frbcli.solve.resting import held_rotor, resting_position, ring_speeds
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,15 +60,17 @@ class RestingFilm:
 class StabilityPoint:
     """The rotor at one speed.
 
-    films: one per bearing of the case; eigenvalues: (2 n,) in 1/s, ascending in |imaginary part|, then in the real
-    part, of a pair the one with positive imaginary part first. Both are empty where no resting position was found;
-    problem then says why, and is empty otherwise.
+    films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
+    ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
+    ring_speeds_Hz: of the rings that turn; their speeds stand while the rotor moves. All are empty where no resting
+    position was found; problem then says why, and is empty otherwise.
     """
 
     speed_Hz: float
     films: tuple[RestingFilm, ...]
     eigenvalues: Eigenvalues
     problem: str = ""
+    ring_speeds_Hz: tuple[float, ...] = ()
 
     @property
     def status(self) -> str:
@@ -136,6 +139,10 @@ def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
     system = make_system(case, make_plan(case))
+    if system.remembers:
+        problem = "keeps oil of its own: eight coefficients per speed do not say whether the rotor is stable."
+        remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
+        raise InputError(case.name or "case", (Fault("film.cavitation", case.film.cavitation, None, problem, remedy),))
     speeds = sorted(set(default_speeds(case)) | set(asked))
     found: dict[float, StabilityPoint] = {}
     start: Array | None = None
@@ -181,12 +188,16 @@ def _linearised(system: System, speed: float, resting: Array) -> StabilityPoint:
     """The point at a speed in Hz of the rotor that rests in the displacements `resting` (n,)."""
     omega = 2 * math.pi * speed
     journals = system.rotor.journals @ resting
+    turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
+    omegas = system.omegas(omega, turning)
     films = tuple(
-        _resting_film(evaluate(film, clearance, position, np.zeros(2), omega), position / clearance)
-        for film, clearance, position in zip(system.films, system.clearances, journals, strict=True)
+        _resting_film(system.film_force(i, position, np.zeros(2), float(omegas[i])), position / clearance)
+        for i, (clearance, position) in enumerate(zip(system.clearances, journals, strict=True))
     )
     stiffness, damping = np.stack([film.stiffness for film in films]), np.stack([film.damping for film in films])
-    return StabilityPoint(speed, films, eigenvalues(system.rotor, omega, stiffness, damping))
+    rotor = without_spins(system.rotor, system.ring_count)
+    rings = tuple((turning / (2 * math.pi)).tolist())
+    return StabilityPoint(speed, films, eigenvalues(rotor, omega, stiffness, damping), ring_speeds_Hz=rings)
 
 
 def _resting_film(force: FilmForce, displacement: Array) -> RestingFilm:

@@ -24,12 +24,19 @@ from frbcli.case.quantities import (
     Mass,
     OpeningAngle,
     Position,
+    Preload,
     Pressure,
+    RiseTime,
     Temperature,
     Viscosity,
 )
 
 ROOM_TEMPERATURE = 293.15
+
+
+Ramp = Annotated[
+    RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
+]
 
 
 class NoSupply(Model):
@@ -44,6 +51,7 @@ class CircumferentialGroove(Model):
     kind: Literal["circumferential-groove"]
     axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
     pressure: Pressure
+    ramp: Ramp = 0.0
 
 
 class AxialGrooves(Model):
@@ -54,6 +62,7 @@ class AxialGrooves(Model):
     position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
     opening_angle: OpeningAngle = Field(description="angle that one groove takes")
     pressure: Pressure
+    ramp: Ramp = 0.0
 
 
 class Bores(Model):
@@ -66,6 +75,7 @@ class Bores(Model):
     position: Angle = Field(default=0.0, description="phi of the first bore")
     on: Literal["shell", "journal"] = Field(default="shell", description="the surface that the bores are in")
     pressure: Pressure
+    ramp: Ramp = 0.0
 
 
 class Pocket(Model):
@@ -76,6 +86,7 @@ class Pocket(Model):
     opening_angle: OpeningAngle
     width: Length
     pressure: Pressure
+    ramp: Ramp = 0.0
 
 
 Supply = Annotated[NoSupply | CircumferentialGroove | AxialGrooves | Bores | Pocket, Field(discriminator="kind")]
@@ -107,6 +118,20 @@ AnyClearance = Annotated[
 ]
 
 
+class Lobes(Model):
+    """Equal lobes of the shell, whose bores have a larger radius than the journal needs (preload)."""
+
+    count: Annotated[int, Count(2, 12, 3)]
+    preload: Preload = Field(
+        description="1 - c_b / c_p: `clearance` gives c_b, that of the assembled bearing where a lobe is narrowest; "
+        "c_p is the machined one of a lobe's bore"
+    )
+    position: Angle = Field(default=0.0, description="phi of the middle of the first lobe")
+    offset: Fraction = Field(
+        default=0.5, description="where a lobe is narrowest, as a share of its arc from its start, counter-clockwise"
+    )
+
+
 class FilmGeometry(Model):
     """The geometry of one film and what surrounds it."""
 
@@ -115,6 +140,7 @@ class FilmGeometry(Model):
     given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
     ends: Literal["free-to-air", "oil-bath"] = "free-to-air"
     supply: Supply = NoSupply()
+    lobes: Lobes | None = Field(default=None, description="of the shell, which is a plain cylinder if not given")
     viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
     temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
 
@@ -138,6 +164,9 @@ class Ring(Model):
 
     mass: Mass
     inertia: Inertia = Field(description="about the axis of rotation")
+    spin: Literal["free", "blocked"] = Field(
+        default="free", description="whether the films turn the ring; a blocked one floats without turning"
+    )
 
 
 class FloatingRingBearing(Model):
@@ -149,6 +178,9 @@ class FloatingRingBearing(Model):
     ring: Ring
     inner: FilmGeometry
     outer: FilmGeometry
+    centrifugal_pressure: bool = Field(
+        default=True, description="whether oil in the channels of the ring is thrown outwards, (4.27) to (4.29)"
+    )
 
 
 Bearing = Annotated[SingleFilmBearing | FloatingRingBearing, Field(discriminator="kind")]

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from frbcli.case import lines
 from frbcli.case.checks import Breach, breaches
 from frbcli.case.faults import objections, with_nearest_kinds
+from frbcli.case.ross import with_rotor_file
 from frbcli.case.schema import Case
 from frbcli.case.settings import with_setting
 from frbcli.case.shipped import find_shipped, nearest, shipped_names
@@ -27,17 +28,20 @@ def load_case(source: str | Path, settings: Sequence[str] = ()) -> Case:
 
     Raises InputError with every fault of file and settings.
     """
-    text = _read(Path(source))
+    path = Path(source)
+    text = _read(path)
     if text is None:
         text = _shipped(str(source))
-    return load_case_text(text, settings, name=Path(source).name.removesuffix(".toml"), source=str(source))
+    return load_case_text(text, settings, path.name.removesuffix(".toml"), str(source), path.parent)
 
 
-def load_case_text(text: str, settings: Sequence[str] = (), name: str = "case", source: str = "") -> Case:
+def load_case_text(
+    text: str, settings: Sequence[str] = (), name: str = "case", source: str = "", folder: str | Path = "."
+) -> Case:
     """The case in the TOML `text` with `settings` applied.
 
-    name: what the case is called if the text does not say; source: what errors call the text, `name` if not given.
-    Raises InputError with every fault of text and settings.
+    name: what the case is called if the text does not say; source: what errors call the text, `name` if not given;
+    folder: where a rotor file is sought. Raises InputError with every fault of text and settings.
     """
     source = source or name
     try:
@@ -46,7 +50,9 @@ def load_case_text(text: str, settings: Sequence[str] = (), name: str = "case", 
         raise InputError(source, (error.fault,)) from None
     data, overridden, faults = _apply(data, settings)
     data = data if "name" in data else {"name": _printable(name), **data}
+    data, unread = with_rotor_file(data, Path(folder))
     case, found = _validate(data)
+    found = [*unread, *found]
     if found:
         faults += _located(found, data, overridden, text)
     if faults or case is None:

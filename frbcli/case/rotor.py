@@ -14,6 +14,7 @@ from frbcli.case.quantities import (
     Damping,
     Density,
     Fraction,
+    Identifier,
     Inertia,
     InnerDiameter,
     JournalMass,
@@ -23,6 +24,7 @@ from frbcli.case.quantities import (
     Modulus,
     Position,
     Ratio,
+    Speed,
     Stiffness,
     Unbalance,
 )
@@ -57,7 +59,13 @@ class TurbochargerRotor(Model):
     """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
 
     kind: Literal["turbocharger"]
-    modes: Annotated[int, Count(1, 200, 6)] = Field(default=6, description="modes kept in each plane")
+    file: Label = Field(
+        default="", description="rotor file of the Python package ROSS, in place of [[shaft]]; from the case's folder"
+    )
+    modes: Annotated[int, Count(2, 200, 6)] = Field(
+        default=6, description="modes kept in each plane, of the free rotor: translation, tilt, then bending"
+    )
+    cutoff: Speed | None = Field(default=None, description="in place of `modes`: keep those up to this frequency")
     modal_damping: Fraction = Field(default=0.0, description="damping ratio of every elastic mode")
     external_damping: Damping = Field(default=0.0, description="damping of each disk against the ground")
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
@@ -80,7 +88,7 @@ class ShaftSection(Model):
 class Disk(Model):
     """A wheel, a nut or a thrust disk on a turbocharger's shaft."""
 
-    name: Label = ""
+    name: Identifier = ""
     position: Position = Field(description="along the shaft, from the start of its first section")
     mass: Mass
     polar_inertia: Inertia = Field(default=0.0, description="about the axis of rotation")

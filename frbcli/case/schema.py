@@ -48,8 +48,10 @@ DEFAULT_HOLD = 0.5
 OUTPUT_STEP = 5e-5  # resolves 10 kHz
 CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; the films are computed up to here
 STEPS_PER_REVOLUTION = 40
+MACRO_STEP = 1e-6  # table 6.2
 
 Theory = Literal["auto", "short", "finite"]
+Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
 Cavitation = Literal["sommerfeld", "half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase"]
 
 
@@ -127,6 +129,10 @@ class FilmModel(Model):
     cavitation_factor: Literal["global", "local", "none"] = Field(
         default="global", description="how missing oil lowers the torque: by its mean (4.46), place by place, or not"
     )
+    torque: Literal["all", "couette", "simple"] = Field(
+        default="all", description="on floating rings: both terms of (3.17), the first one, or formula (4.6)"
+    )
+    coupling: Coupling = Field(default="auto", description="how rotor and films are advanced together")
     penalty: Penalty = Penalty()
     peeken: Peeken = Peeken()
     elrod: Elrod = Elrod()
@@ -187,6 +193,9 @@ class Accuracy(Model):
         default=None, description="of the time integration, relative to the clearance"
     )
     steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = STEPS_PER_REVOLUTION
+    macro_step: Annotated[float, Quantity("s", "1e-6 s", above=0)] = Field(
+        default=MACRO_STEP, description="of a co-simulation, the longest"
+    )
 
 
 class Output(Model):

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping
 from typing import Any
 
 from frbcli.case.lines import Path
-from frbcli.case.toml import TomlFault
+from frbcli.case.toml import TomlFault, parse
 from frbcli.errors import Fault
 
 DEEPEST_KEY = 8
@@ -32,8 +31,8 @@ def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any],
 
 def _value(text: str) -> Any:
     try:
-        parsed = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
+        parsed = parse(f"value = {text}")
+    except TomlFault:
         return text.strip()
     return parsed["value"] if len(parsed) == 1 else text.strip()
 

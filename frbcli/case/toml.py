@@ -12,6 +12,9 @@ from frbcli.errors import Fault
 
 _LINE = re.compile(r"\s*\(at line (\d+), column \d+\)")
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
+_KEY_END = re.compile(r"[=,{]")
+LONGEST_KEY = 200  # dots; a case has three, and tomllib takes minutes for some ten thousand
+DEEPEST = 30  # tables and lists in each other; what reads them recurs once or twice for each
 
 
 class TomlFault(Exception):
@@ -24,17 +27,40 @@ class TomlFault(Exception):
 
 def parse(text: str) -> dict[str, Any]:
     """The tables of `text`. Raises TomlFault."""
+    for line, content in enumerate(text.split("\n"), 1):
+        if content.count(".") > LONGEST_KEY and _has_long_key(content):
+            raise TomlFault(Fault("text", "", line, "has a key of very many parts.", "Lines read: key = value."))
     try:
-        return tomllib.loads(text)
+        tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         found = _LINE.search(str(error))
         line = int(found.group(1)) if found else text.count("\n") + 1
         problem = f"is not TOML: {_LINE.sub('', str(error)).replace(' (at end of document)', ' at the end')}."
         raise TomlFault(Fault("text", "", line, problem, 'Lines read: key = value; text stands in "quotes".')) from None
     except RecursionError:
-        raise TomlFault(Fault("text", "", None, "is nested too deeply.", "Write tables as [table.table].")) from None
+        raise _too_deep() from None
     except ValueError as error:  # whole numbers of thousands of digits, dates like 2000-99-99
         raise TomlFault(Fault("text", "", None, f"cannot be read: {error}.", "Write plain numbers.")) from None
+    if _is_too_deep(tables):
+        raise _too_deep()
+    return tables
+
+
+def _too_deep() -> TomlFault:
+    return TomlFault(Fault("text", "", None, "is nested too deeply.", "Write tables as [table.table]."))
+
+
+def _has_long_key(line: str) -> bool:
+    """Whether a line has what may be a key with too many dots: numbers in a list end at commas."""
+    return not line.lstrip().startswith("#") and any(part.count(".") > LONGEST_KEY for part in _KEY_END.split(line))
+
+
+def _is_too_deep(tables: dict[str, Any]) -> bool:
+    level: list[Any] = [tables]
+    for _ in range(DEEPEST):
+        inner = (item for value in level for item in (value.values() if isinstance(value, dict) else value))
+        level = [item for item in inner if isinstance(item, dict | list)]
+    return bool(level)
 
 
 def to_toml(data: Mapping[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import click
@@ -10,6 +11,10 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
+    from frbcli.scene.operating import FilmOperation
+
+TURN = 2.0 * math.pi
+TURNING_TOLD = 0.02  # of the gap
 
 
 @click.command()
@@ -19,11 +24,14 @@ def command(case: Case, terminal: Terminal) -> None:
     """Validate CASE; show its SI values and the plan: what will be modelled, what is left out, and why."""
     from frbcli.case.listing import values
     from frbcli.scene.kinematic import kinematic_plan
+    from frbcli.scene.operating import operating_points
     from frbcli.scene.plan import make_plan
 
     listed = values(case)
     rows = [(value.key, _in_si(value.value, value.unit), value.shown if value.unit else "") for value in listed]
     terminal.table(f"{case.name}: {case.title}".rstrip(": "), ("key", "SI", "reads"), rows)
+    films = operating_points(case)
+    _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
     test = "squeeze" if case.motion is not None and case.motion.frequency else "rotation"
     # after the values, which help to see why a plan is refused
@@ -36,9 +44,50 @@ def command(case: Case, terminal: Terminal) -> None:
             "title": case.title,
             "status": "ok",
             "values": [{"key": value.key, "value": value.value, "unit": value.unit} for value in listed],
+            "films": [
+                {
+                    "film": film.name,
+                    "clearance_m": film.clearance,
+                    "viscosity_Pa_s": film.viscosity,
+                    "speed_Hz": film.omega / TURN,
+                    "reynolds_number": film.reynolds,
+                    "laminar": film.laminar,
+                    "warming_m": film.warming,
+                    "turning_m": film.turning,
+                }
+                for film in films
+            ],
             "plan": [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in plan.decisions],
         }
     )
+
+
+def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
+    columns = ("film", "gap, um", "by heat, um", "by turning", "mPa*s", "Hz", "Re (3.3)")
+    rows = [
+        (
+            film.name,
+            f"{1e6 * film.clearance:.4g}",
+            f"{1e6 * film.warming:+.3g}",
+            f"{1e6 * film.turning:+.2g}",
+            f"{1e3 * film.viscosity:.4g}",
+            f"{film.omega / TURN:.4g}",
+            f"{film.reynolds:.0f}",
+        )
+        for film in films
+    ]
+    terminal.table("films at the top speed", columns, rows)
+    for film in films:
+        if not film.laminar:
+            terminal.say(
+                f"Warning: {film.name}: the Reynolds number {film.reynolds:.0f} is not below 2300: its flow is not\n"
+                "laminar, as the equations of a film have it."
+            )
+        if abs(film.turning) > TURNING_TOLD * film.clearance:
+            terminal.say(
+                f"Note: {film.name}: steel shafts and brass rings that turn so fast change the gap by "
+                f"{film.turning / film.clearance:+.0%};\nthat is left out. Add it to the clearance where it matters."
+            )
 
 
 def _in_si(value: float | int | str, unit: str) -> str:

@@ -17,6 +17,13 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
 
 COLUMNS = ("films", "crit.", "onset", "ratio", "max", "rms", "err.", "CPU")
+COUPLING_COLUMNS = ("coupling", "onset", "max", "ms/step", "micro", "ms/h", "CPU")
+COUPLING_EXPLANATION = (
+    "onset: rotor speed in Hz where the whirl begins; max: largest deviation of the\n"
+    "eccentricity from the first row's, before either whirls; ms/step: CPU time of a\n"
+    "step, of the films' own in a co-simulation; micro: those per macro step; ms/h:\n"
+    "simulated time per hour; CPU: time in s."
+)
 EXPLANATION = (
     "crit., onset: rotor speed in Hz at resonance and where the whirl begins; ratio:\n"
     "its frequency to that speed; max, rms: deviation of the eccentricity from the\n"
@@ -29,6 +36,7 @@ EXPLANATION = (
 @case_argument
 @click.option("--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]")
 @click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [that of CASE]")
+@click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
 @click.option("--test", default="runup", show_default=True, metavar="TEST",
               help="The scene: runup, rotation, squeeze, whirl.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
@@ -39,6 +47,7 @@ def command(
     case: Case,
     cavitation: tuple[str, ...],
     theory: tuple[str, ...],
+    coupling: tuple[str, ...],
     test: str,
     output: Path | None,
     picture: bool,
@@ -47,7 +56,7 @@ def command(
 ) -> int:
     """Run CASE with several models of its films: events, deviations and cost in one table and one picture.
 
-    With neither --cavitation nor --theory all models of this version are compared.
+    Without --cavitation, --theory and --coupling it is compared with all models without a state, which cost little.
     """
     from frbcli.analysis.compare import compare
     from frbcli.plot.style import check_picture
@@ -55,12 +64,15 @@ def command(
 
     target = output or here(case.name, "-compare.png")
     if test in TESTS:
+        if coupling:
+            problem = f"is not for a {test}, in which no rotor moves."
+            raise InputError(case.name, (Fault("--coupling", ",".join(coupling), None, problem, "Leave it out."),))
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
     check_picture(target)
     with live_lines(terminal) as show:
         watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
-        found = compare(case, cavitation, theory, test, keep, watch)
-    _report(found, terminal)
+        found = compare(case, cavitation, theory, test, keep, watch, coupling)
+    _report(found, bool(coupling), terminal)
     if picture and all(len(result.run) > 1 for result in found.results):
         from frbcli.plot.compare import comparison_figure
         from frbcli.plot.style import save_figure
@@ -91,9 +103,15 @@ def _kinematic(
     return run_test(case, test, cavitation or COMPARED, target, picture, terminal, compared=True) or 0
 
 
-def _report(found: Comparison, terminal: Terminal) -> None:
-    terminal.table(found.case.title or found.case.name, COLUMNS, map(_cells, found.results))
-    terminal.say(EXPLANATION)
+def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
+    title = found.case.title or found.case.name
+    if couplings:
+        several = len({(result.variant.cavitation, result.variant.theory) for result in found.results}) > 1
+        terminal.table(title, COUPLING_COLUMNS, (_coupling_cells(result, several) for result in found.results))
+        terminal.say(COUPLING_EXPLANATION)
+    else:
+        terminal.table(title, COLUMNS, map(_cells, found.results))
+        terminal.say(EXPLANATION)
     for result in found.results:
         if result.run.status != "finished":
             terminal.say(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
@@ -114,12 +132,28 @@ def _cells(result: VariantResult) -> tuple[str, ...]:
     )
 
 
+def _coupling_cells(result: VariantResult, several: bool) -> tuple[str, ...]:
+    """several: whether the models differ, too."""
+    name = result.variant.coupled.replace("-semi", "-\nsemi")
+    onset, cost = result.first("onset"), result.run.cost
+    micro = cost.get("micro_steps_per_macro_step")
+    return (
+        f"{result.variant.cavitation}\n{result.variant.theory}\n{name}" if several else name,
+        "-" if onset is None else f"{onset['speed_Hz']:.1f}",
+        f"{result.deviation.largest:.1e}".replace("e-0", "e-"),
+        f"{result.ms_per_step:.2g}",
+        "-" if micro is None else f"{micro:.2f}",
+        f"{cost['simulated_ms_per_hour']:.2g}",
+        f"{cost['cpu_s']:.3g}",
+    )
+
+
 def _document(result: VariantResult) -> dict[str, Any]:
     deviation = result.deviation
     return {
         "cavitation": result.variant.cavitation,
         "theory": result.variant.theory,
-        "coupling": None,  # rotor and films are advanced as one
+        "coupling": result.variant.coupled,
         "status": result.run.status,
         "events": result.run.events,
         "deviation": {

@@ -27,6 +27,8 @@ COMMANDS = {
     "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits or displacements of runs."),
     "compare": ("frbcli.cli.compare", "Run one case with several models and compare them."),
     "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
+    "accuracy": ("frbcli.cli.accuracy", "Speed against error: theories, meshes, tolerances, couplings."),
+    "sweep": ("frbcli.cli.sweep", "Many settings of one case on all cores or a cluster: table and map."),
     "export": ("frbcli.cli.export", "Write the signals of a run as CSV, Parquet or MAT."),
     "cases": ("frbcli.cli.cases", "List, show or copy the cases that come with frb."),
     "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),

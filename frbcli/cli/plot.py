@@ -1,4 +1,5 @@
-"""`frb plot`: eccentricities, orbits, displacements, or the summary of a run."""
+"""`frb plot`: eccentricities, ring speeds, oil content, orbits, displacements, or the summary of a run; the cavitation
+laws of a case."""
 
 from __future__ import annotations
 
@@ -9,21 +10,26 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside
+from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside, here
 
 if TYPE_CHECKING:
+    from frbcli.plot.curves import Over
     from frbcli.plot.style import Picture
     from frbcli.results.store import Run
 
-PICTURES = ("eccentricity", "orbit", "displacement", "summary")
+LAW = "law"  # of a case, the others of runs
+CURVES = ("eccentricity", "ring-speed", "oil-content")
+PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 
 
 @click.command()
-@click.argument("run_files", metavar="RUN.h5...", type=RUN, nargs=-1, required=True)
+@click.argument("run_files", metavar="RUN.h5...|CASE", type=RUN, nargs=-1, required=True)
 @click.option("--what", type=click.Choice(PICTURES), default="eccentricity", show_default=True, help="The picture.")
 @click.option("--from", "from_time", metavar="TIME", type=SECONDS, help='Begin, e.g. "6.4 s".')
 @click.option("--to", "to_time", metavar="TIME", type=SECONDS, help="End.")
+@click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
 @click.option("--signal", help="Of a displacement: disk or journal; journal_NAME of a bearing.")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Of a law: set a key of CASE. Repeatable.")
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-WHAT.png]")
 @output_options
 def command(
@@ -31,40 +37,70 @@ def command(
     what: str,
     from_time: float | None,
     to_time: float | None,
+    over: Over,
     signal: str | None,
+    settings: tuple[str, ...],
     output: Path | None,
     terminal: Terminal,
 ) -> None:
-    """Draw one picture of one or several runs, overlaid."""
+    """Draw one picture of one or several runs, overlaid; or, with --what law, of a case: its oil fraction over
+    pressure."""
     from frbcli.plot.style import check_picture, save_figure
     from frbcli.results.store import read_run
 
+    if what == LAW:
+        if len(run_files) > 1:
+            raise click.UsageError("A law is of one case.")
+        if from_time is not None or to_time is not None or signal is not None or over != "time":
+            raise click.UsageError("--from, --to, --over and --signal belong to pictures of runs.")
+        _law(str(run_files[0]), settings, output, terminal)
+        return
+    if settings:
+        raise click.UsageError("--set belongs to --what law: a run is what it is.")
     if what == "summary" and len(run_files) > 1:
         raise click.UsageError("A summary is of one run.")
     if what == "summary" and (from_time is not None or to_time is not None):
         raise click.UsageError("A summary is of the whole run: leave --from and --to out.")
     if signal is not None and what != "displacement":
         raise click.UsageError("--signal belongs to --what displacement.")
+    if over != "time" and what not in CURVES:
+        raise click.UsageError(f"--over belongs to --what {', '.join(CURVES)}.")
     target = output or beside(run_files[0], f"-{what}.png")
     check_picture(target)
-    save_figure(_draw(what, [read_run(path) for path in run_files], from_time, to_time, signal), target)
+    save_figure(_draw(what, [read_run(path) for path in run_files], (from_time, to_time), over, signal), target)
     terminal.say(f"{what}: {target}")
     first = run_files[0] if len(run_files) == 1 else list(run_files)
     terminal.emit({"command": "plot", "run": first, "output": target, "what": what})
 
 
+def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
+    from frbcli.case.load import load_case
+    from frbcli.plot.law import law_figure
+    from frbcli.plot.style import check_picture, save_figure
+
+    case = load_case(source, settings)
+    target = output or here(case.name, f"-{LAW}.png")
+    check_picture(target)
+    save_figure(law_figure(case), target)
+    terminal.say(f"{LAW}: {target}")
+    terminal.emit({"command": "plot", "case": case.name, "output": target, "what": LAW})
+
+
 def _draw(
-    what: str, runs: Sequence[Run], from_time: float | None, to_time: float | None, signal: str | None
+    what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, signal: str | None
 ) -> Picture:
     from frbcli.plot.displacement import displacement_figure
     from frbcli.plot.eccentricity import eccentricity_figure
+    from frbcli.plot.oil_content import oil_content_figure
     from frbcli.plot.orbit import orbit_figure
+    from frbcli.plot.ring_speed import ring_speed_figure
     from frbcli.plot.summary import summary_figure
 
     if what == "summary":
         return summary_figure(runs[0])
     if what == "orbit":
-        return orbit_figure(runs, from_time, to_time)
+        return orbit_figure(runs, *span)
     if what == "displacement":
-        return displacement_figure(runs, signal, from_time, to_time)
-    return eccentricity_figure(runs, from_time, to_time)
+        return displacement_figure(runs, signal, *span)
+    curves = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure}.get(what, eccentricity_figure)
+    return curves(runs, *span, over)

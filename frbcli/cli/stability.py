@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
 from frbcli.cli.runs import OUTPUT
 
 if TYPE_CHECKING:
@@ -47,13 +48,24 @@ class RotorSpeed(click.ParamType[float]):
 @case_argument
 @click.option("--speed", "speeds", multiple=True, type=RotorSpeed(), metavar="SPEED",
               help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [60 over the range of the case]')  # fmt: skip
+@click.option("--stiffness", type=BearingStiffness(), metavar="STIFFNESS",
+              help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
 @click.option("--no-picture", is_flag=True, help="No Campbell diagram.")
 @output_options
 def command(
-    case: Case, speeds: tuple[float, ...], output: Path | None, no_picture: bool, terminal: Terminal
+    case: Case,
+    speeds: tuple[float, ...],
+    stiffness: float | None,
+    output: Path | None,
+    no_picture: bool,
+    terminal: Terminal,
 ) -> int | None:
-    """Where CASE rests at each speed, how stiff its films are there, and from which speed on a whirl grows."""
+    """Where CASE rests at each speed, how stiff its films are there, and from which speed on a whirl grows.
+
+    For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
+    """
+    from frbcli.analysis.modes import natural_modes
     from frbcli.analysis.stability import stability
     from frbcli.errors import NotConverged
     from frbcli.plot.campbell import campbell_figure
@@ -61,13 +73,20 @@ def command(
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    picture = None if no_picture else output or Path(_file_name(case.name) + "-campbell.png")
+    drawn = "campbell" if stiffness is None else "modes"
+    picture = None if no_picture else output or Path(f"{_file_name(case.name)}-{drawn}.png")
     if picture is not None:
         check_picture(picture)
+    if stiffness is not None:
+        emit_modes(terminal, case, stiffness, speeds, picture)
+        return None
     found = stability(case, speeds or None)
     if picture is not None:
         save_figure(campbell_figure(found), picture)
     _tell(terminal, found, picture)
+    natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
+    for modes in natural:
+        tell_modes(terminal, modes)
     terminal.emit(
         {
             "command": "stability",
@@ -77,6 +96,7 @@ def command(
             "note": found.note,
             "picture": picture,
         }
+        | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
     )
     return None if any(point.films for point in found.points) else NotConverged.exit_code
 
@@ -93,6 +113,20 @@ def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
     terminal.say(_sentence(found))
     if picture is not None:
         terminal.say(f"Campbell diagram: {picture}")
+
+
+def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
+    """Stiffness of the bearings and speed in Hz at which the modes of a turbocharger's rotor are of interest."""
+    from frbcli.analysis.modes import film_springs
+
+    if found.case.rotor.kind != "turbocharger":
+        return []
+    wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
+    for point in found.points[-1:]:
+        springs = film_springs(found.case, point.films) if point.films else ()
+        if springs and min(springs) > 0:
+            wanted.append((springs, point.speed_Hz))
+    return wanted
 
 
 def _sentence(found: Stability) -> str:

@@ -29,6 +29,8 @@ LONGEST_LEFT_s = 1e9  # no guess that anybody waits for
 REASONS = {
     "contact": "The journal reached the shell (contact.eccentricity). "
     "To go on through contact: --set contact.policy=elastic --set contact.stiffness='1e9 N/m'.",
+    "starved": "The film ran out of oil: more left at its ends than came in, so that it carried nothing in the end. "
+    "Raise bearing.supply.pressure above oil.cavitation_pressure, or take ends = \"oil-bath\".",
     "not-converged": "The step size fell to nothing. Try a smaller accuracy.target, or contact.policy=elastic.",
     "interrupted": "Go on with the same command and --resume.",
 }
@@ -125,6 +127,16 @@ def _report(run: Run, terminal: Terminal) -> None:
     terminal.table("cost and error", ("", "", ""), _cost_rows(run))
 
 
+def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
+    """Oil that passed the films, if they keep it."""
+    if "oil_in_m3" not in run.cost:
+        return []
+    came, left = (1e9 * run.cost[name] for name in ("oil_in_m3", "oil_out_m3"))
+    off = run.error.get("oil_balance_relative")
+    defect = "" if off is None else f", unaccounted for {off:.0e}"
+    return [("oil", f"{came:.3g} mm^3 in", f"{left:.3g} mm^3 out{defect}")]
+
+
 def _event_row(event: dict[str, Any]) -> tuple[str, ...]:
     def number(value: float | None, form: str) -> str:
         return "-" if value is None else format(value, form)
@@ -150,6 +162,7 @@ def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
             f"{cost['steps_per_revolution']:.3g} per revolution, {cost['rejected_steps']} rejected",
         ),
         ("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each"),
+        *_oil_rows(run),
         ("error, time integration", f"{error['time_integration']:.1e}", "of the eccentricity"),
         ("error, film forces", "-" if film is None else f"{film:.1e}", "relative, against a finer mesh"),
     ]

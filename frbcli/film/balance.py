@@ -10,10 +10,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from frbcli.film.axial import BEND, EndSlope, end_slopes
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.ends import end_outflow
-from frbcli.film.gap import Section
+from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 from frbcli.film.volume_grid import VolumeGrid
 
@@ -35,6 +37,14 @@ class Motion:
     def rate(self) -> float:
         """How fast the gap changes, in 1/s: what drives pressure and flow."""
         return max(0.5 * abs(self.omega), math.hypot(*self.v), 1e-3)
+
+
+class EndFlow(NamedTuple):
+    """Outflow (m,) of the last cells through an end, its derivatives (m,) by their pressure and their neighbours'."""
+
+    out: Array
+    by_last: Array
+    by_next: Array
 
 
 class Conductances(NamedTuple):
@@ -92,28 +102,15 @@ class Fluxes(NamedTuple):
         return 0.5 * size
 
 
-def gap_height(d: tuple[float, float], phi: Array) -> Array:
-    """H (4.4) at the angles phi (n,) for the displacement d over the clearance."""
-    return 1.0 + d[0] * np.sin(phi) - d[1] * np.cos(phi)
-
-
-def gap_rate(v: tuple[float, float], phi: Array) -> Array:
-    """dH/dt in 1/s at the angles phi (n,) for the velocity v over the clearance."""
-    return v[0] * np.sin(phi) - v[1] * np.cos(phi)
-
-
 def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conductances:
-    """The conductances of a section. To a groove or hole the distance counts to its edge, which is a face."""
-    dphi, dz, fixed = np.diff(grid.phi), np.diff(grid.z), grid.fixed
-    face = gap_height(motion.d, grid.phi[1:])
-    cube = gap_height(motion.d, grid.centre)[:, None] ** 3 * dphi[:, None] * section.aspect
-    half_around = np.where(fixed, 0.0, 0.5 * dphi[:, None])
-    half_along = np.where(fixed, 0.0, 0.5 * dz[None, :])
-    distance = half_around + np.roll(half_around, -1, axis=0)
-    around = np.where(distance > 0.0, face[:, None] ** 3 * dz / np.maximum(distance, NO_DISTANCE), 0.0)
-    distance = half_along[:, :-1] + half_along[:, 1:]
-    along = np.where(distance > 0.0, cube / np.maximum(distance, NO_DISTANCE), 0.0)
-    near, far = cube[:, 0] / (0.5 * dz[0]), cube[:, 0] / (0.5 * dz[-1])
+    """The conductances of a section. Into a groove or hole the distance counts to its edge."""
+    dphi, dz = np.diff(grid.phi), np.diff(grid.z)
+    face = gap_height(section, motion.d, grid.phi[1:])
+    cube = gap_height(section, motion.d, grid.centre)[:, None] ** 3 * dphi[:, None] * section.aspect
+    around = np.where(grid.around > 0.0, face[:, None] ** 3 * dz / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    along = np.where(grid.along > 0.0, cube / np.maximum(grid.along, NO_DISTANCE), 0.0)
+    first, last = end_slopes(grid.z)
+    near, far = cube[:, 0] * first.rise, cube[:, 0] * last.rise
     return Conductances(around, along, near, far, 0.5 * motion.omega * face[:, None] * dz[None, :])
 
 
@@ -124,8 +121,8 @@ class Balance:
         self.section, self.grid, self.motion = section, grid, motion
         self.conductances = conductances(section, grid, motion)
 
-    def fluxes(self, pressure: Array, theta: Array) -> tuple[Fluxes, Array, Array]:
-        """Flows for pressures and oil fractions (m, k), and the derivatives (m,) of those at the ends by the pressure.
+    def fluxes(self, pressure: Array, theta: Array) -> tuple[Fluxes, EndFlow, EndFlow]:
+        """Flows for pressures and oil fractions (m, k), and those at the ends with their derivatives.
 
         The surfaces carry the oil of a part-filled film as it is in the cell that they come from (upwind), what a full
         film is compressed by as it is at the face (second order).
@@ -136,16 +133,31 @@ class Balance:
         carried = c.carried * (loose + 0.5 * (packed + np.roll(packed, -1, axis=0)))
         around = c.around * (pressure - np.roll(pressure, -1, axis=0)) + carried
         along = c.along * (pressure[:, :-1] - pressure[:, 1:])
-        near, near_slope = self._end(self.section.near, 0, pressure, c.near, 0.0)
-        groove = self.section.far_pressure / self.section.pressure_scale
-        far, far_slope = self._end(self.section.far, -1, pressure, c.far, groove)
-        return Fluxes(around, along, near, far), near_slope, far_slope
+        first, last = end_slopes(self.grid.z)
+        groove = self.section.far_pressure / self.section.pressure_scale if self.section.far == "groove" else 0.0
+        inwards = slice(None, None, -1)
+        near = self._end(self.section.near, pressure, self.grid.fixed, c.near, 0.0, first)
+        far = self._end(
+            self.section.far, pressure[:, inwards], self.grid.fixed[:, inwards], c.far, groove, last
+        )
+        return Fluxes(around, along, near.out, far.out), near, far
 
-    def _end(self, kind: str, column: int, pressure: Array, conductance: Array, groove: float) -> tuple[Array, Array]:
+    def _end(
+        self, kind: str, pressure: Array, fixed: NDArray[np.bool_], conductance: Array, groove: float, slope: EndSlope
+    ) -> EndFlow:
+        """pressure, fixed: (m, k) from this end on. A parabola through the last two cells bends the pressure there."""
         ambient = self.section.ambient_pressure / self.section.pressure_scale
-        out, slope = end_outflow(kind, pressure[:, column], conductance, np.diff(self.grid.phi), groove, ambient)
-        closed = self.grid.fixed[:, column]  # a groove or hole that reaches the end feeds the film only
-        return np.where(closed, 0.0, out), np.where(closed, 0.0, slope)
+        last, beyond = pressure[:, 0], pressure[:, min(1, pressure.shape[1] - 1)]
+        rise = last - groove
+        bend = slope.bend * (last - beyond)
+        smooth = np.abs(bend) <= BEND * np.abs(rise)
+        side = BEND * np.sign(bend) * np.sign(rise)
+        felt = last + np.where(smooth, bend, side * rise)
+        out, by_felt = end_outflow(kind, felt, conductance, np.diff(self.grid.phi), groove, ambient)
+        by_felt = np.where(fixed[:, 0], 0.0, by_felt)  # a groove or hole that reaches the end feeds the film only
+        by_last = by_felt * np.where(smooth, 1.0 + slope.bend, 1.0 + side)
+        by_next = by_felt * np.where(smooth, -slope.bend, 0.0)
+        return EndFlow(np.where(fixed[:, 0], 0.0, out), by_last, by_next)
 
     def residual(self, state: CellState, storage: Storage) -> tuple[Array, Array, Stencil]:
         """What does not balance in each cell (m, k), the size of its terms (m, k), and the stencil of derivatives by w.
@@ -153,25 +165,25 @@ class Balance:
         state: of the law with arrays (m, k), whose slopes are zero and whose values are given in fixed cells.
         """
         area, fixed = self.grid.area, self.grid.fixed
-        fluxes, near_slope, far_slope = self.fluxes(state.pressure, state.fraction)
+        fluxes, near, far = self.fluxes(state.pressure, state.fraction)
         kept = storage.factor * state.fraction
         residual = fluxes.net_outflow() + area * (kept - storage.past - state.source)
-        pull = self._pull(state, near_slope, far_slope)
+        pull = self._pull(state, near, far)
         size = pull + fluxes.turnover() + area * (np.abs(kept) + np.abs(storage.past) + state.source)
-        stencil = self._stencil(state, storage, near_slope, far_slope)
+        stencil = self._stencil(state, storage, near, far)
         return np.where(fixed, 0.0, residual), size, stencil
 
-    def _pull(self, state: CellState, near_slope: Array, far_slope: Array) -> Array:
+    def _pull(self, state: CellState, near: EndFlow, far: EndFlow) -> Array:
         """Size of the terms whose differences are the pressure-driven flows: their round-off is the residual's."""
         c = self.conductances
         total = c.around + np.roll(c.around, 1, axis=0)
         total[:, :-1] += c.along
         total[:, 1:] += c.along
-        total[:, 0] += near_slope
-        total[:, -1] += far_slope
+        total[:, 0] += near.by_last
+        total[:, -1] += far.by_last
         return total * np.abs(state.pressure)
 
-    def _stencil(self, state: CellState, storage: Storage, near_slope: Array, far_slope: Array) -> Stencil:
+    def _stencil(self, state: CellState, storage: Storage, near: EndFlow, far: EndFlow) -> Stencil:
         c, p_w, t_w = self.conductances, state.pressure_slope, state.fraction_slope
         half = np.where(state.fraction > 1.0, 0.5 * t_w, 0.0)
         whole = np.where(state.fraction > 1.0, 0.0, t_w)
@@ -183,10 +195,13 @@ class Balance:
         centre += self.grid.area * (storage.factor * t_w - state.source_slope)
         centre[:, :-1] += low
         centre[:, 1:] += high
-        centre[:, 0] += near_slope * p_w[:, 0]
-        centre[:, -1] += far_slope * p_w[:, -1]
+        centre[:, 0] += near.by_last * p_w[:, 0]
+        centre[:, -1] += far.by_last * p_w[:, -1]
         below, above = np.zeros_like(p_w), np.zeros_like(p_w)
         below[:, 1:], above[:, :-1] = -low, -high
+        if p_w.shape[1] > 1:
+            above[:, 0] += near.by_next * p_w[:, 1]
+            below[:, -1] += far.by_next * p_w[:, -2]
         free = ~self.grid.fixed
         return Stencil(
             centre=np.where(free, centre, 1.0),

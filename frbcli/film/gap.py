@@ -11,6 +11,8 @@ import numpy as np
 from frbcli.film.grid import Array
 
 Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"
+ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
+SAMPLES = 3601
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,31 @@ class Hole:
 
 
 @dataclass(frozen=True)
+class Lobes:
+    """Equal arcs of the shell, each bored with a larger radius than the journal needs, around a centre of its own.
+
+    With the clearance c_b of the centred journal at the narrowest place of a lobe and the machined clearance c_p of its
+    bore the preload is m = 1 - c_b / c_p. Section.clearance is c_b. position: phi of the middle of the first lobe, rad;
+    offset: where a lobe is narrowest, as a share of its arc from its start, counter-clockwise.
+    """
+
+    count: int
+    preload: float
+    position: float
+    offset: float = 0.5
+
+    @property
+    def arc(self) -> float:
+        """Angle of one lobe in rad."""
+        return 2.0 * math.pi / self.count
+
+    @property
+    def start(self) -> float:
+        """phi at which the first lobe begins."""
+        return self.position - 0.5 * self.arc
+
+
+@dataclass(frozen=True)
 class Section:
     """One rectangular section of a film, SI units; pressures are gauge, over the ambient pressure.
 
@@ -62,6 +89,7 @@ class Section:
     far_pressure: float = 0.0
     grooves: tuple[AxialGroove, ...] = ()
     holes: tuple[Hole, ...] = field(default=())
+    lobes: Lobes | None = None
 
     @property
     def pressure_scale(self) -> float:
@@ -72,6 +100,38 @@ class Section:
     def aspect(self) -> float:
         """(R/b)^2 of (3.9)."""
         return (self.radius / self.width) ** 2
+
+
+def gap_height(section: Section, d: tuple[float, float], phi: Array) -> Array:
+    """H at the angles phi (n,) for the displacement d over the clearance: (4.4), between lobes and journal
+
+    H = 1 + m / (1 - m) (1 - cos(phi - phi_l)) + d_x sin(phi) - d_y cos(phi), phi_l being where the lobe is narrowest.
+    """
+    plain: Array = 1.0 + d[0] * np.sin(phi) - d[1] * np.cos(phi)
+    return plain if section.lobes is None else plain + lobe_depth(section.lobes, phi)
+
+
+def gap_rate(v: tuple[float, float], phi: Array) -> Array:
+    """dH/dt in 1/s at the angles phi (n,) for the velocity v over the clearance."""
+    return np.asarray(v[0] * np.sin(phi) - v[1] * np.cos(phi), dtype=np.float64)
+
+
+def lobe_depth(lobes: Lobes, phi: Array) -> Array:
+    """H of the centred journal at the angles phi (n,) without the 1 that it is at the narrowest places.
+
+    An edge between two lobes belongs to the one that begins there.
+    """
+    within = np.mod(phi - lobes.start + ON_EDGE, lobes.arc) - ON_EDGE
+    return np.asarray(
+        lobes.preload / (1.0 - lobes.preload) * (1.0 - np.cos(within - lobes.offset * lobes.arc)), dtype=np.float64
+    )
+
+
+def smallest_gap(section: Section, d: tuple[float, float]) -> float:
+    """The least H over the turn."""
+    if section.lobes is None:
+        return 1.0 - math.hypot(*d)
+    return float(gap_height(section, d, np.linspace(-np.pi, np.pi, SAMPLES)).min())
 
 
 SUPPLY_LENGTH = 0.1  # z_1 of (6.2): share of the bearing's width over which a groove's pressure rises from its end
@@ -89,7 +149,7 @@ def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Arr
     """
     gamma = np.linspace(-np.pi, np.pi, 20_001)
     angle = narrowest + 2.0 * np.arctan2(contraction * np.sin(0.5 * gamma), np.cos(0.5 * gamma))
-    cuts = np.sort(np.mod(breaks - angle[0], 2 * np.pi)) + angle[0] if len(breaks) else np.array([angle[0]])
+    cuts = _apart(np.sort(np.mod(breaks - angle[0], 2 * np.pi)) + angle[0]) if len(breaks) else angle[:1]
     turn = np.append(cuts, cuts[0] + 2 * np.pi)
     # gamma over one and a half turns, so that pieces may start anywhere
     long_angle = np.concatenate([angle[:-1], angle + 2 * np.pi])
@@ -101,3 +161,10 @@ def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Arr
         pieces.append(np.interp(np.linspace(start, end, count + 1)[:-1], long_gamma, long_angle))
     pieces.append(turn[-1:])
     return np.concatenate(pieces)
+
+
+def _apart(cuts: Array) -> Array:
+    """Those of the sorted angles (n,) within a turn that do not fall together with the one before."""
+    turn = np.append(cuts[-1] - 2 * np.pi, cuts)
+    kept = cuts[np.diff(turn) > ON_EDGE]
+    return kept if len(kept) else cuts[:1]

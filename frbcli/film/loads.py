@@ -7,7 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from frbcli.film.balance import Motion, gap_height
+from frbcli.film.axial import axial_weights
+from frbcli.film.balance import Motion
+from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 from frbcli.film.volumes import VolumeFilm, VolumeSolution
 
@@ -83,7 +85,8 @@ def loads(
 def force(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     """Force (3.13) in N of scaled gauge pressures (m, k) on the journal, that in grooves too, (4.8) to (4.10)."""
     grid, section = film.grid, film.section
-    along = section.copies * section.radius * section.width * section.pressure_scale * (pressure @ np.diff(grid.z))
+    scale = section.copies * section.radius * section.width * section.pressure_scale
+    along = scale * (pressure @ axial_weights(grid.z, section.far == "symmetry"))
     return float(-along @ np.diff(np.cos(grid.phi))), float(-along @ np.diff(np.sin(grid.phi)))
 
 
@@ -99,8 +102,10 @@ def torque(
     theta = solution.state.fraction if factor == "local" else np.ones(grid.shape)
     pressure = film.pressure(solution.state)
     area = section.copies * section.radius * section.width
-    shear = np.where(grid.fixed, 0.0, grid.area * theta) / gap_height(motion.d, grid.centre)[:, None]
-    face = gap_height(motion.d, grid.phi[1:])[:, None] * np.diff(grid.z) * 0.5 * (theta + np.roll(theta, -1, axis=0))
+    shear = (1.0 - grid.cover) * grid.area * theta / gap_height(section, motion.d, grid.centre)[:, None]
+    weights = axial_weights(grid.z, section.far == "symmetry")
+    face = gap_height(section, motion.d, grid.phi[1:])[:, None] * weights
+    face = face * 0.5 * (theta + np.roll(theta, -1, axis=0))
     rise = np.roll(pressure, -1, axis=0) - pressure
     whole = oil_fraction(film, solution) if factor == "global" else 1.0
     couette = -(section.radius**2) * section.viscosity / section.clearance * slip * area * float(shear.sum())
@@ -110,7 +115,7 @@ def torque(
 
 def oil_fraction(film: VolumeFilm, solution: VolumeSolution) -> float:
     """The factor (4.46): mean of theta over the film without grooves and holes."""
-    area = np.where(film.grid.fixed, 0.0, film.grid.area)
+    area = (1.0 - film.grid.cover) * film.grid.area
     return float((area * solution.state.fraction).sum() / area.sum())
 
 
@@ -134,7 +139,7 @@ def peak(film: VolumeFilm, pressure: Array) -> float:
     step = np.diff(grid.phi)
     before, behind = 0.5 * (step[i - 1] + step[i]), 0.5 * (step[i] + step[(i + 1) % m])
     around = _vertex(float(pressure[i - 1, j]), highest, float(pressure[(i + 1) % m, j]), before, behind)
-    if j == 0 and k > 1:
+    if j == 0 or k == 1:
         return around
     z = grid.height
     mirrored = j == k - 1

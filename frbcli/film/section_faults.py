@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
+from typing import NamedTuple
 
-from frbcli.film.gap import Hole, Section
+from frbcli.film.gap import Hole, Section, smallest_gap
 
 TURN = 2.0 * math.pi
+
+
+class SectionFault(NamedTuple):
+    """What is wrong with a section, and what helps."""
+
+    problem: str
+    remedy: str
 
 
 def runs_dry(section: Section) -> bool:
@@ -16,61 +24,75 @@ def runs_dry(section: Section) -> bool:
     return not inlets and not section.grooves and not section.holes
 
 
-def section_faults(section: Section, d: tuple[float, float] = (0.0, 0.0)) -> list[str]:
+def starves(section: Section) -> bool:
+    """Whether a film that conserves its oil has no inflow: its ends are free to air, and nothing supplies it but a
+    groove along the edge z = 1 with a pressure that is not above that of the cavities."""
+    if "oil-bath" in (section.near, section.far) or section.grooves or section.holes:
+        return False
+    return section.far != "groove" or section.ambient_pressure + section.far_pressure <= section.cavitation_pressure
+
+
+def section_faults(section: Section, d: tuple[float, float] = (0.0, 0.0)) -> list[SectionFault]:
     """Everything that is wrong with a section and the displacement d (over the clearance), each with its remedy."""
-    return [*_size_faults(section), *_gap_faults(d), *_inlet_faults(section), *_overlaps(section)]
+    return [*_size_faults(section), *_gap_faults(section, d), *_inlet_faults(section), *_overlaps(section)]
 
 
-def _size_faults(section: Section) -> list[str]:
+def _size_faults(section: Section) -> list[SectionFault]:
     sizes = {
         "radius": section.radius, "width": section.width, "clearance": section.clearance,
         "viscosity": section.viscosity, "ambient pressure": section.ambient_pressure,
     }  # fmt: skip
-    faults = [f"the {name} is {value:g}: it must be greater than 0" for name, value in sizes.items() if not value > 0.0]
+    faults = [
+        SectionFault(f"the {name} is {value:g}", "It must be greater than 0.")
+        for name, value in sizes.items()
+        if not value > 0.0
+    ]
     if runs_dry(section):
-        faults.append(
-            "both ends are free to air and nothing supplies oil: the film runs dry. "
-            "Give it a supply, or ends in an oil bath"
-        )
+        problem = "both ends are free to air and nothing supplies oil: the film runs dry"
+        faults.append(SectionFault(problem, "Give it a supply, or ends in an oil bath."))
     return faults
 
 
-def _gap_faults(d: tuple[float, float]) -> list[str]:
-    eccentricity = math.hypot(*d)
-    if eccentricity < 1.0:
+def _gap_faults(section: Section, d: tuple[float, float]) -> list[SectionFault]:
+    lobes = section.lobes
+    if lobes is not None and not (lobes.count >= 1 and 0.0 <= lobes.preload < 1.0):
+        problem = f"{lobes.count:g} lobes with a preload of {lobes.preload:g}"
+        return [SectionFault(problem, "The preload must be at least 0 and less than 1.")]
+    if smallest_gap(section, d) > 0.0:
         return []
-    return [f"the eccentricity is {eccentricity:g}, which leaves no gap: it must be less than 1 clearance"]
+    problem = f"the eccentricity is {math.hypot(*d):g}, which leaves no gap"
+    return [SectionFault(problem, "It must be less than 1 clearance.")]
 
 
-def _inlet_faults(section: Section) -> list[str]:
+def _inlet_faults(section: Section) -> list[SectionFault]:
     faults = []
     for groove in section.grooves:
         if not 0.0 < groove.opening < TURN:
-            faults.append(f"a groove opens over {math.degrees(groove.opening):g} deg: it must be between 0 and 360 deg")
+            problem = f"a groove opens over {math.degrees(groove.opening):g} deg"
+            faults.append(SectionFault(problem, "It must be between 0 and 360 deg."))
     for hole in section.holes:
         where = f"the hole at phi = {math.degrees(hole.position):g} deg"
         if not (hole.half_angle > 0.0 and hole.half_width > 0.0):
-            faults.append(f"{where} has no size: its half extents must be greater than 0")
+            faults.append(SectionFault(f"{where} has no size", "Its half extents must be greater than 0."))
         elif hole.half_angle >= math.pi:
-            faults.append(f"{where} is wider than the whole turn: make it smaller")
-        faults.extend(f"{where} {problem}" for problem in _reach(section, hole))
+            faults.append(SectionFault(f"{where} is wider than the whole turn", "Make it smaller."))
+        if beyond := _reach(section, hole):
+            faults.append(SectionFault(f"{where} {beyond}", "Move it or make it smaller."))
     return faults
 
 
-def _reach(section: Section, hole: Hole) -> list[str]:
-    """A hole may cross the plane of symmetry, where its other half lies, but no open end."""
+def _reach(section: Section, hole: Hole) -> str:
+    """How far a hole leaves the film, nothing if it does not: it may cross the plane of
+    symmetry, where its other half lies, but no open end."""
     low, high = hole.axial - hole.half_width, hole.axial + hole.half_width
     tolerance = 1e-9 * section.width
     beyond = low < -tolerance or (high > section.width + tolerance and section.far != "symmetry")
     if not beyond and hole.axial <= section.width + tolerance:
-        return []
-    return [
-        f"reaches from {1e3 * low:.4g} to {1e3 * high:.4g} mm, out of the film of 0 to {1e3 * section.width:.4g} mm: "
-        "move it or make it smaller"
-    ]
+        return ""
+    return f"reaches from {1e3 * low:.4g} to {1e3 * high:.4g} mm, out of the film of 0 to {1e3 * section.width:.4g} mm"
 
 
-def _overlaps(section: Section) -> list[str]:
+def _overlaps(section: Section) -> list[SectionFault]:
     faults = []
     for groove, other in itertools.combinations(section.grooves, 2):
         if _apart(groove.position, other.position) < 0.5 * (groove.opening + other.opening):
@@ -84,8 +106,8 @@ def _overlaps(section: Section) -> list[str]:
     return faults
 
 
-def _overlap(what: str, a: float, b: float) -> str:
-    return f"{what} phi = {math.degrees(a):g} and {math.degrees(b):g} deg overlap: move them apart"
+def _overlap(what: str, a: float, b: float) -> SectionFault:
+    return SectionFault(f"{what} phi = {math.degrees(a):g} and {math.degrees(b):g} deg overlap", "Move them apart.")
 
 
 def _holes_overlap(a: Hole, b: Hole) -> bool:

@@ -12,6 +12,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.balance import Motion
 from frbcli.film.grid import Array
 from frbcli.film.loads import OilBalance
+from frbcli.film.supply import supplied
 from frbcli.film.volumes import VolumeFilm, VolumeSolution
 
 Method = Literal["midpoint", "euler", "bdf2"]
@@ -34,16 +35,18 @@ def march(
     times: Array,
     start: Array | None = None,
     method: Method = "midpoint",
+    supply: Callable[[float], float] | None = None,
 ) -> Iterator[Moment]:
     """The film at each of the times (n,) after the first, in s and rising; a generator, so that it may be left early.
 
     motion: time -> motion; start: (m, k) unknown at the first time, else a full film at the ambient pressure. A step
     that does not converge is taken in halves. method: "midpoint" keeps the oil as implicit Euler steps do, but lets it
     flow through the gap of the middle of the step, which makes the pressure of a full film second order; it is of that
-    time. "bdf2" smears the moment at which a film is full again. Raises NotConverged.
+    time. "bdf2" smears the moment at which a film is full again. supply: time -> share of the gauge supply pressure
+    (4.11), else all of it. Raises NotConverged.
     """
     w = film.full() if start is None else start
-    steps = _Steps(film, motion, method, w, float(times[0]))
+    steps = _Steps(film, motion, method, w, float(times[0]), supply)
     for time in times[1:]:
         yield steps.to(float(time), MOST_HALVINGS)
 
@@ -52,8 +55,15 @@ class _Steps:
     """The past that the next step needs."""
 
     def __init__(
-        self, film: VolumeFilm, motion: Callable[[float], Motion], method: Method, w: Array, time: float
+        self,
+        film: VolumeFilm,
+        motion: Callable[[float], Motion],
+        method: Method,
+        w: Array,
+        time: float,
+        supply: Callable[[float], float] | None,
     ) -> None:
+        self._supply = supply
         self._film, self._motion, self._method = film, motion, method
         self._w, self._time = w, time
         self._drift: Array | None = None  # how fast w changed in the step before
@@ -72,11 +82,14 @@ class _Steps:
         self.to(0.5 * (self._time + time), halvings - 1)
         return self.to(time, halvings - 1)
 
+    def _at(self, time: float) -> VolumeFilm:
+        return self._film if self._supply is None else supplied(self._film, self._supply(time))
+
     def _step(self, time: float) -> Moment:
         dt = time - self._time
         motion, shown = self._motion(time), time
         if not self._remembers:
-            solution = self._film.steady(motion, self._w)
+            solution = self._at(time).steady(motion, self._w)
             self._w, self._time, self._content = solution.w, time, self._film.content(motion, solution.w)
             return Moment(time, motion, solution, self._content)
         rate, past, flowing = 1.0 / dt, self._content / dt, motion
@@ -86,7 +99,7 @@ class _Steps:
             shown = 0.5 * (self._time + time)
             flowing = self._motion(shown)
         begin = self._w if self._drift is None else self._w + dt * self._drift
-        solution, content = self._film.keep(motion, begin, rate, past, flowing)
+        solution, content = self._at(shown).keep(motion, begin, rate, past, flowing)
         self._drift = (solution.w - self._w) / dt
         self._before = dt, self._content
         self._w, self._time, self._content = solution.w, time, content

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.gap import Hole, Section, graded_ring, groove_pressure
+from frbcli.film.gap import AxialGroove, Section, graded_ring, groove_pressure
 from frbcli.film.grid import Array
+from frbcli.film.openings import Opening, groove_opening, hole_opening
 
-AXIAL_GRADING = 0.5  # share of Chebyshev's spacing in the axial one
-NO_HOLE = 0.02
+NEAREST = 1e-3  # of a cell: so near its middle the edge of a groove or hole may come
 CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angle, which leaves the wide gap coarse
 
 
@@ -20,13 +20,19 @@ CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angl
 class VolumeGrid:
     """Cells of one section. phi: (m + 1,) boundaries of a turn; z: (k + 1,) boundaries over [0, 1].
 
-    fixed: (m, k) cells where the pressure is given; fixed_pressure: (m, k) scaled gauge pressure there.
+    fixed: (m, k) cells where the pressure is given; fixed_pressure: (m, k) scaled gauge pressure there; around: (m, k)
+    distance in rad over which oil flows through the face after each cell, along: (m, k - 1) the same over the width,
+    from middle to middle or to the edge of a groove or hole, 0 within one; cover: (m, k) share of a cell's area that
+    grooves and holes take.
     """
 
     phi: Array
     z: Array
     fixed: NDArray[np.bool_]
     fixed_pressure: Array
+    around: Array
+    along: Array
+    cover: Array
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -50,77 +56,66 @@ class VolumeGrid:
 
 
 def fitted_grid(section: Section, d: tuple[float, float], around: int, along: int) -> VolumeGrid:
-    """About around x along cells, finer at the ends and where d narrows the gap; grooves and pockets end on faces."""
+    """About around x along cells, finer where d narrows the gap; grooves and pockets end on faces.
+
+    Equal ones along: parabolas over the width (axial.py) are exact on few of them, and need no finer ones at the ends.
+    """
     eccentricity = math.hypot(*d)
     narrowest = math.atan2(-d[0], d[1])  # H = 1 + d_x sin(phi) - d_y cos(phi) is smallest
     contraction = ((1.0 - eccentricity) / (1.0 + eccentricity)) ** CONTRACTION
     spans = [(groove.position, 0.5 * groove.opening) for groove in section.grooves]
     spans += [(hole.position, hole.half_angle) for hole in section.holes if not hole.round]
     edges = [middle + side * half for middle, half in spans for side in (-1.0, 1.0)]
+    if section.lobes is not None:
+        edges += [section.lobes.start + i * section.lobes.arc for i in range(section.lobes.count)]
     ring = graded_ring(around, narrowest, contraction, np.array(edges))
-    return volume_grid(section, ring, axial_faces(section, along))
-
-
-def axial_faces(section: Section, along: int) -> Array:
-    """(along + 1,) boundaries over [0, 1], finer where the section ends."""
-    even = np.linspace(0.0, 1.0, along + 1)
-    turn = 0.5 * np.pi if section.far == "symmetry" else np.pi  # half of Chebyshev's points, or all
-    graded = (1.0 - np.cos(turn * even)) / (1.0 - math.cos(turn))
-    return AXIAL_GRADING * graded + (1.0 - AXIAL_GRADING) * even
+    return volume_grid(section, ring, np.linspace(0.0, 1.0, along + 1))
 
 
 def volume_grid(section: Section, phi: Array, z: Array) -> VolumeGrid:
-    """Cells with the section's grooves (by the centres of the cells) and holes (by their area) cut out."""
-    grid = VolumeGrid(phi, z, np.zeros((len(phi) - 1, len(z) - 1), dtype=bool), np.zeros((len(phi) - 1, len(z) - 1)))
-    for groove in section.grooves:
-        inside = np.abs(wrapped(grid.centre - groove.position)) < 0.5 * groove.opening
-        grid.fixed[inside] = True
-        distance = grid.height * section.width
-        if section.far != "symmetry":
-            distance = np.minimum(distance, section.bearing_width - distance)
-        grid.fixed_pressure[inside] = groove_pressure(groove, distance, section.bearing_width) / section.pressure_scale
-    for hole in section.holes:
-        inside = _hole_cells(section, hole, grid)
-        grid.fixed[inside] = True
-        grid.fixed_pressure[inside] = hole.pressure / section.pressure_scale
-    return grid
+    """Cells with the section's grooves and holes cut out of those whose middles they hold, their edges where they are.
 
-
-def _hole_cells(section: Section, hole: Hole, grid: VolumeGrid) -> NDArray[np.bool_]:
-    """(m, k) cells of a hole: those nearest to its middle, as many as come closest to its area.
-
-    A hole smaller than NO_HOLE of the cells at its middle takes none; a larger one always takes those, so that a coarse
-    mesh does not close a supply. Cells at the same distance go together, so that symmetry is kept.
+    The flow between the middle of a cell and a groove or hole runs over the distance to its edge, wherever that lies
+    between the faces: so it changes smoothly as the edge moves across the cells.
     """
-    across = np.abs(wrapped(grid.centre - hole.position))[:, None] / hole.half_angle
-    along = np.abs(grid.height * section.width - hole.axial)[None, :] / hole.half_width
-    distance = np.round(np.hypot(across, along) if hole.round else np.maximum(across, along), 9)
-    area = hole_area(section, hole) / (section.radius * section.width)
-    order = np.argsort(distance, axis=None)
-    sorted_distance = distance.ravel()[order]
-    covered = np.cumsum(grid.area.ravel()[order])
-    last = np.flatnonzero(np.append(np.diff(sorted_distance) > 0.0, True))  # the last cell of each distance
-    best = last[np.argmin(np.abs(covered[last] - area))]
-    reach = sorted_distance[best] if area > NO_HOLE * covered[last[0]] else -1.0
-    inside: NDArray[np.bool_] = distance <= reach
-    return inside
+    shape = len(phi) - 1, len(z) - 1
+    fixed, fixed_pressure, cover = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
+    around, along = _distances(phi, z)
+    height = 0.5 * (z[1:] + z[:-1])
+    openings = [(groove_opening(g, phi, z), _along_groove(section, g, height)) for g in section.grooves]
+    openings += [(hole_opening(section, h, phi, z), np.full(shape[1], h.pressure)) for h in section.holes]
+    for opening, pressure in openings:
+        around, along = _to_edge(opening, around, along, phi, z)
+        fixed |= opening.inside
+        fixed_pressure = np.where(opening.inside, pressure / section.pressure_scale, fixed_pressure)
+        cover += opening.cover
+    around[fixed & np.roll(fixed, -1, axis=0)] = 0.0
+    along[fixed[:, :-1] & fixed[:, 1:]] = 0.0
+    return VolumeGrid(phi, z, fixed, fixed_pressure, around, along, np.minimum(cover, 1.0))
 
 
-def hole_area(section: Section, hole: Hole) -> float:
-    """Area in m^2 of the part of a hole that lies within the section (a round one on the edge z = 1 of a symmetric
-    section counts by half)."""
-    square = 4.0 * section.radius * hole.half_angle
-    low = max(-1.0, -hole.axial / hole.half_width)
-    high = min(1.0, (section.width - hole.axial) / hole.half_width)
-    share = 0.25 * (_half_disk(high) - _half_disk(low)) if hole.round else 0.5 * (high - low)
-    return square * hole.half_width * share
+def _along_groove(section: Section, groove: AxialGroove, height: Array) -> Array:
+    """(k,) gauge pressure in Pa at axial positions over the section's width."""
+    distance = height * section.width
+    if section.far != "symmetry":
+        distance = np.minimum(distance, section.bearing_width - distance)
+    return groove_pressure(groove, distance, section.bearing_width)
 
 
-def _half_disk(t: float) -> float:
-    """Area of the unit disk left of the abscissa t in [-1, 1], from its middle."""
-    return t * math.sqrt(max(1.0 - t * t, 0.0)) + math.asin(t)
+def _distances(phi: Array, z: Array) -> tuple[Array, Array]:
+    """Between the middles of cells: (m, k) through the face after each, (m, k - 1) along."""
+    dphi, height = np.diff(phi), 0.5 * (z[1:] + z[:-1])
+    around = np.repeat(0.5 * (dphi + np.roll(dphi, -1))[:, None], len(height), axis=1)
+    return around, np.repeat(np.diff(height)[None, :], len(dphi), axis=0)
 
 
-def wrapped(angle: Array) -> Array:
-    """Angles brought to [-pi, pi)."""
-    return np.mod(angle + math.pi, 2.0 * math.pi) - math.pi
+def _to_edge(opening: Opening, around: Array, along: Array, phi: Array, z: Array) -> tuple[Array, Array]:
+    """The distances with those between a cell within the opening and one outside replaced by that to its edge."""
+    inside = opening.inside
+    behind = np.roll(inside, -1, axis=0)
+    beyond = np.maximum(opening.around, NEAREST * np.diff(phi)[:, None])
+    reach = np.where(inside, np.roll(beyond, -1, axis=0), beyond)
+    around = np.where(inside ^ behind, reach, around)
+    beyond = np.maximum(opening.along, NEAREST * np.diff(z))
+    reach = np.where(inside[:, :-1], beyond[:, 1:], beyond[:, :-1])
+    return around, np.where(inside[:, :-1] ^ inside[:, 1:], reach, along)

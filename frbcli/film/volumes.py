@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.errors import NotConverged
-from frbcli.film.balance import Balance, Fluxes, Motion, Storage, gap_height, gap_rate
+from frbcli.film.balance import Balance, Fluxes, Motion, Storage
 from frbcli.film.cavitation.law import CellState, Law, Scales
-from frbcli.film.gap import Section
+from frbcli.film.gap import Section, gap_height, gap_rate
 from frbcli.film.grid import Array
 from frbcli.film.newton import Unknowns, solve
 from frbcli.film.volume_grid import VolumeGrid, fitted_grid, volume_grid
@@ -86,7 +86,7 @@ class VolumeFilm:
 
     def gap(self, d: tuple[float, float], phi: Array) -> Array:
         """H (4.4) at the angles phi (n,)."""
-        return gap_height(d, phi)
+        return gap_height(self.section, d, phi)
 
     def cells(self, w: Array) -> CellState:
         """State of the cells with the unknown w (m, k), with the given pressures in grooves and holes."""
@@ -107,7 +107,7 @@ class VolumeFilm:
 
     def content(self, motion: Motion, w: Array) -> Array:
         """(m, k) oil in the cells, H theta."""
-        content: Array = gap_height(motion.d, self.grid.centre)[:, None] * self.cells(w).fraction
+        content: Array = gap_height(self.section, motion.d, self.grid.centre)[:, None] * self.cells(w).fraction
         return content
 
     def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
@@ -134,7 +134,7 @@ class VolumeFilm:
         motion: at the end of the step; flowing: motion whose gap the oil flows through, else that at the end; w: (m, k)
         unknown to begin from. Returns (solution, content). Raises NotConverged.
         """
-        storage = Storage(rate * gap_height(motion.d, self.grid.centre)[:, None], past)
+        storage = Storage(rate * gap_height(self.section, motion.d, self.grid.centre)[:, None], past)
         solution = self._solve(motion if flowing is None else flowing, w, storage)
         return solution, self.content(motion, solution.w)
 

@@ -8,15 +8,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.compare import Comparison, Variant
-from frbcli.plot.signals import CAVITATION_NAMES, suffixes, thin, times
+from frbcli.analysis.signals import films, joined
+from frbcli.plot.signals import CAVITATION_NAMES, thin, times
 from frbcli.plot.style import COLOURS, new_figure, styled
 from frbcli.results.store import Run
 
 Line = Any  # a line style of matplotlib: a name, or an offset and lengths of dashes
 
 LINES: tuple[Line, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
-MARKS = {"critical-speed": "o", "onset": "^", "offset": "v", "contact": "X"}
-WORDS = {"critical-speed": "critical", "onset": "whirl", "offset": "whirl ends", "contact": "contact"}
+MARKS = {"critical-speed": "o", "onset": "^", "offset": "v", "lock-in": "s", "contact": "X"}
+WORDS = {"critical-speed": "critical", "onset": "whirl", "offset": "whirl ends", "lock-in": "locks in",
+         "contact": "contact"}  # fmt: skip
 ROW_HEIGHT = 0.32  # inches of a variant's row
 LEFT_SHARE = 0.85  # of the time axis; the label of an event beyond stands left of it
 
@@ -31,18 +33,21 @@ def comparison_figure(comparison: Comparison) -> Figure:
     count = len(runs)
     with styled():
         title = comparison.case.title or comparison.case.name
-        figure = new_figure(title, f"run-up with {count} models of the films", height=4.4 + ROW_HEIGHT * count)
+        models = {(result.variant.cavitation, result.variant.theory) for result in comparison.results}
+        what = "models of the films" if len(models) > 1 else "couplings of rotor and films"
+        figure = new_figure(title, f"run-up with {count} {what}", height=4.4 + ROW_HEIGHT * count)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3.6, ROW_HEIGHT * count))
         above.set_xlim(min(span[0] for span in spans), max(span[-1] for span in spans))
         for row, run in enumerate(runs):
             colour, line = COLOURS[row % len(COLOURS)], LINES[row % len(LINES)]
-            for suffix in suffixes(run, "eccentricity"):
-                above.plot(*thin(times(run), run["eccentricity" + suffix]), color=colour, linestyle=line, alpha=0.75)
+            for film in films(run.signals):
+                values = run[joined("eccentricity", film)]
+                above.plot(*thin(times(run), values), color=colour, linestyle=line, alpha=0.75)
             _draw_events(below, run, row, colour, line)
         above.set_ylim(0.0, 1.0)
         above.set_ylabel("eccentricity")
         _speed_axis(above, comparison)
-        below.set_yticks(range(count), [_name(result.variant) for result in comparison.results])
+        below.set_yticks(range(count), [_name(result.variant, len(models) > 1) for result in comparison.results])
         below.set_ylim(count - 0.5, -0.5)
         below.tick_params(axis="y", length=0)
         below.grid(axis="y", visible=False)
@@ -87,5 +92,9 @@ def _speed_axis(axes: Axes, comparison: Comparison) -> None:
     axes.secondary_xaxis("top", functions=(at_time, at_speed)).set_xlabel("rotor speed in Hz")
 
 
-def _name(variant: Variant) -> str:
-    return f"{CAVITATION_NAMES.get(variant.cavitation, variant.cavitation)}, {variant.theory}"
+def _name(variant: Variant, several: bool) -> str:
+    """several: models, not only couplings of one."""
+    if not several:
+        return variant.coupled
+    name = f"{CAVITATION_NAMES.get(variant.cavitation, variant.cavitation)}, {variant.theory}"
+    return name if variant.coupling == "auto" else f"{name},\n{variant.coupling}"

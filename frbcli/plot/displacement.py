@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from frbcli.plot.signals import MICRO, cut, heading, labels, motion, suffixes, thin, times
+from frbcli.analysis.signals import joined, points
+from frbcli.plot.signals import MICRO, cut, heading, labels, located, motion, thin, times
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.store import Run
 
@@ -22,9 +23,9 @@ def displacement_figure(
     signal: "disk", "journal" or "journal_NAME" of a bearing; None takes the disk where every run has one.
     Raises RunFileError if a run lacks the signal.
     """
-    node = signal or ("disk" if all(suffixes(run, "disk_x_m") for run in runs) else "journal")
+    node = signal or ("disk" if all(list(points(run.signals, "disk")) for run in runs) else "journal")
     title, subtitle = heading(runs)
-    what = f"displacement of the {node.replace('_', ' ')}"
+    what = f"displacement of the {joined(*located(runs[0], node)).replace('_', ' ')}"
     with styled():
         figure = new_figure(title, ", ".join(text for text in (subtitle, what) if text), height=5.0)
         panels = figure.subplots(2, 1, sharex=True)

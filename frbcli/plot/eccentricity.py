@@ -1,4 +1,4 @@
-"""Eccentricity over time, of one run or of several."""
+"""Eccentricity over time or rotor speed, of one run or of several."""
 
 from __future__ import annotations
 
@@ -7,36 +7,59 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.plot.signals import cut, heading, labels, suffixes, thin, times
+from frbcli.analysis.signals import films, joined
+from frbcli.plot.curves import Over, Span, draw_curves, finish
+from frbcli.plot.signals import heading
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.store import Run
 
+SIDES = ("inner", "outer")
+PANEL_HEIGHT = 2.6  # inches
+
 
 def eccentricity_figure(
-    runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None
+    runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None, over: Over = "time"
 ) -> Figure:
-    """Relative eccentricity of each film over time, the runs overlaid, from from_time to to_time in s.
+    """Relative eccentricity of each film, the runs overlaid, from from_time to to_time in s.
 
-    Raises RunFileError if a run has none.
+    Inner and outer films of floating rings have a panel each. Over speed, a run-down shows its hysteresis. Raises
+    RunFileError if a run has no eccentricity.
     """
+    groups = _groups(runs[0])
     with styled():
-        figure = new_figure(*heading(runs))
-        axes = figure.subplots()
-        draw_eccentricity(axes, runs, from_time, to_time)
-        legend_below(figure, axes)
+        figure = new_figure(*heading(runs), height=max(4.4, 0.8 + PANEL_HEIGHT * len(groups)))
+        panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, (side, names) in zip(panels, groups, strict=True):
+            draw_eccentricity(axes, runs, names, (from_time, to_time), over)
+            if side:
+                axes.set_title(f"{side} film")
+        finish(panels[-1], over)
+        legend_below(figure, panels[0])
     return figure
 
 
 def draw_eccentricity(
-    axes: Axes, runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None
+    axes: Axes, runs: Sequence[Run], names: Sequence[str] = (), span: Span = (None, None), over: Over = "time"
 ) -> None:
-    """The curves on axes of a figure, labelled with their run and bearing where there are several."""
-    for run, label in zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True):
-        shown = cut(run, from_time, to_time)
-        for suffix in suffixes(run, "eccentricity") or [""]:
-            name = ", ".join(word for word in (label, suffix[1:]) if word)
-            axes.plot(*thin(times(run)[shown], run["eccentricity" + suffix][shown]), label=name)
+    """The curves of some films, or of all, on axes of a figure, labelled with run and film where there are several."""
+    names = names or list(films(runs[0].signals)) or [""]
+    told = [_without_side(name) if len(names) < len(list(films(runs[0].signals))) else name for name in names]
+    curves = [
+        (label.replace("_", " "), [run[joined("eccentricity", name)] for run in runs])
+        for label, name in zip(told, names, strict=True)
+    ]
+    draw_curves(axes, runs, curves, over, span)
     axes.set_ylim(0.0, 1.0)
-    axes.margins(x=0.0)
-    axes.set_xlabel("time in s")
     axes.set_ylabel("eccentricity")
+
+
+def _groups(run: Run) -> list[tuple[str, list[str]]]:
+    """The films of a panel: those inside of rings, those outside of them, those without."""
+    found = list(films(run.signals)) or [""]
+    groups = [(side, [name for name in found if name.split("_")[-1] == side]) for side in SIDES]
+    groups.append(("", [name for name in found if name.split("_")[-1] not in SIDES]))
+    return [(side, names) for side, names in groups if names]
+
+
+def _without_side(name: str) -> str:
+    return "_".join(word for word in name.split("_") if word not in SIDES)

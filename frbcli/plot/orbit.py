@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from frbcli.plot.signals import MICRO, clearance, cut, heading, labels, motion, suffixes, times
+from frbcli.analysis.signals import joined, points
+from frbcli.plot.signals import MICRO, clearance, cut, heading, labels, motion, times
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
 from frbcli.results.store import Run
 
@@ -21,30 +22,30 @@ def orbit_figure(runs: Sequence[Run], from_time: float | None = None, to_time: f
 
     A dot marks where an orbit begins. Raises RunFileError if a run has no samples between these times.
     """
-    bearings = suffixes(runs[0], "journal_x_m") or [""]
+    bearings = list(points(runs[0].signals, "journal")) or [""]
     end = min(float(times(run)[-1]) for run in runs) if to_time is None else to_time
     begin = max(end - LAST_s, 0.0) if from_time is None else from_time
     title, subtitle = heading(runs)
     span = f"orbit from {begin:.4g} s to {end:.4g} s"
     with styled():
         figure = new_figure(title, ", ".join(text for text in (subtitle, span) if text), 4.8 * len(bearings), 5.2)
-        for axes, suffix in zip(figure.subplots(1, len(bearings), squeeze=False)[0], bearings, strict=True):
-            axes.set_title(suffix[1:])
-            _draw(axes, runs, suffix, (begin, end))
+        for axes, bearing in zip(figure.subplots(1, len(bearings), squeeze=False)[0], bearings, strict=True):
+            axes.set_title(bearing)
+            _draw(axes, runs, bearing, (begin, end))
         legend_below(figure, axes)
     return figure
 
 
-def _draw(axes: Axes, runs: Sequence[Run], suffix: str, span_s: tuple[float, float]) -> None:
+def _draw(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[float, float]) -> None:
     widest = 0.0
     circles: set[float] = set()
     for number, (run, label) in enumerate(zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True)):
         shown = cut(run, *span_s)
-        x, y = (values[shown] * MICRO for values in motion(run, "journal" + suffix))
+        x, y = (values[shown] * MICRO for values in motion(run, joined("journal", bearing)))
         colour = COLOURS[number % len(COLOURS)]
         axes.plot(x, y, color=colour, linewidth=0.9, label=label)
         axes.plot(x[:1], y[:1], color=colour, marker="o", markersize=4.0)
-        radius = clearance(run, suffix) * MICRO
+        radius = clearance(run, bearing) * MICRO
         circles.add(radius)
         widest = max(widest, radius, float(np.max(np.hypot(x, y))))
     for radius in circles:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.analysis.events import find_events
+from frbcli.analysis.signals import bearing_clearance, joined, points
 from frbcli.results.container import refuse
 from frbcli.results.store import Run
 
@@ -22,20 +23,26 @@ CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerf
                     "peeken": "Peeken", "elrod": "Elrod"}  # fmt: skip
 
 
-def suffixes(run: Run, stem: str) -> list[str]:
-    """What follows `stem` in the names of the signals: "" alone, or "_name" of each bearing."""
-    return [name[len(stem) :] for name in run.signals if name == stem or name.startswith(stem + "_")]
+def located(run: Run, node: str) -> tuple[str, str]:
+    """Kind and name of "disk", "journal" (the first, if there are several) or "journal_NAME" of a bearing."""
+    kind, _, name = node.partition("_")
+    return kind, name or next(points(run.signals, kind), "")
 
 
 def motion(run: Run, node: str) -> tuple[Values, Values]:
-    """x and y (n,) in m of "disk", "journal" (the first, if there are several) or "journal_NAME" of a bearing."""
-    kind, _, name = node.partition("_")
-    found = suffixes(run, f"{kind}_x_m")
-    suffix = f"_{name}" if name or not found else found[0]
-    x, y = run[f"{kind}_x_m{suffix}".rstrip("_")], run[f"{kind}_y_m{suffix}".rstrip("_")]
+    """x and y (n,) in m of a point, see located."""
+    point = joined(*located(run, node))
+    x, y = run[f"{point}_x_m"], run[f"{point}_y_m"]
     if len(x) < 2:
         raise refuse(run.path, "holds no samples yet.", "Let the run go on with --resume.")
     return x, y
+
+
+def bearing_of(run: Run, node: str) -> str:
+    """The bearing that a point belongs to: of a disk that of the same name, or else the first one."""
+    bearings = list(points(run.signals, "journal"))
+    name = located(run, node)[1]
+    return name if name in bearings or not bearings else bearings[0]
 
 
 def times(run: Run) -> Values:
@@ -57,11 +64,12 @@ def cut(run: Run, from_time: float | None, to_time: float | None) -> slice:
     return slice(first, last)
 
 
-def clearance(run: Run, suffix: str = "") -> float:
-    """The clearance in m of a bearing, or of all."""
-    for name in ("clearance_m" + suffix, "clearance_m", *run.references):
-        if name.startswith("clearance_m") and run.references.get(name, 0.0) > 0.0:
-            return run.references[name]
+def clearance(run: Run, bearing: str = "") -> float:
+    """How far in m a journal can move in a bearing: its clearance, of a floating ring C_i + C_o."""
+    known = [length for name, length in run.references.items() if name.startswith("clearance_m")]
+    length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
+    if length > 0.0:
+        return length
     raise refuse(run.path, "does not say the clearance that amplitudes refer to.", "Run the case again.")
 
 

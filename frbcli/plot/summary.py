@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from frbcli.analysis.signals import joined, points
+from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.plot.eccentricity import draw_eccentricity
-from frbcli.plot.signals import events, heading, suffixes, thin, times
-from frbcli.plot.style import BLACK, GREY, mark_times, new_figure, styled
-from frbcli.plot.waterfall import draw_levels, run_spectra
+from frbcli.plot.signals import events, heading, thin, times
+from frbcli.plot.style import BLACK, GREY, SKY, mark_times, new_figure, styled
+from frbcli.plot.waterfall import draw_levels, level_label, run_spectra
 from frbcli.results.store import Run
 
+SIGNAL = "journal"
 WINDOW_s = 0.2
 WINDOWS = 4  # a run shorter than this many windows gets shorter ones
 FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
 
-NAMES = {"critical-speed": "critical speed", "onset": "onset of whirl", "offset": "end of whirl", "contact": "contact"}
+NAMES = {"critical-speed": "critical speed", "onset": "onset of whirl", "offset": "end of whirl", "lock-in": "lock-in",
+         "contact": "contact"}
 
 
 def summary_figure(run: Run) -> Figure:
@@ -33,29 +38,28 @@ def summary_figure(run: Run) -> Figure:
         draw_eccentricity(above, [run])
         above.set_xlim(time_s[0], time_s[-1])
         if len(above.get_lines()) > 1:
-            above.legend(loc="upper right")
+            above.legend(loc="upper right", ncols=2, frameon=True, framealpha=0.85, edgecolor="none")
         if len(time_s) >= FEWEST_SAMPLES:
             window = min(WINDOW_s, float(time_s[-1] - time_s[0]) / WINDOWS)
-            signal = "journal" + (suffixes(run, "journal_x_m") or [""])[0]
-            mesh = draw_levels(middle, run, run_spectra(run, signal, window, "x"), "time")
+            mesh = draw_levels(middle, run, SIGNAL, run_spectra(run, SIGNAL, window, "x"), "time")
             bar = figure.colorbar(mesh, ax=[above, middle, below], location="bottom", shrink=0.6, pad=0.02,
                                   extend="both", aspect=40)  # fmt: skip
-            bar.set_label("amplitude of the journal relative to the clearance in dB")
+            bar.set_label(level_label(run, SIGNAL).replace("amplitude", "amplitude of the journal"))
             bar.outline.set_visible(False)
         _draw_speed(below, run)
         for axes in (above, middle):
             axes.set_xlabel("")
-        found = events(run)
-        mark_times((above, middle), [event["t_s"] for event in found], [_words(event) for event in found])
+        marked = _marks(events(run))
+        mark_times((above, middle), [time for time, _ in marked], [words for _, words in marked])
     return figure
 
 
 def _draw_speed(axes: Axes, run: Run) -> None:
     axes.plot(*thin(times(run), run["speed_Hz"]), color=BLACK, label="rotor")
-    rings = suffixes(run, "ring_speed_Hz")
-    for suffix in rings:
-        name = ", ".join(word for word in ("ring", suffix[1:]) if word)
-        axes.plot(*thin(times(run), run["ring_speed_Hz" + suffix]), color=GREY, label=name)
+    rings = [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
+    for name, colour in zip(rings, itertools.cycle((GREY, SKY)), strict=False):
+        label = ", ".join(word for word in ("ring", name) if word)
+        axes.plot(*thin(times(run), run[joined("ring_speed", name, "Hz")]), color=colour, label=label)
     if rings:
         axes.legend(loc="upper left")
     axes.set_ylim(bottom=0.0)
@@ -64,10 +68,22 @@ def _draw_speed(axes: Axes, run: Run) -> None:
     axes.set_ylabel("speed in Hz")
 
 
+def _marks(found: list[dict[str, Any]]) -> list[tuple[float, str]]:
+    """Time and words of what is marked; of the whirls of floating rings the first onset of each that has a name."""
+    marks, known = [], set()
+    for event, name in zip(found, whirl_names(found), strict=True):
+        if not name:
+            marks.append((event["t_s"], _words(event)))
+        elif event["kind"] == "onset" and name not in known:
+            known.add(name)
+            marks.append((event["t_s"], _words(event | {"kind": name.replace("_i", "$_i$").replace("_o", "$_o$")})))
+    return marks
+
+
 def _words(event: dict[str, Any]) -> str:
     """An event for people: what, at which speed, with which frequency."""
     name = NAMES.get(event["kind"], event["kind"])
-    film = f" {event['film']}" if event.get("film") else ""
+    film = f" {event['film'].replace('_', ' ')}" if event.get("film") else ""
     ratio = event.get("frequency_ratio")
     share = f", {ratio:.2f} ω" if ratio is not None and ratio != 1.0 else ""
     return f"{name}{film}\n{event['speed_Hz']:.1f} Hz{share}"

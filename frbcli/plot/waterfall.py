@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, ScalarFormatter
 from numpy.typing import NDArray
 
+from frbcli.analysis.signals import joined, points, ring_speed
 from frbcli.analysis.spectrum import Direction, Spectrogram
 from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.plot.cascade import draw_cascade
-from frbcli.plot.signals import clearance, heading, motion, suffixes, times
+from frbcli.plot.signals import bearing_of, clearance, heading, located, motion, times
 from frbcli.plot.style import LEVEL_MAP, new_figure, styled
 from frbcli.results.container import refuse
 from frbcli.results.store import Run
@@ -38,17 +39,19 @@ def waterfall_figure(
     direction: Direction = "x",
     log: bool = False,
 ) -> Figure:
-    """Levels in dB relative to the clearance, with the rotor speed and its half (or the ring's) drawn in.
+    """Levels in dB relative to the clearance, of a floating ring to C_i + C_o, with the rotor speed and the frequencies
+    of free whirls drawn in: half of it, or (omega_R + omega_F)/2 and omega_F/2.
 
     over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
-    "journal_NAME" of a bearing; cascade: one curve per spectrum, behind each other; window_s and direction as in
-    `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency.
+    "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum, behind each other; window_s
+    and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency.
 
     Raises InputError if the run does not have the signal or is shorter than a window.
     """
     found = run_spectra(run, signal, window_s, direction)
     parts = _parts(run, found) if over == "speed" else [("", found)]
-    what = f"{'forward motion' if direction == 'forward' else direction} of the {signal.replace('_', ' ')}"
+    point = joined(*located(run, signal)).replace("_", " ")
+    what = f"{'forward motion' if direction == 'forward' else direction} of the {point}"
     title, subtitle = heading([run])
     with styled():
         figure = new_figure(title, ", ".join(text for text in (subtitle, what) if text), height=4.0 + 0.6 * len(parts))
@@ -56,12 +59,12 @@ def waterfall_figure(
         for axes, (name, part) in zip(panels, parts, strict=True):
             axes.set_title(name)
             if cascade:
-                draw_cascade(axes, part, over, LEVELS_dB, _orders(run, part))
+                draw_cascade(axes, part, over, LEVELS_dB, _orders(run, signal, part))
             else:
-                mesh = draw_levels(axes, run, part, over, log)
+                mesh = draw_levels(axes, run, signal, part, over, log)
         if not cascade:
             bar = figure.colorbar(mesh, ax=list(panels), pad=0.02, extend="both")
-            bar.set_label("amplitude relative to the clearance in dB")
+            bar.set_label(level_label(run, signal))
             bar.outline.set_visible(False)
     return figure
 
@@ -70,14 +73,21 @@ def run_spectra(run: Run, signal: str, window_s: float, direction: Direction) ->
     """The spectra of a run up to the frequency that its pictures show."""
     x, y = motion(run, signal)
     highest = max(ABOVE_SYNCHRONOUS * float(np.max(run["speed_Hz"])), FEWEST_LINES / max(window_s, 1e-9))
-    suffix = signal.partition("_")[2]
-    length = clearance(run, f"_{suffix}" if suffix else "")
+    length = clearance(run, bearing_of(run, signal))
     return spectra(
         times(run), x, y, run["speed_Hz"], length, window_s, max_frequency_Hz=highest, direction=direction
     )
 
 
-def draw_levels(axes: Axes, run: Run, found: Spectrogram, over: Over, log: bool = False) -> QuadMesh:
+def level_label(run: Run, signal: str) -> str:
+    """What the levels of a signal are relative to."""
+    ringed = bearing_of(run, signal) in points(run.signals, "ring")
+    return f"amplitude relative to {'C$_i$ + C$_o$' if ringed else 'the clearance'} in dB"
+
+
+def draw_levels(
+    axes: Axes, run: Run, signal: str, found: Spectrogram, over: Over, log: bool = False
+) -> QuadMesh:
     """The map of levels with its lines, on axes of a figure."""
     across = found.time_s if over == "time" else found.speed_Hz
     mesh = axes.pcolormesh(
@@ -96,7 +106,7 @@ def draw_levels(axes: Axes, run: Run, found: Spectrogram, over: Over, log: bool 
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(ScalarFormatter())
-    for label, frequency in _orders(run, found):
+    for label, frequency in _orders(run, signal, found):
         axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
         _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
     axes.grid(False)
@@ -105,13 +115,13 @@ def draw_levels(axes: Axes, run: Run, found: Spectrogram, over: Over, log: bool 
     return mesh
 
 
-def _orders(run: Run, found: Spectrogram) -> list[tuple[str, Values]]:
+def _orders(run: Run, signal: str, found: Spectrogram) -> list[tuple[str, Values]]:
     """The lines an engineer looks for: synchronous, and what the oil films whirl with."""
     lines = [("ω", found.speed_Hz)]
-    rings = suffixes(run, "ring_speed_Hz")
-    if not rings:
+    bearing = bearing_of(run, signal)
+    if bearing not in points(run.signals, "ring"):
         return [*lines, ("ω/2", found.speed_Hz / 2)]
-    ring = np.interp(found.time_s, run["time_s"], run["ring_speed_Hz" + rings[0]])
+    ring = np.interp(found.time_s, run["time_s"], ring_speed(run, bearing))
     return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
 
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from frbcli.errors import RunFileError
 from frbcli.results.container import USER_BLOCK, check_output, part_file, read_whole, refuse, write_whole
+from frbcli.results.records import wrong_record, wrong_signal
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -263,9 +264,8 @@ def _read(path: Path, file: h5py.File) -> Run:
     shapes = {signal.values.shape for signal in signals.values()}
     if len(shapes) != 1 or len(shapes.pop()) != 1:
         raise refuse(path, "is not a whole run: its signals are missing or differ in length.", "Run the case again.")
-    for name in RECORDS:
-        if not isinstance(records[name], list if name == "events" else dict):
-            raise refuse(path, f"is not a whole run: {name} has a wrong form.", "Run the case again.")
+    if wrong := wrong_record(records) or wrong_signal({name: signal.values for name, signal in signals.items()}):
+        raise refuse(path, f"is not a whole run: {wrong} has a wrong form.", "Run the case again.")
     return Run(
         path=path,
         signals=signals,

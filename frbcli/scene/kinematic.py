@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from frbcli.case.bearing import AxialGrooves, Bores, CircumferentialGroove, Pocket, SingleFilmBearing
-from frbcli.case.schema import Case, Motion
+from frbcli.case.bearing import Bores, SingleFilmBearing
+from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing import RectangularBearing
 from frbcli.film.cavitation.elrod import Elrod
@@ -16,8 +16,11 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.gap import AxialGroove, Hole, Section
+from frbcli.film.gap import Section
+from frbcli.film.section_faults import section_faults, starves
+from frbcli.scene.kinematic_faults import bearing_faults, motion_faults
 from frbcli.scene.plan import Decision
+from frbcli.scene.section import film_rectangle, film_section
 
 TESTS = ("rotation", "squeeze", "whirl")
 MODELS = ("half-sommerfeld", "sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")
@@ -25,19 +28,30 @@ COMPARED = tuple(model for model in MODELS if model != "sommerfeld")  # where no
 REMEMBERING = ("peeken", "elrod", "two-phase")  # oil is kept from one moment to the next; the others have no state
 
 # around, along; of a section that is half the film half as many along
-STEADY_CELLS, FINE_CELLS = (160, 40), (240, 60)
+STEADY_CELLS, FINE_CELLS = (128, 32), (240, 60)
 MOVING_CELLS = (64, 16)
 FINE_TARGET = 2e-4
 STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its force, hangs on the step
 FEWEST_CELLS = (12, 3)
 TWO_PI = 2.0 * math.pi
 
+PUBLISHED_ELEMENTS = (20, 10)
+PUBLISHED_FILM = Decision(
+    "film", "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
+)
+DIFFUSIONS = {
+    "consistent": "artificial, added both around and along as published (4.42): carries oil in from the edges",
+    "streamline": "artificial (4.42), around only",
+    "none": "no artificial diffusion: the steep step may keep the film from converging",
+}
+
 
 @dataclass(frozen=True)
 class KinematicPlan:
     """What will be modelled. section: of the film, copied section.copies times; rectangle: the bearing of the accurate
     modal film, None where grooves or bores are cut out; cells: (around, along); steps: per period; rate: reference
-    speed of the test in rad/s, for the penalty model on the dimensionless pressure."""
+    speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning: rad/s of the surface that
+    the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11)."""
 
     test: str
     cavitation: str
@@ -47,6 +61,9 @@ class KinematicPlan:
     steps: int
     rate: float
     decisions: tuple[Decision, ...]
+    turning: float = 0.0
+    ramp: float = 0.0
+    published: bool = False  # whether the two-phase model is in its published form, on quadratic elements
 
     @property
     def remembers(self) -> bool:
@@ -69,25 +86,45 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     bearing = case.bearings[0]
     assert isinstance(bearing, SingleFilmBearing)
     assert case.motion is not None
-    section = _section(case, bearing)
-    rectangle = _rectangle(bearing, section)
+    section = film_section(case, bearing)
+    if problems := section_faults(section):
+        faults = (Fault("bearing", "", None, f"cannot be solved: {p.problem}.", p.remedy) for p in problems)
+        raise InputError(case.name or "case", tuple(faults))
+    rectangle = film_rectangle(bearing, section)
     closed = cavitation in ("sommerfeld", "half-sommerfeld") and bearing.ends == "free-to-air"
     if closed:
         far = "oil-bath" if section.far == "free-to-air" else section.far
         section = replace(section, near="oil-bath", far=far)
-    decisions = [_gap_decision(section, bearing), _film_decision(cavitation, rectangle is not None)]
+    decisions = [_gap_decision(section, bearing), *_lobe_decision(section)]
+    published = cavitation == "two-phase" and case.film.two_phase.form == "published"
+    decisions.append(PUBLISHED_FILM if published else _film_decision(cavitation, rectangle is not None))
     if closed:
         reason = f"{cavitation} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
         decisions.append(Decision("ends", "ambient pressure", reason))
-    cells, why = _cells(case, test)
-    decisions.append(Decision("cells", f"{cells[0]} x {cells[1]}", f"around x along; {why}"))
+    conserving = cavitation in ("elrod", "two-phase") and not published
+    if conserving and starves(section):
+        reason = f"{cavitation} conserves oil, and none comes in: the ends are free to air and p_sup is not above p_cav"
+        decisions.append(Decision("supply", "starves", f"{reason}; the film loses oil and load"))
+    cells, why = _elements(case) if published else _cells(case, test)
+    choice = "elements" if published else "cells"
+    decisions.append(Decision(choice, f"{cells[0]} x {cells[1]}", f"around x along; {why}"))
     if test != "rotation":
         decisions.append(Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"))
-    if cavitation == "two-phase":
+    if published:
+        kind = case.film.two_phase.diffusion
+        decisions.append(Decision("diffusion", kind, DIFFUSIONS[kind]))
+    elif cavitation == "two-phase":
         reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
         decisions.append(Decision("diffusion", "upwind", reason))
     rate = TWO_PI * abs(case.motion.speed or case.motion.frequency or case.motion.whirl_speed or 1.0)
-    return KinematicPlan(test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions))
+    turning = 0.0
+    if isinstance(bearing.supply, Bores) and bearing.supply.on == "journal":
+        turning = TWO_PI * (case.motion.speed or 0.0)
+        decisions.append(Decision("frame", "of the journal", "the bores turn with it and stand still there"))
+    ramp = getattr(bearing.supply, "ramp", 0.0)
+    return KinematicPlan(
+        test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning, ramp, published
+    )
 
 
 def make_law(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
@@ -110,60 +147,6 @@ def make_law(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
     return Sommerfeld(clips=plan.cavitation == "half-sommerfeld")
 
 
-def _section(case: Case, bearing: SingleFilmBearing) -> Section:
-    """The part of the film that has to be solved: half of it where it is symmetric about the middle."""
-    supply, ends, width = bearing.supply, bearing.ends, bearing.width
-    radius, ambient = 0.5 * bearing.diameter, case.oil.ambient_pressure
-    copies, far, far_pressure = 2, "symmetry", 0.0
-    grooves: tuple[AxialGroove, ...] = ()
-    holes: tuple[Hole, ...] = ()
-    if isinstance(supply, CircumferentialGroove):
-        copies = 2 if supply.axial_position == 0.5 else 1
-        far, far_pressure = "groove", supply.pressure - ambient
-    elif isinstance(supply, AxialGrooves):
-        places = (supply.position + i * TWO_PI / supply.count for i in range(supply.count))
-        grooves = tuple(AxialGroove(place, supply.opening_angle, supply.pressure - ambient) for place in places)
-    elif isinstance(supply, Pocket):
-        half_angle, half_width = 0.5 * supply.opening_angle, 0.5 * supply.width
-        holes = (Hole(supply.position, 0.5 * width, half_angle, half_width, supply.pressure - ambient, round=False),)
-    elif isinstance(supply, Bores):
-        if supply.axial_position != 0.5:
-            copies, far = 1, ends
-        size, axial = 0.5 * supply.diameter, supply.axial_position * width
-        places = (supply.position + i * TWO_PI / supply.count for i in range(supply.count))
-        holes = tuple(Hole(p, axial, size / radius, size, supply.pressure - ambient, round=True) for p in places)
-    return Section(
-        radius=radius,
-        width=width / copies,
-        bearing_width=width,
-        clearance=bearing.clearance,
-        viscosity=case.viscosity(bearing),
-        ambient_pressure=ambient,
-        cavitation_pressure=case.oil.cavitation_pressure,
-        copies=copies,
-        near=ends,
-        far=far,
-        far_pressure=far_pressure,
-        grooves=grooves,
-        holes=holes,
-    )
-
-
-def _rectangle(bearing: SingleFilmBearing, section: Section) -> RectangularBearing | None:
-    if section.grooves or section.holes:
-        return None
-    return RectangularBearing(
-        width=bearing.width,
-        diameter=bearing.diameter,
-        clearance=bearing.clearance,
-        viscosity=section.viscosity,
-        sections=section.copies if section.far == "groove" else 1,
-        ambient_pressure=section.ambient_pressure,
-        cavitation_pressure=section.cavitation_pressure,
-        supply_pressure=section.ambient_pressure + section.far_pressure if section.far == "groove" else None,
-    )
-
-
 def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
     if case.accuracy.mesh is not None:
         along, around = case.accuracy.mesh
@@ -171,7 +154,14 @@ def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
     if test != "rotation":
         return MOVING_CELLS, "equal ones around, for the narrowest gap moves"
     fine = case.accuracy.target <= FINE_TARGET
-    return FINE_CELLS if fine else STEADY_CELLS, "finer at the narrowest gap and at the ends"
+    return FINE_CELLS if fine else STEADY_CELLS, "finer at the narrowest gap"
+
+
+def _elements(case: Case) -> tuple[tuple[int, int], str]:
+    if case.accuracy.mesh is not None:
+        along, around = case.accuracy.mesh
+        return (max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])), "of a section, set in the case"
+    return PUBLISHED_ELEMENTS, "of a section, as published"
 
 
 def _gap_decision(section: Section, bearing: SingleFilmBearing) -> Decision:
@@ -183,6 +173,15 @@ def _gap_decision(section: Section, bearing: SingleFilmBearing) -> Decision:
     return Decision("gap", "the whole width", f"supply {bearing.supply.kind}: the film is not symmetric")
 
 
+def _lobe_decision(section: Section) -> list[Decision]:
+    lobes = section.lobes
+    if lobes is None:
+        return []
+    machined = 1e6 * section.clearance / (1.0 - lobes.preload)
+    reason = f"clearance {1e6 * section.clearance:.4g} um where they are narrowest, {machined:.4g} um of their bores"
+    return [Decision("lobes", f"{lobes.count}, preload {lobes.preload:g}", reason)]
+
+
 def _film_decision(cavitation: str, rectangular: bool) -> Decision:
     if cavitation in REMEMBERING:
         return Decision("film", "finite volumes", f"{cavitation}: conserves oil and keeps it from moment to moment")
@@ -192,66 +191,19 @@ def _film_decision(cavitation: str, rectangular: bool) -> Decision:
 
 
 def _refuse(case: Case, cavitation: str, test: str) -> None:
-    faults = [*_motion_faults(case.motion, test), *_model_faults(case, cavitation), *_bearing_faults(case)]
+    faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test), *bearing_faults(case, test)]
     if faults:
         raise InputError(case.name or "case", tuple(faults))
 
 
-def _motion_faults(motion: Motion | None, test: str) -> list[Fault]:
-    if motion is None:
-        remedy = 'Add e.g. [motion] with eccentricity = 0.6, angle = "-60 deg", speed = "20 Hz".'
-        return [Fault("motion", "", None, f"is missing; a {test} needs it.", remedy)]
-    faults = []
-    if test == "rotation":
-        if motion.speed is None and motion.whirl_speed == 0.0 and motion.eccentricity_rate == 0.0:
-            faults.append(Fault("motion.speed", "", None, "is missing.", 'Add e.g. speed = "20 Hz" to [motion].'))
-        if motion.load is not None and not motion.speed:
-            problem = "cannot be carried by a journal that does not turn."
-            faults.append(Fault("motion.load", f"{motion.load:g} N", None, problem, "Give a speed other than zero."))
-        if motion.eccentricity is None and motion.load is None:
-            problem = "is missing, and there is no load."
-            faults.append(Fault("motion.eccentricity", "", None, problem, 'Add it, or e.g. load = "29.9 N".'))
-        return faults
-    if motion.eccentricity is None:
-        problem = f"is missing; it is the largest one of a {test}."
-        faults.append(Fault("motion.eccentricity", "", None, problem, "Add e.g. eccentricity = 0.6 to [motion]."))
-    if not motion.frequency:
-        problem = f"is missing; a {test} needs one above zero."
-        faults.append(Fault("motion.frequency", "", None, problem, 'Add e.g. frequency = "10 Hz" to [motion].'))
-    return faults
-
-
-def _model_faults(case: Case, cavitation: str) -> list[Fault]:
+def _model_faults(case: Case, cavitation: str, test: str) -> list[Fault]:
     faults = []
     if cavitation not in MODELS:
         faults.append(Fault("--cavitation", cavitation, None, "is no model.", f"There are: {', '.join(MODELS)}."))
     if case.film.theory == "short":
         problem = "is not for kinematic tests, which solve the whole film."
         faults.append(Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".'))
-    if cavitation == "two-phase" and case.film.two_phase.form == "published":
-        problem = "is not modelled in this version: it creates oil where the film cavitates."
+    if test != "rotation" and cavitation == "two-phase" and case.film.two_phase.form == "published":
+        problem = f"is not modelled for a {test} in this version."
         faults.append(Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".'))
-    return faults
-
-
-def _bearing_faults(case: Case) -> list[Fault]:
-    if len(case.bearings) != 1:
-        problem = "are too many: a kinematic test is of one bearing."
-        return [Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")]
-    bearing = case.bearings[0]
-    if not isinstance(bearing, SingleFilmBearing):
-        problem = "is not modelled in this version of kinematic tests."
-        return [Fault("bearing.kind", bearing.kind, None, problem, 'Modelled is: "single-film".')]
-    supply, faults = bearing.supply, []
-    if supply.kind == "none" and bearing.ends == "free-to-air":
-        problem = "with ends free to air gets no oil: the bearing runs dry."
-        remedy = 'Add a supply to [bearing], or write ends = "oil-bath".'
-        faults.append(Fault("bearing.supply.kind", supply.kind, None, problem, remedy))
-    if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, 0.5, 1.0):
-        problem = "is neither in the middle nor at an end: the two films would differ."
-        value = f"{supply.axial_position:g}"
-        faults.append(Fault("bearing.supply.axial_position", value, None, problem, "Write 0.5, 0 or 1."))
-    if isinstance(supply, Bores) and supply.on == "journal" and case.motion is not None and case.motion.speed:
-        problem = "turn with the journal, which this version does not model."
-        faults.append(Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".'))
     return faults

@@ -3,41 +3,118 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from frbcli.case.bearing import AxialGrooves, SingleFilmBearing
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.bearing import AxialGrooves, FilmGeometry, SingleFilmBearing
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
-from frbcli.film.bearing import RectangularBearing, make_film
+from frbcli.film.bearing import FilmForce, RectangularBearing, evaluate, make_film
 from frbcli.film.gap import AxialGroove
+from frbcli.film.grid import Array
 from frbcli.film.kernel import FilmData
+from frbcli.film.steady_force import steady_force
 from frbcli.film.table import Mesh
+from frbcli.film.volume_data import AREA, REMEMBERS, STANDS, UNKNOWN, VolumeFilms, volume_films
+from frbcli.film.volumes import VolumeFilm
 from frbcli.rotor.excitation import SpeedProfile, speed_profile
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
+from frbcli.rotor.ring import with_rings, with_spins
+from frbcli.scene.films import channel_pulls, film_places, rings, turning, turning_rings, volume_film
 from frbcli.scene.plan import Plan
+from frbcli.scene.turbocharger import make_turbocharger
 
 
 @dataclass(frozen=True)
 class System:
-    """rotor: the linear system; bearings: their dimensions and oil; films: ready to be evaluated, one per bearing."""
+    """A machine as the time loop takes it.
+
+    rotor: the linear system; films: ready for the time loop, with their names and clearances in m; bearings or volumes:
+    their dimensions and oil, of films without or with cells, the other one being empty. bodies: (films, 2) what lies
+    inside and outside of each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing
+    in N m s, the Couette torque per slip and drag_integral; ring_count: of rings that turn; follows: what the films'
+    law follows; torque, cavitation_factor: see FilmModel.
+    """
 
     rotor: LinearRotor
-    bearings: tuple[RectangularBearing, ...]
-    films: tuple[FilmData, ...]
+    films: tuple[FilmData, ...] | VolumeFilms
+    names: tuple[str, ...]
+    clearances: tuple[float, ...]
+    bodies: NDArray[np.int64]
+    turning: Array
+    drags: tuple[float, ...]
+    bearings: tuple[RectangularBearing, ...] = ()
+    volumes: tuple[VolumeFilm, ...] = ()
+    ring_count: int = 0
+    follows: int = STANDS
+    torque: str = "all"
+    cavitation_factor: str = "none"
 
     @property
-    def clearances(self) -> tuple[float, ...]:
-        """Clearance of each film, m."""
-        return tuple(bearing.clearance for bearing in self.bearings)
+    def remembers(self) -> bool:
+        """Whether the films keep oil of their own."""
+        return isinstance(self.films, VolumeFilms) and bool(np.all(self.films.numbers[:, REMEMBERS] != 0.0))
+
+    @property
+    def spins(self) -> tuple[int, ...]:
+        """Degrees of freedom in which the rings turn."""
+        return tuple(range(self.rotor.size - self.ring_count, self.rotor.size))
+
+    @property
+    def sheared(self) -> Array:
+        """(films,) share of each gap in which oil is sheared: all but its bores and grooves."""
+        if not isinstance(self.films, VolumeFilms):
+            return np.ones(len(self.names))
+        cells = self.films.cells
+        return np.asarray((cells[:, AREA] * (cells[:, UNKNOWN] != 0.0)).sum(axis=(1, 2)) / (2.0 * math.pi))
+
+    def omegas(self, omega: float, ring_speeds: Array) -> Array:
+        """(films,) omega_J + omega_S of each film, rad/s."""
+        return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
+
+    def film_force(self, index: int, displacement: Array, velocity: Array, omega: float) -> FilmForce:
+        """As film.bearing.evaluate; a film with oil of its own is taken as settled. Raises NotConverged."""
+        if isinstance(self.films, VolumeFilms):
+            return steady_force(self.volumes[index], self.follows, displacement, velocity, omega)
+        return evaluate(self.films[index], self.clearances[index], displacement, velocity, omega)
 
 
 def make_system(case: Case, plan: Plan) -> System:
     """The system of a case; its films are tabulated here."""
-    single = [bearing for bearing in case.bearings if isinstance(bearing, SingleFilmBearing)]
-    bearings = tuple(_bearing(case, bearing, plan) for bearing in single)
-    return System(make_rotor(case), bearings, tuple(planned_film(plan, bearing, plan.mesh) for bearing in bearings))
+    places, ringed = film_places(case), turning_rings(case)
+    rotor = make_rotor(case)
+    if ringed:
+        rotor = with_spins(rotor, [bearing.ring.inertia for bearing in ringed])
+    system = System(
+        rotor=rotor,
+        films=(),
+        names=tuple(place.name for place in places),
+        clearances=tuple(place.geometry.clearance for place in places),
+        bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64),
+        turning=turning(places, len(ringed)),
+        drags=tuple(film_drag(case, place.geometry) for place in places),
+        ring_count=len(ringed),
+        torque=case.film.torque,
+    )
+    if plan.cells is not None:
+        made = [volume_film(case, place.geometry, plan.cells) for place in places]
+        volumes, follows = tuple(film for film, _ in made), made[0][1]
+        data = volume_films(volumes, follows, channel_pulls(case, volumes))
+        factor = case.film.cavitation_factor
+        return replace(system, films=data, volumes=volumes, follows=follows, cavitation_factor=factor)
+    bearings = tuple(_bearing(case, place.geometry) for place in places)
+    return replace(
+        system, bearings=bearings, films=tuple(planned_film(plan, bearing, plan.mesh) for bearing in bearings)
+    )
+
+
+def film_drag(case: Case, film: FilmGeometry) -> float:
+    """eta R^3 B / C of a whole bearing in N m s, see System."""
+    return case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance
 
 
 def planned_film(plan: Plan, bearing: RectangularBearing, mesh: Mesh) -> FilmData:
@@ -46,20 +123,26 @@ def planned_film(plan: Plan, bearing: RectangularBearing, mesh: Mesh) -> FilmDat
 
 
 def make_rotor(case: Case) -> LinearRotor:
-    """The linear system of a case's rotor."""
+    """The linear system of a case's rotor, with the masses of floating rings."""
     rotor = case.rotor
     if isinstance(rotor, RigidRotor):
-        return rigid_rotor(rotor.mass, rotor.unbalance, rotor.external_damping, rotor.gravity)
-    assert isinstance(rotor, JeffcottRotor)
-    return jeffcott_rotor(
-        rotor.mass,
-        rotor.journal_mass,
-        rotor.shaft_stiffness,
-        rotor.unbalance,
-        rotor.external_damping,
-        rotor.shaft_damping,
-        rotor.gravity,
-    )
+        made = rigid_rotor(rotor.mass, rotor.unbalance, rotor.external_damping, rotor.gravity)
+    elif isinstance(rotor, JeffcottRotor):
+        made = jeffcott_rotor(
+            rotor.mass,
+            rotor.journal_mass,
+            rotor.shaft_stiffness,
+            rotor.unbalance,
+            rotor.external_damping,
+            rotor.shaft_damping,
+            rotor.gravity,
+        )
+    else:
+        return make_turbocharger(case)
+    if not rings(case):
+        return made
+    masses = [None if isinstance(item, SingleFilmBearing) else item.ring.mass for item in case.bearings]
+    return with_rings(made, masses, rotor.gravity, [bearing.name for bearing in case.bearings])
 
 
 def run_up_profile(case: Case) -> SpeedProfile:
@@ -80,8 +163,14 @@ def run_down_profile(case: Case) -> SpeedProfile:
     return speed_profile(times, [2 * math.pi * value for value in speeds])
 
 
-def _bearing(case: Case, bearing: SingleFilmBearing, plan: Plan) -> RectangularBearing:
-    supply = bearing.supply
+def sections_of(film: FilmGeometry) -> int:
+    """Equal rectangles that the developed gap consists of, see RectangularBearing."""
+    groove = film.supply.kind == "circumferential-groove"
+    return 2 if groove and getattr(film.supply, "axial_position", 0.5) == 0.5 else 1
+
+
+def _bearing(case: Case, film: FilmGeometry) -> RectangularBearing:
+    supply = film.supply
     grooves: tuple[AxialGroove, ...] = ()
     if isinstance(supply, AxialGrooves):
         gauge = supply.pressure - case.oil.ambient_pressure
@@ -90,11 +179,11 @@ def _bearing(case: Case, bearing: SingleFilmBearing, plan: Plan) -> RectangularB
             AxialGroove(supply.position + turn * i, supply.opening_angle, gauge) for i in range(supply.count)
         )
     return RectangularBearing(
-        width=bearing.width,
-        diameter=bearing.diameter,
-        clearance=bearing.clearance,
-        viscosity=case.viscosity(bearing),
-        sections=plan.sections,
+        width=film.width,
+        diameter=film.diameter,
+        clearance=film.clearance,
+        viscosity=case.viscosity(film),
+        sections=sections_of(film),
         ambient_pressure=case.oil.ambient_pressure,
         cavitation_pressure=case.oil.cavitation_pressure,
         supply_pressure=None if isinstance(supply, AxialGrooves) else getattr(supply, "pressure", None),

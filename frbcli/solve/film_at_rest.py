@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,7 @@ from frbcli.solve.steady_film import film_force
 
 Array = NDArray[np.float64]
 
+BAR = 1e5
 ITERATIONS = 40
 SETTLED = 1e-5  # force left over, relative to the load
 NUDGE = 1e-3  # share of the gap by which the position is moved for a derivative
@@ -28,8 +31,17 @@ ATTITUDE = math.radians(20.0)
 def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: float) -> Array:
     """(2,) displacement over the clearance at which the film carries a load in N along -y, omega in rad/s.
 
-    Sought with few cells first, then with those of the plan. Raises NotConverged if no start leads to one.
+    Sought with few cells first, then with those of the plan. Raises NotConverged if no start leads to one, or
+    if the film cannot carry anything.
     """
+    if _is_unfed(plan):
+        cavity = plan.section.cavitation_pressure / BAR
+        raise NotConverged(
+            f"no resting position under {load:g} N: in the long run Elrod's film carries 0 N, at any eccentricity. "
+            "Where its pressure is above the cavitation pressure it loses oil at its edges, and none comes in: "
+            f"neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
+            "Raise the supply pressure, or supply it through axial grooves or bores."
+        )
     target = np.array([0.0, load])
     position: Array | None = None
     if plan.rectangle is not None and not plan.modal:
@@ -46,9 +58,34 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
             problems.append(str(problem))
     raise NotConverged(
         f"no resting position under {load:g} N from {len(starts)} starts; the last one: "
-        f"{problems[-1].rstrip('.')}. "
+        f"{problems[-1].rstrip('.')}. {_capacity(case, plan, omega)} "
         "Give a higher speed or more viscosity, width or supply, or a smaller clearance."
     )
+
+
+def _is_unfed(plan: KinematicPlan) -> bool:
+    """Whether a film by Elrod's model has no load in the long run: it keeps its oil, no edge can push any into it, and
+    there is no groove or hole that it could be carried away from."""
+    section = plan.section
+    if plan.cavitation != "elrod" or section.grooves or section.holes:
+        return False
+    highest = section.far_pressure if section.far == "groove" else 0.0
+    return section.ambient_pressure + max(0.0, highest) <= section.cavitation_pressure
+
+
+def _capacity(case: Case, plan: KinematicPlan, omega: float) -> str:
+    """What the film carries on the way to contact, in words."""
+    side = math.copysign(1.0, omega)
+    forces: dict[float, float] = {}
+    for e in sorted(STARTS):
+        place = (side * e * math.sin(ATTITUDE), -e * math.cos(ATTITUDE))
+        with suppress(NotConverged):
+            force = film_force(case, plan, Motion(place, (0.0, 0.0), omega), COARSE_CELLS)
+            forces[e] = float(np.linalg.norm(force))
+    if not forces:
+        return f"There is no steady film at the eccentricities {', '.join(f'{e:g}' for e in sorted(STARTS))}."
+    highest = max(forces, key=forces.__getitem__)
+    return f"The largest film force found is {forces[highest]:.3g} N, at an eccentricity of {highest:g}."
 
 
 def _newton(
@@ -89,7 +126,7 @@ def _newton(
     raise NotConverged(f"{np.linalg.norm(residual) / size:.1e} of the load is left over at {np.round(position, 3)}.")
 
 
-def _differences(missing, position: Array, residual: Array) -> Array:  # type: ignore[no-untyped-def]
+def _differences(missing: Callable[[Array], Array], position: Array, residual: Array) -> Array:
     nudge = NUDGE * (1.0 - float(np.linalg.norm(position)))
     return np.column_stack([(missing(position + nudge * unit) - residual) / nudge for unit in np.eye(2)])
 

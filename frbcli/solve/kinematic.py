@@ -17,7 +17,9 @@ from frbcli.film.loads import Loads
 from frbcli.film.volumes import Motion
 from frbcli.scene.kinematic import KinematicPlan, kinematic_plan
 from frbcli.solve.film_at_rest import resting_displacement
-from frbcli.solve.film_history import History, film_course, squeeze_path, whirl_path
+from frbcli.solve.film_history import History, film_course
+from frbcli.solve.journal_path import squeeze_path, whirl_path
+from frbcli.solve.published_film import published_moment, resting_in_published
 from frbcli.solve.steady_film import FilmField, film_moment
 
 if TYPE_CHECKING:
@@ -34,7 +36,8 @@ class KinematicResult:
 
     displacement: (2,) over the clearance; loads, field: None if there is no solution; force_error: estimated, relative
     to the force, NaN if not known; history: None for a rotation. Of a squeeze or a whirl, displacement, loads and field
-    are those of the moment of the largest force.
+    are those of the moment of the largest force, and so is the error; with a law that keeps oil it is the worst of the
+    largest forces of the periods.
     """
 
     cavitation: str
@@ -99,10 +102,13 @@ def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
     assert case.motion is not None
     motion, begun = case.motion, time.process_time()
     omega = 2.0 * math.pi * (motion.speed or 0.0)
-    displacement = (math.nan, math.nan)
+    displacement, start = (math.nan, math.nan), None
     try:
         if motion.load is not None:
-            found = resting_displacement(case, plan, motion.load, omega)
+            if plan.published:
+                found, start = resting_in_published(case, plan, motion.load, omega)
+            else:
+                found = resting_displacement(case, plan, motion.load, omega)
             displacement, velocity = (float(found[0]), float(found[1])), (0.0, 0.0)
         else:
             e, angle = motion.eccentricity or 0.0, motion.angle
@@ -111,7 +117,11 @@ def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
             turn = e * 2.0 * math.pi * motion.whirl_speed
             rates = [motion.eccentricity_rate * a + turn * b for a, b in zip(along, across, strict=True)]
             velocity = (rates[0], rates[1])
-        moment = film_moment(case, plan, Motion(displacement, velocity, omega), plan.cells)
+        lasting = Motion(displacement, velocity, omega)
+        if plan.published:
+            moment = published_moment(case, plan, lasting, start)
+        else:
+            moment = film_moment(case, plan, lasting, plan.cells)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
     return KinematicResult(
@@ -152,7 +162,7 @@ def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
         displacement=(float(x), float(y)),
         loads=course.loads,
         sommerfeld_number=_sommerfeld_number(plan, course.loads, omega),
-        force_error=math.nan,
+        force_error=course.force_error,
         field=course.field,
         history=course.history,
         cpu_s=time.process_time() - begun,

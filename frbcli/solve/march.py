@@ -12,18 +12,23 @@ import numpy as np
 from numba import njit
 
 from frbcli.rotor.excitation import rotation
+from frbcli.solve.passengers import accept_films, begin_stage, make_work, write_oil
 from frbcli.solve.stage import (
     FREE,
     JOURNAL_ROWS,
     LATE,
     STAGE_ROWS,
+    Q,
     U,
+    V,
     accelerate,
     correct,
     forces,
     guess,
     norm,
     prepare,
+    set_speeds,
+    spin_up,
     start_stage,
 )
 from frbcli.solve.state import (
@@ -42,6 +47,7 @@ from frbcli.solve.state import (
     SOLVES,
     STEP,
     STEP_BEFORE,
+    STEP_DONE,
     STEPS,
     STUCK,
     TIME,
@@ -72,20 +78,24 @@ def _largest_eccentricity(clearances, pick, q):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # type: ignore[no-untyped-def]
+def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil):  # type: ignore[no-untyped-def]
     """Advance the state until the output buffers are full, `budget` steps are done, or the run ends.
 
     out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more
-    than one step can write. Returns (status, rows written). The course of the steps does not depend on how often this
-    is called.
+    than one step can write; out_oil: (rows, films) for the oil fraction of films with cells. Returns (status,
+    rows written). The course of
+    the steps does not depend on how often this is called.
     """
     # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
     numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past
+    wet, flows, work = state.wet, state.flows, make_work(state.wet, tableau.times.shape[0])
+    spins, turning, grids = rotor.spins, rotor.turning, work.grids
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
     weights, moments, defect, three = tableau.stage, tableau.times, tableau.defect, tableau.guess
     tolerance, contact_at, contact_stiffness = (
         control.tolerance, control.contact_eccentricity, control.contact_stiffness)
+    linearised = control.linearised
     n, m, stages = q.shape[0], 2 * clearances.shape[0], moments.shape[0]
     gamma, last, order = weights[1, 1], stages - 1, float(tableau.error_order)
     # Under elastic contact the shell gives way; without, a journal beyond the shell is no state at all.
@@ -99,6 +109,8 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
     at, film = np.zeros((STAGE_ROWS, n)), np.zeros((JOURNAL_ROWS, m))
     stage_v, stage_a = np.zeros((n, stages)), np.zeros((n, stages))
     past, q_new = np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n)
+    bodies, angles_now, torque = np.zeros(1 + spins.shape[0]), np.zeros(1 + spins.shape[0]), np.zeros(spins.shape[0])
+    has_cells = wet.shape[1] > 0
     inverse_g, inverse_speed = numbers[INVERSE_G], numbers[INVERSE_SPEED]
     if inverse_g > 0.0:
         prepare(rotor, pick, inverse_g, inverse_speed, products, loads, spread, compliance)
@@ -134,20 +146,36 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
             start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle,
                          gyroscopic, at, film)
             guess(past, three, s, pick, q, clearances, g, t_s, limit, film)
+            bodies[0], angles_now[0] = speed, angle
+            for r in range(spins.shape[0]):  # a ring goes on as it did in the stage before
+                i = spins[r]
+                bodies[1 + r] = at[V, i] + g * stage_a[i, s - 1]
+                angles_now[1 + r] = at[Q, i] + g * bodies[1 + r]
+            set_speeds(turning, bodies, angles_now, film, grids)
+            begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
+                        moments[s] / moments[s - 1] if s > 1 else 1.0)
             lag = g * (speed - inverse_speed) if gyroscopic else 0.0
             if lag != 0.0:  # begin with the acceleration of the stage before
                 for i in range(n):
                     at[LATE, i] = at[FREE, i]
             solved = False
             for iteration in range(NEWTON_LIMIT):
-                forces(films, clearances, contact_at, contact_stiffness, g, speed, film)
+                forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration == 0, film)
                 numbers[SOLVES] += m // 2
-                share, left = correct(compliance, clearances, g, speed, limit, film, newton)
+                share, left, moved, unsettled = correct(films, work, compliance, clearances, g, limit, film, newton)
                 if left == math.inf:
                     break
+                if has_cells:  # a film with cells has kinks: no guess at what is left, but the balances themselves
+                    left = math.inf if unsettled > 0 else moved
                 if share == 1.0:
                     accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a)
-                    if left < NEWTON_SHARE * tolerance and (lag == 0.0 or iteration >= LAG_SWEEPS):
+                    if spins.shape[0] > 0:
+                        turned = spin_up(
+                            films, work, rotor, s, g, clearances, at, film, bodies, angles_now, torque,
+                            stage_v, stage_a)
+                        left = max(left, turned)
+                        set_speeds(turning, bodies, angles_now, film, grids)
+                    if (linearised or left < NEWTON_SHARE * tolerance) and (lag == 0.0 or iteration >= LAG_SWEEPS):
                         solved = True
                         break
             if not solved:
@@ -172,7 +200,11 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v):  # typ
             for j in range(stages):
                 total += weights[last, j] * stage_v[i, j]
             q_new[i] = q[i] + step * total
+        before = written
         written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
+        write_oil(films, work, out_oil, before, written)
+        accept_films(films, work, wet, flows, weights, step)
+        numbers[STEP_DONE] = step
         for i in range(n):
             q[i], v[i], a[i] = q_new[i], stage_v[i, last], stage_a[i, last]
         for i in range(1 + m):  # the start of this step, its first stage, and its end

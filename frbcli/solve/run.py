@@ -20,7 +20,10 @@ from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_down_profile, run_up_profile
 from frbcli.solve.film_error import SAMPLES, film_force_error
 from frbcli.solve.interrupt import held_back
+from frbcli.solve.cosimulation import in_turn, micro_cost
+from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.march import advance
+from frbcli.solve.oil import no_oil_comes_in, oil_defect, oil_passed
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import (
     CONTACT,
@@ -40,11 +43,11 @@ from frbcli.solve.state import (
 from frbcli.solve.tableau import METHODS
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
-BUDGET = 4000  # steps between two looks at the clock: some 20 ms
+BUDGET, CELL_BUDGET = 4000, 100  # steps between two looks at the clock: some 20 ms
 LONGEST_STEP = 1e-3  # s; a slow rotor still falls, and its shaft still vibrates
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
-STATUS = {FINISHED: "finished", CONTACT: "contact"}
+STATUS, STARVED = {FINISHED: "finished", CONTACT: "contact"}, "starved"
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"
 
@@ -71,7 +74,8 @@ def runup(case: Case, output: str | Path, resume: bool = False, observe: Observe
 
     resume: go on with an interrupted run of the same case in `output`. observe: called some times a second.
     Raises InputError for a case that cannot be modelled or an output that cannot be written. Any end for a physical or
-    numerical reason is the status of the run: "finished", "contact", "not-converged"; Ctrl-C ends it as "interrupted".
+    numerical reason is the status of the run: "finished", "contact", "starved", "not-converged"; Ctrl-C ends it
+    as "interrupted".
     """
     return _run("runup", case, run_up_profile(case), output, resume, observe)
 
@@ -126,6 +130,8 @@ def _go(march: _March, writer: RunWriter, observe: Observer | None) -> Run:
     from frbcli.analysis.events import find_events  # scipy.signal takes longer to import than a short run
 
     ended = STATUS.get(status, "not-converged")
+    if status != FINISHED and march.starves:
+        ended = STARVED
     so_far = writer.so_far(ended)
     return writer.finish(ended, so_far.cost, so_far.error, [asdict(event) for event in find_events(so_far)], march.time)
 
@@ -139,27 +145,48 @@ class _March:
         self._control = control_of(case, plan)
         self._tableau = METHODS[plan.method].tableau
         self._state = first_state(case.start, system, profile)
+        self._apart = plan.coupling == "co-simulation"
+        if self._apart:
+            self._state = in_turn(system, self._state, float(profile.speeds[0]))
+        self._advance = advance_in_turn if self._apart else advance
         rows = max(BUFFER, 4 * (int(LONGEST_STEP / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
+        self._oil = np.empty((rows, len(system.volumes)))
         # States at a few fixed output times, at which the films are solved again on a finer mesh.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // SAMPLES)
         self._samples = np.empty((0, 2 * system.rotor.size + 1))
         self._cpu_s = self._wall_s = 0.0
+        self._budget = BUDGET if plan.cells is None else CELL_BUDGET
 
     @property
     def time(self) -> float:
         """Time reached, s."""
         return float(self._state.numbers[TIME])
 
+    @property
+    def starves(self) -> bool:
+        """Whether a film gets no oil, so that a run that cannot go on has run dry."""
+        return no_oil_comes_in(self._system)
+
     def compile(self) -> None:
         """Have the time loop compiled, or found in the cache, before the clock starts."""
-        advance(self._rotor, self._system.films, self._tableau, self._control, self._state, 0, self._q, self._v)
+        self._advance(
+            self._rotor, self._system.films, self._tableau, self._control, self._state, 0, self._q, self._v, self._oil
+        )
 
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
         cpu, wall = time.process_time(), time.perf_counter()
-        status, rows = advance(
-            self._rotor, self._system.films, self._tableau, self._control, self._state, BUDGET, self._q, self._v
+        status, rows = self._advance(
+            self._rotor,
+            self._system.films,
+            self._tableau,
+            self._control,
+            self._state,
+            self._budget,
+            self._q,
+            self._v,
+            self._oil,
         )
         self._cpu_s += time.process_time() - cpu
         self._wall_s += time.perf_counter() - wall
@@ -169,15 +196,22 @@ class _March:
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept]])
         self._samples = np.concatenate([self._samples, fresh])
-        return status, self._signals(times, speeds, self._q[:rows])
+        return status, self._signals(times, speeds, self._q[:rows], self._v[:rows])
 
-    def _signals(self, times: Array, speeds: Array, q: Array) -> dict[str, Array]:
+    def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
-        journal = q @ self._system.rotor.journals[0].T
-        signals["eccentricity"] = np.hypot(journal[:, 0], journal[:, 1]) / self._system.clearances[0]
-        for name, pick in self._system.rotor.points:
+        system = self._system
+        for name, pick, clearance in zip(system.names, system.rotor.journals, system.clearances, strict=True):
+            journal = q @ pick.T
+            signals[named("eccentricity", name)] = np.hypot(journal[:, 0], journal[:, 1]) / clearance
+        for name, pick in system.rotor.points:
             point = q @ pick.T
             signals[f"{name}_x_m"], signals[f"{name}_y_m"] = point[:, 0], point[:, 1]
+        if system.remembers:
+            for i, name in enumerate(system.names):
+                signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
+        for name, spin in zip(ring_names(system), system.spins, strict=True):
+            signals[name] = v[:, spin] / (2 * math.pi)
         return signals
 
     def snapshot(self) -> dict[str, Array]:
@@ -203,32 +237,45 @@ class _March:
             "film_solves": int(numbers[SOLVES]),
             "ms_per_film_solve": 1e3 * self._cpu_s / max(float(numbers[SOLVES]), 1.0),
             "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
+            **oil_passed(self._system, self._state),
+            **(micro_cost(self._state, self._cpu_s) if self._apart else {}),
         }
 
     def error(self) -> dict[str, float | None]:
         """The error of the run as far as it is known."""
         return {
             "time_integration": float(self._state.numbers[ERROR_LARGEST]),
-            "film_force_relative": film_force_error(self._plan, self._system, self._samples),
-            "oil_balance_relative": None,  # these films do not balance their oil
+            "film_force_relative": film_force_error(self._plan, self._system, self._case, self._samples),
+            "oil_balance_relative": oil_defect(self._system, self._state),
         }
 
     def progress(self) -> Progress:
         """For people who wait."""
         numbers = self._state.numbers
         t, end = self.time, self._profile.end
-        here = self._system.rotor.journals[0] @ self._state.q
+        here = self._system.rotor.journals @ self._state.q / np.array(self._system.clearances)[:, None]
         rate = t / max(self._wall_s, 1e-9)
         return Progress(
             t_s=t,
             end_s=end,
             speed_Hz=float(self._profile.speed(np.array([t]))[0]) / (2 * math.pi),
-            eccentricity=float(np.hypot(*here)) / self._system.clearances[0],
+            eccentricity=float(np.max(np.hypot(here[:, 0], here[:, 1]))),
             steps=int(numbers[STEPS]),
             steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
             simulated_ms_per_hour=1e3 * 3600.0 * rate,
             left_s=(end - t) / rate if rate > 0 else math.inf,
         )
+
+
+def named(quantity: str, film: str) -> str:
+    """The name of a signal of a film or ring, which may be the only one."""
+    return f"{quantity}_{film}" if film else quantity
+
+
+def ring_names(system: System) -> list[str]:
+    """The signals of the rings' speeds."""
+    outer = [name for name, (inside, _) in zip(system.names, system.bodies, strict=True) if inside >= 0]
+    return [f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name in outer]
 
 
 def control_of(case: Case, plan: Plan) -> Control:
@@ -237,18 +284,22 @@ def control_of(case: Case, plan: Plan) -> Control:
     stiffness = contact.stiffness if contact.policy == "elastic" and contact.stiffness is not None else 0.0
     return Control(
         tolerance=plan.tolerance,
-        steps_per_revolution=float(case.accuracy.steps_per_revolution),
-        longest_step=LONGEST_STEP,
+        steps_per_revolution=plan.steps_per_revolution,
+        longest_step=LONGEST_STEP if plan.macro_step is None else min(LONGEST_STEP, plan.macro_step),
         output_step=case.output.step,
         contact_eccentricity=contact.eccentricity,
         contact_stiffness=stiffness,
+        linearised=plan.coupling == "dynamic-static-semi-implicit",
     )
 
 
 def _header(command: str, case: Case, system: System) -> Header:
-    names = ["journal_x_m", "journal_y_m"]
-    names += [f"{name}_{axis}_m" for name, _ in system.rotor.points if name != "journal" for axis in "xy"]
-    units = {"time_s": "s", "speed_Hz": "Hz", "eccentricity": "", **dict.fromkeys(names, "m")}
+    lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
+    eccentricities = [named("eccentricity", name) for name in system.names]
+    units = {"time_s": "s", "speed_Hz": "Hz", **dict.fromkeys(eccentricities, ""), **dict.fromkeys(lengths, "m")}
+    if system.remembers:
+        units |= dict.fromkeys((named("oil_fraction", name) for name in system.names), "")
+    units |= dict.fromkeys(ring_names(system), "Hz")
     return Header(
         title=case.title or case.name,
         command=command,
@@ -257,7 +308,8 @@ def _header(command: str, case: Case, system: System) -> Header:
         units=units,
         versions={PROGRAM: _version(PROGRAM), "python": platform.python_version()}
         | {package: _version(package) for package in PACKAGES},
-        references={"clearance_m": system.clearances[0], "contact_eccentricity": case.contact.eccentricity},
+        references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
+        | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)},
     )
 
 

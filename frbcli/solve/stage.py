@@ -16,8 +16,9 @@ import math
 import numpy as np
 from numba import njit
 
-from frbcli.film.kernel import film_force
 from frbcli.solve.dense import solve_dense
+from frbcli.solve.passengers import GRID_SPEED, GRID_TURN, drag_integral, film_numbers, move_film
+from frbcli.solve.state import GRID, SLIP, SUM
 
 CLOSEST = 0.5  # share of the remaining gap that one Newton correction may close
 
@@ -25,7 +26,8 @@ CLOSEST = 0.5  # share of the remaining gap that one Newton correction may close
 # FREE is the acceleration without the films' forces; LATE the same with the gyroscopic term at the stage's own speed.
 V, Q, FREE, LATE, STAGE_ROWS = range(5)
 # u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y.
-U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, JOURNAL_ROWS = range(8)
+# OMEGA is omega_J + omega_S of the journal's own film.
+U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, JOURNAL_ROWS = range(9)
 # Products of the inverse E with the matrices and the loads.
 E_DAMPING, E_STIFFNESS, E_GYROSCOPIC = range(3)
 E_STATIC, E_COS, E_SIN = range(3)
@@ -37,9 +39,12 @@ def norm(x, y):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _bearing(film, d_x, d_y, v_x, v_y, speed, clearance, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
-    """film_force plus, beyond the contact eccentricity, the elastic contact of the case."""
-    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_force(film, d_x, d_y, v_x, v_y, speed)
+def _bearing(  # type: ignore[no-untyped-def]
+    films, work, f, d_x, d_y, v_x, v_y, speed, g, s, first, clearance, contact_at, contact_stiffness
+):
+    """The film's force plus, beyond the contact eccentricity, the elastic contact of the case."""
+    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
+        films, work, f, d_x, d_y, v_x, v_y, speed, g, s, first)
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     if contact_stiffness > 0.0 and eccentricity > contact_at:
         k = contact_stiffness * clearance
@@ -174,23 +179,25 @@ def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ig
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def forces(films, clearances, contact_at, contact_stiffness, g, speed, film):  # type: ignore[no-untyped-def]
+def forces(films, work, clearances, contact_at, contact_stiffness, g, s, first, film):  # type: ignore[no-untyped-def]
     """Fill FORCE, BY_X, BY_Y at the velocities U."""
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _bearing(
-            films[f], (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c,
-            film[U, x] / c, film[U, y] / c, speed, c, contact_at, contact_stiffness)
+            films, work, f, (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c,
+            film[U, x] / c, film[U, y] / c, film[OMEGA, x], g, s, first, c, contact_at, contact_stiffness)
         film[FORCE, x], film[FORCE, y] = f_x, f_y
         film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
         film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def correct(compliance, clearances, g, speed, limit, film, newton):  # type: ignore[no-untyped-def]
-    """One correction of U by Newton's method. Returns (share of it that was applied, what may be left of the error).
+def correct(films, work, compliance, clearances, g, limit, film, newton):  # type: ignore[no-untyped-def]
+    """One correction of U by Newton's method, and of the films' cells with it.
 
-    What may be left is infinite for a correction that is not finite.
+    Returns (share of it that was applied, what may be left of the error of a smooth force, how far the journals moved
+    over their clearances, films whose cells had not settled). What may be left is infinite for a correction that is
+    not finite.
     """
     m = compliance.shape[0]
     for i in range(m):
@@ -203,26 +210,84 @@ def correct(compliance, clearances, g, speed, limit, film, newton):  # type: ign
         newton[i, i] += 1.0
         film[CORRECTION, i] = total
     _solve_small(newton, film)
-    share, moved, left = 1.0, 0.0, 0.0
+    share, moved, left, unsettled = 1.0, 0.0, 0.0, 0
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         at_x, at_y = (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c
         c_x, c_y = g * film[CORRECTION, x] / c, g * film[CORRECTION, y] / c
         move = norm(c_x, c_y)
         if not math.isfinite(move):
-            return 0.0, math.inf
+            return 0.0, math.inf, math.inf, 0
         moved = max(moved, move)
         share = min(share, _reach(at_x, at_y, c_x, c_y, limit))
         # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
         # |w|, over the size of w.
-        film_speed = norm(film[U, x] / c + 0.5 * speed * at_y, film[U, y] / c - 0.5 * speed * at_x)
+        half = 0.5 * film[OMEGA, x]
+        film_speed = norm(film[U, x] / c + half * at_y, film[U, y] / c - half * at_x)
         left = max(left, move * move * (1.0 / (limit - norm(at_x, at_y)) + 1.0 / (g * film_speed + 1e-30)))
     for i in range(m):
         film[U, i] += share * film[CORRECTION, i]
     for i in range(m):  # the forces at the corrected velocities, to first order: what Newton's equations have used
         x = i - i % 2
         film[FORCE, i] += share * (film[BY_X, i] * film[CORRECTION, x] + film[BY_Y, i] * film[CORRECTION, x + 1])
-    return share, min(left, moved)
+    for f in range(clearances.shape[0]):
+        c = clearances[f]
+        unsettled += move_film(
+            films, work, f, share * film[CORRECTION, 2 * f] / c, share * film[CORRECTION, 2 * f + 1] / c, g)
+    return share, min(left, moved), moved, unsettled
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def set_speeds(turning, bodies, angles, film, grids):  # type: ignore[no-untyped-def]
+    """OMEGA of each film, and how its grid stands, by speeds and angles of the rotor and the rings."""
+    for f in range(turning.shape[0]):
+        total, speed, angle = 0.0, 0.0, 0.0
+        for b in range(bodies.shape[0]):
+            total += turning[f, SUM, b] * bodies[b]
+            speed += turning[f, GRID, b] * bodies[b]
+            angle += turning[f, GRID, b] * angles[b]
+        film[OMEGA, 2 * f] = film[OMEGA, 2 * f + 1] = total
+        if grids.shape[1] > f:
+            grids[GRID_TURN, f], grids[GRID_SPEED, f] = angle, speed
+
+
+@njit(cache=True, error_model="numpy")
+def spin_up(  # type: ignore[no-untyped-def]
+    films, work, rotor, s, g, clearances, at, film, bodies, angles, torque, stage_v, stage_a
+):
+    """Let the films' torques (4.17) turn the rings: speeds and angles of the stage. Returns how far, in rad, the angle
+    of a ring was off.
+
+    Couette's term pulls at the surfaces against each other, Poiseuille's, half the moment of the film's force about the
+    middle between them, at both in the same sense.
+    """
+    rings = rotor.spins.shape[0]
+    if rings == 0:
+        return 0.0
+    for r in range(rings):
+        torque[r] = 0.0
+    for f in range(clearances.shape[0]):
+        x, y, c = 2 * f, 2 * f + 1, clearances[f]
+        e_x, e_y = film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]
+        slip = 0.0
+        for b in range(bodies.shape[0]):
+            slip += rotor.turning[f, SLIP, b] * bodies[b]
+        couette = -rotor.drag[f] * slip * drag_integral(films, work, f, e_x / c, e_y / c, rotor.torque_terms[1])
+        poiseuille = -0.5 * (e_x * film[FORCE, y] - e_y * film[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
+        inside, outside = rotor.ring_of[f, 0], rotor.ring_of[f, 1]
+        if inside >= 0:
+            torque[inside] += couette + poiseuille
+        if outside >= 0:
+            torque[outside] += poiseuille - couette
+    off = 0.0
+    for r in range(rings):
+        i = rotor.spins[r]
+        stage_a[i, s] = torque[r] / rotor.mass[i, i]
+        speed = at[V, i] + g * stage_a[i, s]
+        off = max(off, abs(g * (speed - bodies[1 + r])))
+        stage_v[i, s] = bodies[1 + r] = speed
+        angles[1 + r] = at[Q, i] + g * speed
+    return off
 
 
 @njit(cache=True, error_model="numpy", inline="always")

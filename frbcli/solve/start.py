@@ -2,14 +2,30 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 
 from frbcli.case.schema import Start
-from frbcli.film.bearing import evaluate
+from frbcli.errors import NotConverged
+from frbcli.film.balance import Motion
+from frbcli.film.cell_kernel import FLOWS
+from frbcli.film.steady_force import steady_solution
+from frbcli.film.volume_data import VolumeFilms
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.system import System
-from frbcli.solve.resting import held_rotor, resting_position
-from frbcli.solve.state import HISTORY, NUMBERS, STEP, Array, RotorData, State
+from frbcli.solve.passengers import (
+    GLOBAL_FACTOR,
+    LOCAL_FACTOR,
+    NO_FACTOR,
+    OIL,
+    SIMPLE_FACTOR,
+    W_BEFORE,
+    WET,
+    W,
+)
+from frbcli.solve.resting import held_rotor, resting_position, ring_speeds
+from frbcli.solve.state import HISTORY, NUMBERS, STEP, STEP_DONE, Array, RotorData, State
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
 
@@ -35,33 +51,70 @@ def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
         profile_times=profile.times,
         profile_speeds=profile.speeds,
         profile_angles=profile.angles,
+        turning=system.turning,
+        spins=np.array(system.spins, dtype=np.int64),
+        ring_of=system.bodies,
+        drag=np.array(system.drags),
+        torque_terms=np.array([int(system.torque == "all"), _factor(system)], dtype=np.int64),
     )
 
 
+def _factor(system: System) -> int:
+    """How missing oil lowers the torque."""
+    if system.torque == "simple":
+        return SIMPLE_FACTOR
+    return {"none": NO_FACTOR, "global": GLOBAL_FACTOR, "local": LOCAL_FACTOR}[system.cavitation_factor]
+
+
 def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
-    """The state at the beginning of a run: at rest, in the centre, held at a displacement, or in the resting position.
+    """The state at the beginning of a run: at rest, in the centre, held at a displacement, or in the resting position,
+    where rings turn already.
 
     Raises NotConverged if a resting position is asked for and there is none at the first speed.
     """
     rotor = system.rotor
-    q = np.zeros(rotor.size)
+    q, v = np.zeros(rotor.size), np.zeros(rotor.size)
     if start.displacement is not None:
         held = held_rotor(rotor)
         q = held.shape + held.following @ np.outer(system.clearances, start.displacement).ravel()
     elif start.position == "resting":
-        q = resting_position(system, float(profile.speeds[0]))
-    return state_at(system, profile, q, np.zeros(rotor.size))
+        omega = float(profile.speeds[0])
+        q = resting_position(system, omega)
+        v[list(system.spins)] = ring_speeds(system, held_rotor(rotor), omega, rotor.journals @ q)
+    return state_at(system, profile, q, v)
 
 
 def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State:
     """The state at the start of a profile with displacements q (n,) in m and velocities v (n,) in m/s."""
+    wet, flows = _films_at(system, profile, q, v)
     a = np.asarray(np.linalg.solve(system.rotor.mass, _forces(system, profile, q, v)), dtype=np.float64)
     numbers = np.zeros(NUMBERS)
-    numbers[STEP] = FIRST_STEP
-    past = np.zeros((HISTORY, 1 + 2 * len(system.films)))
+    numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
+    count = len(system.clearances)
+    past = np.zeros((HISTORY, 1 + 2 * count))
     past[:, 0] = FIRST_STEP * np.arange(1 - HISTORY, 1)
     past[:, 1:] = (system.rotor.journals @ v).ravel()
-    return State(numbers, q.copy(), v.copy(), a, past)
+    return State(numbers, q.copy(), v.copy(), a, past, wet, flows)
+
+
+def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tuple[Array, Array]:
+    """The films' own state: settled where that is possible, else full at the ambient pressure. Its oil does not change
+    at first: the journals stand still."""
+    if not isinstance(system.films, VolumeFilms):
+        return np.zeros((WET, 0, 0, 0)), np.zeros((2, 0, FLOWS))
+    m, k = system.volumes[0].grid.shape
+    wet = np.zeros((WET, len(system.volumes), m, k))
+    omegas = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
+    for i, (film, pick) in enumerate(zip(system.volumes, system.rotor.journals, strict=True)):
+        at = pick @ q / system.clearances[i]
+        motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(omegas[i]))
+        w = film.full()
+        if np.any(at != 0.0) and omegas[i] != 0.0:
+            with contextlib.suppress(NotConverged):
+                w = steady_solution(film, system.follows, motion).w
+        wet[W, i] = wet[W_BEFORE, i] = w
+        wet[OIL, i] = film.content(motion, w)
+    return wet, np.zeros((2, len(system.volumes), FLOWS))
 
 
 def _forces(system: System, profile: SpeedProfile, q: Array, v: Array) -> Array:
@@ -70,9 +123,9 @@ def _forces(system: System, profile: SpeedProfile, q: Array, v: Array) -> Array:
     acceleration = (profile.speeds[1] - omega) / (profile.times[1] - profile.times[0])
     forces = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
     forces = forces + acceleration * rotor.unbalance_cos + omega**2 * rotor.unbalance_sin
-    for pick, count, film, clearance in zip(
-        rotor.journals, rotor.multiplicity, system.films, system.clearances, strict=True
-    ):
-        forces = forces + count * pick.T @ evaluate(film, clearance, pick @ q, pick @ v, omega).force
+    omegas = system.omegas(omega, v[list(system.spins)])
+    for i, (pick, count) in enumerate(zip(rotor.journals, rotor.multiplicity, strict=True)):
+        with contextlib.suppress(NotConverged):  # a film that starves carries nothing
+            forces = forces + count * pick.T @ system.film_force(i, pick @ q, pick @ v, float(omegas[i])).force
     total: Array = forces
     return total

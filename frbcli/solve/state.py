@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 RUNNING, FINISHED, CONTACT, STUCK = range(4)  # what advance returns
+# omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by those of the rotor and of the rings.
+SUM, SLIP, GRID, TURNING = range(4)
 
 
 class RotorData(NamedTuple):
@@ -30,11 +32,17 @@ class RotorData(NamedTuple):
     profile_times: Array
     profile_speeds: Array
     profile_angles: Array
+    turning: Array  # (films, 3, 1 + rings) shares of the speeds of rotor and rings, see TURNING
+    spins: NDArray[np.int64]  # (rings,) degrees of freedom that the rings turn in
+    ring_of: NDArray[np.int64]  # (films, 2) ring inside and outside of each film, -1: the rotor or the housing
+    drag: Array  # (films,) N m s: eta R^3 B / C of the whole bearing, see drag_integral
+    torque_terms: NDArray[np.int64]  # (2,) whether Poiseuille's term counts; cavitation factor of Couette's
 
 
 class Control(NamedTuple):
     """What the time loop may do. tolerance: local error of a displacement over the clearance; longest_step in s;
-    steps_per_revolution: at least; output_step in s; contact_eccentricity; contact_stiffness in N/m, 0: stop there."""
+    steps_per_revolution: at least; output_step in s; contact_eccentricity; contact_stiffness in N/m, 0: stop there;
+    linearised: a film is solved once in a stage, at its guess, and its force then followed by its derivatives (5.1)."""
 
     tolerance: float
     steps_per_revolution: float
@@ -42,21 +50,24 @@ class Control(NamedTuple):
     output_step: float
     contact_eccentricity: float
     contact_stiffness: float
+    linearised: bool = False
 
 
 # Positions in the state's array of numbers; what a run must keep to go on as if it had not stopped.
 (TIME, STEP, ERROR_BEFORE, PIECE, OUTPUTS, STEPS, REJECTED, SOLVES, TURNS, ERROR_NOW, ERROR_LARGEST, LARGEST_EPS,
- INVERSE_G, INVERSE_SPEED, STEP_BEFORE, NUMBERS) = range(16)
+ INVERSE_G, INVERSE_SPEED, STEP_BEFORE, STEP_DONE, NUMBERS) = range(17)
 HISTORY = 3  # points of the step before that help to predict the stages of the next
 
 
 class State(NamedTuple):
     """Everything that changes. numbers: (NUMBERS,); q, v, a: (n,) displacement, velocity, acceleration;
     past: (HISTORY, 1 + 2 films) time and journals' velocities at the start, the first stage and the end of the last
-    step."""
+    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see passengers.py."""
 
     numbers: Array
     q: Array
     v: Array
     a: Array
     past: Array
+    wet: Array
+    flows: Array

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -58,6 +59,12 @@ def first_event(run: Run, kind: str, key: str) -> float:
     return next((float(event[key]) for event in run.events if event["kind"] == kind), math.nan)
 
 
+def kept_runup(folder: Path, case: Case) -> Run:
+    """The run-up of a case, taken from `folder` if it was run before."""
+    key = hashlib.sha256(case.source_text.encode()).hexdigest()[:12]
+    return runup(case, folder / f"{case.name}-{key}.h5", resume=True)
+
+
 def rise(run: Run) -> Rise:
     """When the eccentricity of a run jumps."""
     time = run["time_s"]
@@ -68,7 +75,7 @@ def rise(run: Run) -> Rise:
 
 def eccentricity_at_1s(folder: Path, name: str, settings: Sequence[str] = ()) -> float:
     """Eccentricity after the first second of a shipped run-up."""
-    return float(runup(load_case(name, (*FIRST_SECOND, *settings)), folder / "first-second.h5")["eccentricity"][-1])
+    return float(kept_runup(folder, load_case(name, (*FIRST_SECOND, *settings)))["eccentricity"][-1])
 
 
 def film_pressure(case: Case, eccentricity: float, speed_Hz: float) -> float:
@@ -88,10 +95,16 @@ def threshold_Hz(case: Case) -> float:
     return 0.0 if resting and resting[0].growth > 0.0 else math.inf
 
 
+def whirl_ratio(case: Case) -> float:
+    """Frequency of the whirl over the rotor speed at the linear threshold, NaN if there is none."""
+    found = stability(case).threshold
+    return math.nan if found is None else found.whirl_ratio
+
+
 def smallest_whirl(folder: Path, supply: str) -> float:
     """Smallest amplitude of the journal's motion over the clearance in the first three seconds at a supply pressure."""
     case = load_case("jeffcott", (*FIRST_SECONDS, f"bearing.supply.pressure={supply}"))
-    run = runup(case, folder / "first-seconds.h5")
+    run = kept_runup(folder, case)
     motion = (run["journal_x_m"] + 1j * run["journal_y_m"]) / run.references["clearance_m"]
     windows = motion[: len(motion) // (width := round(WINDOW_s / case.output.step)) * width].reshape(-1, width)
     return float(windows.std(axis=1).min())
@@ -125,7 +138,7 @@ def supply_thresholds(name: str, pressures: Sequence[str]) -> list[float]:
 
 def accuracy_before(folder: Path, case: Case, reference: Case, before_s: float) -> float:
     """Largest difference in eccentricity to the reference run up to before_s."""
-    runs = [runup(each, folder / f"accuracy-{i}.h5") for i, each in enumerate((case, reference))]
+    runs = [kept_runup(folder, each) for each in (case, reference)]
     eccentricities = [run["eccentricity"][run["time_s"] <= before_s] for run in runs]
     return float(np.abs(eccentricities[0] - eccentricities[1]).max())
 

@@ -1,0 +1,17 @@
+"""How fast a floating ring turns."""
+
+from __future__ import annotations
+
+from frbcli.case.schema import Case
+from frbcli.scene.films import turning_rings
+from frbcli.scene.system import film_drag
+
+
+def concentric_ratios(case: Case) -> dict[str, float]:
+    """omega_F / omega_R of each ring, by its bearing's name, where everything is concentric and the films are full:
+    the torques of (4.6) balance, k_i (omega_R - omega_F) = k_o omega_F with k = eta R^3 B / C."""
+    ratios = {}
+    for bearing in turning_rings(case):
+        inner, outer = film_drag(case, bearing.inner), film_drag(case, bearing.outer)
+        ratios[bearing.name] = inner / (inner + outer)
+    return ratios

@@ -1,0 +1,103 @@
+"""The points of a sweep: from values for each key, or from a list, to settings of one case each."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from frbcli.errors import Fault, InputError
+
+Settings = dict[str, str]  # key of the case -> value as text, as `--set` takes it
+
+SOURCE = "sweep"
+MOST_POINTS = 100_000
+OPENING, CLOSING, QUOTES = "([{", ")]}", "\"'"
+
+
+def split_values(text: str) -> tuple[str, ...]:
+    """What stands between the commas of `text`; commas in quotes and brackets part nothing."""
+    values, depth, quote = [""], 0, ""
+    for letter in text:
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in QUOTES:
+            quote = letter
+        depth += 0 if quote else (letter in OPENING) - (letter in CLOSING)
+        if letter == "," and not quote and depth == 0:
+            values.append("")
+        else:
+            values[-1] += letter
+    return tuple(value.strip() for value in values)
+
+
+def grid(axes: Mapping[str, Sequence[object]]) -> tuple[Settings, ...]:
+    """Every combination of the values of all keys; the last key changes fastest. Raises InputError if there is none."""
+    faults = [_fault(key, "has no value.", f"Write e.g. {key}=1,2.") for key, values in axes.items() if not values]
+    if faults:
+        raise InputError(SOURCE, tuple(faults))
+    return checked(
+        dict(zip(axes, values, strict=True)) for values in itertools.product(*(_texts(axis) for axis in axes.values()))
+    )
+
+
+def product(points: Iterable[Mapping[str, str]], others: Iterable[Mapping[str, str]]) -> tuple[Settings, ...]:
+    """Each of `points` with each of `others`. Raises InputError for a key that both set."""
+    points, others = list(points), list(others)
+    twice = {key for point in points for key in point} & {key for other in others for key in other}
+    if twice:
+        remedy = "Set it in the list or by --set."
+        raise InputError(SOURCE, tuple(_fault(key, "is set twice.", remedy) for key in sorted(twice)))
+    return checked({**point, **other} for point in points for other in others)
+
+
+def checked(points: Iterable[Mapping[str, object]]) -> tuple[Settings, ...]:
+    """`points` with values as text. Raises InputError if there are none, or more than anybody waits for."""
+    taken = tuple(
+        dict(zip(point, _texts(point.values()), strict=True)) for point in itertools.islice(points, MOST_POINTS + 1)
+    )
+    if not taken or not any(taken):
+        raise InputError(SOURCE, (_fault("--set", "leaves nothing to change.", "Write e.g. --set key=v1,v2."),))
+    if len(taken) > MOST_POINTS:
+        raise InputError(SOURCE, (_fault("--set", f"makes more than {MOST_POINTS} points.", "Take fewer values."),))
+    return taken
+
+
+def read_list(path: str | Path) -> tuple[Settings, ...]:
+    """The points of a CSV file: the keys in its first line, a point in each other; an empty cell sets nothing.
+
+    Raises InputError for a file that cannot be read or has a line that does not fit its first one.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+        rows = [(line, row) for line, row in enumerate(csv.reader(text.splitlines(), strict=True), 1) if any(row)]
+    except UnicodeDecodeError:
+        raise _list_error(path, None, "is not UTF-8 text.") from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise _list_error(path, None, f"cannot be read: {getattr(error, 'strerror', None) or error}.") from None
+    if len(rows) < 2:
+        raise _list_error(path, None, "holds no points.")
+    head_line, head = rows[0][0], [key.strip() for key in rows[0][1]]
+    if not all(head) or len(set(head)) < len(head):
+        raise _list_error(path, head_line, "does not name every column once.")
+    for line, row in rows[1:]:
+        if len(row) != len(head):
+            raise _list_error(path, line, f"has {len(row)} values for {len(head)} keys.")
+    return checked(
+        {key: value.strip() for key, value in zip(head, row, strict=True) if value.strip()} for _, row in rows[1:]
+    )
+
+
+def _texts(values: Iterable[object]) -> list[str]:
+    """Values as a setting takes them: TOML writes booleans in small letters."""
+    return [str(value).lower() if isinstance(value, bool) else str(value) for value in values]
+
+
+def _fault(key: str, problem: str, remedy: str) -> Fault:
+    return Fault(key, "", None, problem, remedy)
+
+
+def _list_error(path: str | Path, line: int | None, problem: str) -> InputError:
+    remedy = "First line: keys; each further line: a value for each."
+    return InputError(SOURCE, (Fault("--list", str(path), line, problem, remedy),))

@@ -1,0 +1,108 @@
+"""Rules that tie the keys of one film together: its gap, its supply, its oil. See checks.py for how they read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from frbcli.case.bearing import ColdClearance
+from frbcli.case.lines import Path
+from frbcli.case.schema import ATMOSPHERE, Vogel
+from frbcli.case.tables import Breach, number, table
+from frbcli.units import NUMBER, display
+
+# A film is thin, the Reynolds equation its limit for clearance/radius -> 0.
+THICKEST_FILM = 0.05
+VISCOSITY_RANGE = (1e-6, 1e4)
+
+
+def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of the film at a path of the case's tables."""
+    oil = table(data, "oil")
+    diameter, width = number(film, "diameter", "m"), number(film, "width", "m")
+    clearance = _clearance(film, diameter)
+    if diameter and clearance is not None and not 0 < clearance < THICKEST_FILM * diameter / 2:
+        problem = f"is {display(clearance, 'm')}, no thin film at a diameter of {display(diameter, 'm')}."
+        yield Breach((*path, "clearance"), problem, "It is the radial gap, about a thousandth of the radius.")
+    elif diameter and clearance is not None:
+        yield from _lobes((*path, "lobes"), table(film, "lobes"), clearance, diameter)
+    if "temperature" in film and "vogel" not in oil:
+        yield Breach((*path, "temperature"), "has no effect: [oil] has no Vogel's law.", "Add oil.vogel or remove it.")
+    elif "temperature" in film:
+        yield from vogel_breaches(oil, number(film, "temperature", "K"), (*path, "temperature"))
+    ambient = number(oil, "ambient_pressure", "Pa", ATMOSPHERE)
+    supply = table(film, "supply")
+    yield from _supply((*path, "supply"), supply, width, ambient)
+    if supply.get("kind") == "bores":
+        yield from _bores((*path, "supply"), supply, diameter, width)
+    if supply.get("on") == "journal" and "lobes" in film:
+        problem = "are in the shell, the bores in the journal: the film stands still in neither."
+        yield Breach((*path, "lobes"), problem, 'Remove them, or write supply.on = "shell".')
+
+
+def _lobes(path: Path, lobes: Mapping[str, Any], clearance: float, diameter: float) -> Iterator[Breach]:
+    preload = number(lobes, "preload", NUMBER)
+    if preload is None or not 0 <= preload < 1:
+        return
+    machined = clearance / (1.0 - preload)
+    if machined >= THICKEST_FILM * diameter / 2:
+        problem = f"makes a machined clearance of {display(machined, 'm')}, no thin film."
+        yield Breach((*path, "preload"), problem, "It is 1 - c_b / c_p, with the assembled clearance c_b.")
+
+
+def _supply(path: Path, supply: Mapping[str, Any], width: float | None, ambient: float | None) -> Iterator[Breach]:
+    pressure = number(supply, "pressure", "Pa")
+    if pressure and ambient and pressure < ambient:
+        problem = f"is {display(pressure, 'Pa')}, below the ambient pressure of {display(ambient, 'Pa')}."
+        yield Breach((*path, "pressure"), problem, "Pressures are absolute: ambient plus gauge pressure.")
+    count, angle = number(supply, "count", NUMBER, 1.0), number(supply, "opening_angle", "rad")
+    if count and angle and count * angle >= 2 * math.pi:
+        yield Breach((*path, "opening_angle"), f"leaves no film between {count:.0f} grooves.", "Make it smaller.")
+    for key in ("width", "diameter"):  # of a pocket, of a bore
+        size = number(supply, key, "m")
+        if size and width and size > width:
+            yield Breach((*path, key), f"is wider than the bearing ({display(width, 'm')}).", "Make it narrower.")
+
+
+def _bores(
+    path: Path, supply: Mapping[str, Any], diameter: float | None, width: float | None
+) -> Iterator[Breach]:
+    count, bore = number(supply, "count", NUMBER, 1.0), number(supply, "diameter", "m")
+    place = number(supply, "axial_position", NUMBER, 0.5)
+    if count and bore and diameter and count * bore >= math.pi * diameter:
+        problem = f"makes {count:.0f} bores overlap on a circumference of {display(math.pi * diameter, 'm')}."
+        yield Breach((*path, "diameter"), problem, "Make it smaller, or take fewer bores.")
+    if bore and width and bore <= width and place is not None and 0 <= place <= 1:
+        over = 0.5 * bore - width * min(place, 1.0 - place)
+        if over > 0.0:
+            problem = f"puts the bores {display(over, 'm')} outside of the film."
+            least = 0.5 * bore / width
+            remedy = f"Take a value from {least:.3g} to {1.0 - least:.3g}, or smaller bores."
+            yield Breach((*path, "axial_position"), problem, remedy)
+
+
+def vogel_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) -> Iterator[Breach]:
+    """A viscosity by Vogel's law that no oil has; path: of the temperature in K."""
+    try:
+        vogel = Vogel.model_validate(oil.get("vogel"))
+    except ValidationError:
+        return
+    if temperature is None:
+        return
+    viscosity = vogel.at(temperature)
+    if not VISCOSITY_RANGE[0] <= viscosity <= VISCOSITY_RANGE[1]:
+        problem = f"makes the viscosity {viscosity:.3g} Pa*s by Vogel's law."
+        yield Breach(path, problem, "Check eta_0, A and C; the temperature T in eta_0 exp(A / (T + C)) is in kelvin.")
+
+
+def _clearance(film: Mapping[str, Any], diameter: float | None) -> float | None:
+    given = film.get("clearance")
+    if not isinstance(given, dict):
+        return number(film, "clearance", "m")
+    try:
+        return ColdClearance.model_validate(given).warm(diameter) if diameter else None
+    except ValidationError:
+        return None

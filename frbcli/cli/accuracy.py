@@ -1,0 +1,132 @@
+"""`frb accuracy`: what a more exact answer costs."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.runs import OUTPUT, SECONDS, here
+from frbcli.cli.transient import live_lines, progress_line
+
+if TYPE_CHECKING:
+    from frbcli.analysis.accuracy import AccuracyLadder, Rung, RungError, RungResult
+    from frbcli.case.schema import Case
+
+COLUMNS = ("", "theory", "mesh", "tol.", "CPU", "max", "rms", "onset", "force")
+EXPLANATION = (
+    "* choice of the plan, + on Pareto's front; tol.: local error of a step; CPU: time\n"
+    "in s; max, rms: error of the eccentricity; onset: error of the rotor speed at\n"
+    "which the whirl begins in Hz; force: relative error of the film forces."
+)
+INTERRUPTED = 130
+
+
+@click.command()
+@case_argument
+@click.option("--until", type=SECONDS, metavar="TIME", help="Shorten the run, e.g. to '2 s'. [that of CASE]")
+@click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [all that apply]")
+@click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-accuracy.png, here]")
+@click.option("--picture/--no-picture", default=True, help="A picture of error over cost.")
+@output_options
+def command(
+    case: Case,
+    until: float | None,
+    theory: tuple[str, ...],
+    coupling: tuple[str, ...],
+    output: Path | None,
+    picture: bool,
+    terminal: Terminal,
+) -> int:
+    """Run CASE up on a ladder of theories, meshes and tolerances against a fine reference: error over cost."""
+    from frbcli.analysis.accuracy import accuracy
+    from frbcli.plot.style import check_picture
+
+    target = output or here(case.name, "-accuracy.png")
+    check_picture(target)
+    with live_lines(terminal) as show:
+        watch = None if show is None else lambda rung, progress: show(f"{rung.name}\n{progress_line(progress)}")
+        found = accuracy(case, until, theory, coupling, watch)
+    _report(found, terminal)
+    if picture and found.ladder:
+        from frbcli.plot.accuracy import accuracy_figure
+        from frbcli.plot.style import save_figure
+
+        save_figure(accuracy_figure(found), target)
+        terminal.say(f"picture: {target}")
+    reference = _document(found.reference) | {"compared_with": _rung(found.coarser)}
+    reference["change"] = reference.pop("error")
+    terminal.emit({
+        "command": "accuracy",
+        "case": case.name,
+        "until_s": found.until_s,
+        "reference": reference,
+        "ladder": [_document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder],
+    })
+    return 0 if found.complete else INTERRUPTED
+
+
+def _report(found: AccuracyLadder, terminal: Terminal) -> None:
+    several = len({item.rung.coupling for item in found.ladder}) > 1
+    rows = [_cells(item, several, ("*" if item.planned else "") + ("+" if item in found.front else ""))
+            for item in found.ladder]
+    terminal.table(f"{found.case.title or found.case.name}, first {found.until_s:g} s", COLUMNS, rows)
+    terminal.say(EXPLANATION)
+    reference, change = found.reference.rung, found.reference.error
+    terminal.say(
+        f"reference: {reference.name}; on a coarser mesh and with twice the tolerance it\n"
+        f"changes by {change.eccentricity_largest:.1e} (max) and {change.eccentricity_rms:.1e} (rms)."
+    )
+    ended = {item.error.until_s for item in found.ladder} - {found.until_s}
+    if ended:
+        terminal.say(f"errors of the eccentricity until {min(ended):.4g} s, where a run begins to whirl or ends.")
+    for item in found.ladder:
+        if item.status != "finished":
+            terminal.say(f"{item.rung.name}: {item.status}")
+
+
+def _cells(item: RungResult, several: bool, mark: str) -> tuple[str, ...]:
+    rung, error = item.rung, item.error
+    return (
+        mark,
+        f"{rung.theory}\n{rung.coupling}" if several else rung.theory,
+        "-" if rung.mesh is None else f"{rung.mesh[0]} x {rung.mesh[1]}",
+        _short(rung.tolerance),
+        f"{item.cpu_s:.3g}",
+        _short(error.eccentricity_largest),
+        _short(error.eccentricity_rms),
+        "-" if math.isnan(error.onset_Hz) else f"{error.onset_Hz:+.2f}",
+        _short(error.force_relative),
+    )
+
+
+def _short(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
+
+
+def _rung(rung: Rung) -> dict[str, Any]:
+    return {
+        "theory": rung.theory,
+        "cavitation": rung.cavitation,
+        "mesh": rung.mesh,
+        "tolerance": rung.tolerance,
+        "coupling": rung.coupling,
+    }
+
+
+def _document(item: RungResult) -> dict[str, Any]:
+    return _rung(item.rung) | {"status": item.status, "cpu_s": item.cpu_s, "error": _error(item.error)}
+
+
+def _error(error: RungError) -> dict[str, Any]:
+    return {
+        "eccentricity_largest": error.eccentricity_largest,
+        "eccentricity_rms": error.eccentricity_rms,
+        "window_s": [0.0, error.until_s],
+        "onset_speed_Hz": error.onset_Hz,
+        "film_force_relative": error.force_relative,
+    }

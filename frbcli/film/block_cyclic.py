@@ -1,0 +1,139 @@
+"""Equations of a ring of columns of cells, solved by blocks: one dense block per column, compiled.
+
+A column is coupled to the two beside it cell by cell, so that the blocks beside the diagonal are diagonal themselves.
+The first columns are eliminated one after the other, with the last one as a border, which closes the ring. Without
+pivoting, see elimination.py. Cheaper than a sparse elimination as long as a column has few cells.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def _invert(a):  # type: ignore[no-untyped-def]
+    """a (k, k) <- its inverse, by Gauss and Jordan's elimination in place."""
+    k = a.shape[0]
+    for p in range(k):
+        pivot = 1.0 / a[p, p]
+        a[p, p] = 1.0
+        for j in range(k):
+            a[p, j] *= pivot
+        for i in range(k):
+            if i != p:
+                factor = a[i, p]
+                a[i, p] = 0.0
+                for j in range(k):
+                    a[i, j] -= factor * a[p, j]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def _product(a, b, to):  # type: ignore[no-untyped-def]
+    """to (k, n) <- a (k, k) b (k, n)."""
+    k, n = b.shape
+    for i in range(k):
+        for c in range(n):
+            to[i, c] = 0.0
+        for j in range(k):
+            factor = a[i, j]
+            for c in range(n):
+                to[i, c] += factor * b[j, c]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def _subtract_product(a, diagonal, b, to):  # type: ignore[no-untyped-def]
+    """to (k, n) -= a (k, k) diag(diagonal) b (k, n)."""
+    k, n = b.shape
+    for i in range(k):
+        for j in range(k):
+            factor = a[i, j] * diagonal[j]
+            if factor != 0.0:  # nothing comes back from a cavitated column
+                for c in range(n):
+                    to[i, c] -= factor * b[j, c]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def _fill(stencil, i, block):  # type: ignore[no-untyped-def]
+    """block (k, k) <- the equations of column i by its own unknowns."""
+    k = block.shape[0]
+    for a in range(k):
+        for b in range(k):
+            block[a, b] = 0.0
+        block[a, a] = stencil[CENTRE, i, a]
+        if a > 0:
+            block[a, a - 1] = stencil[BELOW, i, a]
+        if a < k - 1:
+            block[a, a + 1] = stencil[ABOVE, i, a]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
+
+    stencil: (ENTRIES, m, k) entries of the cell itself, of the cells before and behind it around the ring, of those
+    below and above it in its column. blocks: (m, k, k) scratch, as are the first k layers of fields: what a column
+    takes from the last one, so that both are one product. m >= 3. Not finite where the matrix is singular.
+    """
+    m, k, n = fields.shape
+    last, held = m - 1, np.empty((k, n))
+    # x_i = right_i - blocks_i behind_i x_i+1 - border_i x_last, border and right beside each other
+    for i in range(last):
+        block = blocks[i]
+        _fill(stencil, i, block)
+        for a in range(k):
+            low = stencil[BEFORE, i, a]
+            if i == 0:
+                for c in range(k):
+                    held[a, c] = 0.0
+                held[a, a] = low
+                for c in range(k, n):
+                    held[a, c] = fields[0, a, c]
+            else:
+                for b in range(k):
+                    block[a, b] -= low * blocks[i - 1, a, b] * stencil[BEHIND, i - 1, b]
+                for c in range(k):
+                    held[a, c] = -low * fields[i - 1, a, c]
+                for c in range(k, n):
+                    held[a, c] = fields[i, a, c] - low * fields[i - 1, a, c]
+        _invert(block)
+        _product(block, held, fields[i])
+    block = blocks[last]
+    _fill(stencil, last, block)
+    closes = False
+    for a in range(k):
+        low = stencil[BEFORE, last, a]
+        closes = closes or stencil[BEHIND, last, a] != 0.0
+        for b in range(k):
+            fields[last - 1, a, b] += blocks[last - 1, a, b] * stencil[BEHIND, last - 1, b]
+            block[a, b] -= low * fields[last - 1, a, b]
+        for c in range(k, n):
+            fields[last, a, c] -= low * fields[last - 1, a, c]
+    if closes:  # where the last column is cavitated, it does not feel the first
+        for i in range(last - 2, -1, -1):
+            _subtract_product(blocks[i], stencil[BEHIND, i], fields[i + 1], fields[i])
+        for a in range(k):
+            high = stencil[BEHIND, last, a]
+            for b in range(k):
+                block[a, b] -= high * fields[0, a, b]
+            for c in range(k, n):
+                fields[last, a, c] -= high * fields[0, a, c]
+    _invert(block)
+    _product(block, fields[last], held)
+    for a in range(k):
+        for c in range(k, n):
+            fields[last, a, c] = held[a, c]
+    for i in range(last - 1, -1, -1):
+        for a in range(k):
+            for c in range(k, n):
+                total = fields[i, a, c]
+                for b in range(k):
+                    total -= fields[i, a, b] * fields[last, b, c]
+                    if not closes and i < last - 1:
+                        total -= blocks[i, a, b] * stencil[BEHIND, i, b] * fields[i + 1, b, c]
+                held[a, c] = total
+        for a in range(k):
+            for c in range(k, n):
+                fields[i, a, c] = held[a, c]

@@ -1,0 +1,61 @@
+"""What operation makes of a bearing: strains of its parts, its warm gap, whether its flow is laminar.
+
+Strains are those of a surface's radius, its displacement over it, in the plane stress state of table A.2. Temperatures
+are differences to those at which the parts were measured, in K.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+LAMINAR_BELOW = 2300.0  # (3.3)
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A linear elastic material: modulus in Pa, Poisson's ratio, density in kg/m^3, thermal expansion in 1/K."""
+
+    modulus: float
+    poisson: float
+    density: float
+    expansion: float
+
+
+STEEL = Solid(210e9, 0.27, 7870.0, 1.18e-5)  # table A.2: shaft
+BRASS = Solid(78e9, 0.37, 8860.0, 1.85e-5)  # table A.2: floating ring
+
+
+def reynolds_number(density: float, omega: float, radius: float, clearance: float, viscosity: float) -> float:
+    """Re (3.3) of a film, with omega = omega_J + omega_S in rad/s, all in SI. Laminar below LAMINAR_BELOW."""
+    return density * abs(omega) * radius * clearance / viscosity
+
+
+def relative_gap(cold: float, radius: float, outer_strain: float, inner_strain: float) -> float:
+    """psi (4.21) of a film with the cold radial clearance at a radius, both in m, between two strained surfaces."""
+    return cold / radius + outer_strain - inner_strain
+
+
+def thermal_strain(expansion: float, warming: float) -> float:
+    """Of a part that is equally warm, the second term of (4.22)."""
+    return expansion * warming
+
+
+def field_strain(expansion: float, inner: float, outer: float, inner_warming: float, outer_warming: float) -> float:
+    """Of both surfaces of a hollow cylinder whose temperature is linear between its radii inner and outer in m.
+
+    In plane stress each of them grows as the mean temperature over the cross-section says.
+    """
+    share = (2.0 * outer + inner) / (3.0 * (outer + inner))
+    return expansion * (inner_warming + share * (outer_warming - inner_warming))
+
+
+def shaft_rotation_strain(solid: Solid, omega: float, radius: float) -> float:
+    """Of the surface of a solid shaft with a radius in m that turns with omega in rad/s."""
+    return 0.25 * solid.density * (omega * radius) ** 2 * (1.0 - solid.poisson) / solid.modulus
+
+
+def ring_rotation_strains(solid: Solid, omega: float, inner: float, outer: float) -> tuple[float, float]:
+    """Of the inner and the outer surface of a ring with these radii in m that turns with omega in rad/s."""
+    scale = 0.25 * solid.density * omega**2 / solid.modulus
+    near, across = 1.0 - solid.poisson, 3.0 + solid.poisson
+    return scale * (across * outer**2 + near * inner**2), scale * (near * outer**2 + across * inner**2)

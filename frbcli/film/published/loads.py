@@ -1,0 +1,101 @@
+"""Loads and oil balance of a solution of the published form: it creates oil, and here is how much."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.grid import Array
+from frbcli.film.loads import CavitationFactor, Loads, OilBalance, Torque
+from frbcli.film.published.film import PublishedFilm
+from frbcli.film.published.plain import AROUND_DIRECTION, terms
+from frbcli.film.published.solution import PublishedSolution
+
+
+def published_loads(
+    film: PublishedFilm, solution: PublishedSolution, slip: float | None = None, factor: CavitationFactor = "none"
+) -> Loads:
+    """All loads of a solution.
+
+    slip: omega_J - omega_S in rad/s, else that of a shell at rest; factor: how missing oil lowers the torque, see
+    frbcli/film/loads.py.
+    """
+    section, pressure = film.section, solution.state.pressure
+    absolute = section.ambient_pressure + section.pressure_scale * pressure
+    return Loads(
+        force=(float(solution.response.force[0]), float(solution.response.force[1])),
+        torque=torque(film, solution, solution.motion.omega if slip is None else slip, factor),
+        p_max=float(absolute.max()),
+        p_min=float(absolute.min()),
+        oil_fraction=oil_fraction(film, solution),
+        oil=oil_balance(film, solution),
+    )
+
+
+def oil_fraction(film: PublishedFilm, solution: PublishedSolution) -> float:
+    """The factor (4.46): mean of theta over the film without grooves and holes."""
+    area = _open_area(film)
+    return float((area * solution.state.fraction).sum() / area.sum())
+
+
+def torque(
+    film: PublishedFilm, solution: PublishedSolution, slip: float, factor: CavitationFactor = "none"
+) -> Torque:
+    """Torque (3.17) of the film; grooves and holes have none."""
+    section, gap, area = film.section, film.gap(solution.motion), _open_area(film)
+    theta = solution.state.fraction if factor == "local" else 1.0
+    rise = film.mesh.slopes[..., AROUND_DIRECTION]
+    around = np.einsum("eqa,ea->eq", rise, solution.state.pressure.ravel()[film.mesh.nodes])
+    size = section.copies * section.radius * section.width
+    size *= oil_fraction(film, solution) if factor == "global" else 1.0
+    shear = -(section.radius**2) * section.viscosity / section.clearance * slip
+    couette = shear * float((area * theta / gap.height).sum())
+    poiseuille = -0.5 * section.clearance * section.pressure_scale * float((area * gap.height * theta * around).sum())
+    return Torque(size * couette, size * poiseuille)
+
+
+def oil_balance(film: PublishedFilm, solution: PublishedSolution) -> OilBalance:
+    """The flows of a solution in m^3/s, by the whole bearing; the defect is less than zero where oil is created.
+
+    What enters at given pressures is what the weak form leaves over at their nodes. Artificial diffusion is no flow:
+    the oil that it brings from there into the film counts as created.
+    """
+    elements, mesh, pressure = film.elements, film.mesh, solution.state.pressure
+    scale = film.section.copies * film.section.radius * film.section.width * film.section.clearance
+    y = film.over_cavitation(film.at_points(pressure))
+    theta, slope = film.law.fraction(y)
+    change = solution.rate * theta - solution.past
+    parts = terms(elements, film.gap(solution.motion), pressure.ravel(), theta, slope / film.cavity, change)
+    through = float(parts.carried[elements.solid].sum())  # from grooves and holes by the surfaces, net
+    residual = parts.residual - parts.spread
+    residual[elements.solid] = 0.0
+    entering = np.bincount(mesh.nodes.ravel(), weights=residual.ravel(), minlength=pressure.size)
+    entering = np.where(elements.fixed, entering, 0.0)
+    fed = np.append(entering[~_at_ends(film)], through)
+    free = float(parts.near.sum() + parts.far.sum())
+    flows = np.append(entering, [through, -free])
+    inflow, outflow = float(flows[flows > 0.0].sum()), -float(flows[flows < 0.0].sum())
+    stored = float(parts.stored.sum())
+    size = max(inflow, outflow, abs(stored))
+    return OilBalance(
+        in_m3_s=scale * inflow,
+        out_m3_s=scale * outflow,
+        supply_m3_s=scale * float(fed.sum()),
+        ends_m3_s=scale * (free - float(entering[_at_ends(film)].sum())),
+        defect_relative=(inflow - outflow - stored) / size if size > 0.0 else 0.0,
+    )
+
+
+def _at_ends(film: PublishedFilm) -> NDArray[np.bool_]:
+    """(nodes,) whether a node lies at an end in an oil bath, and in no groove."""
+    section, mesh = film.section, film.mesh
+    ends = np.zeros(mesh.phi.shape, dtype=bool)
+    ends[:, 0] = section.near == "oil-bath"
+    ends[:, -1] |= section.far == "oil-bath"
+    ends.ravel()[mesh.nodes[mesh.covered].ravel()] = False
+    return ends.ravel()
+
+
+def _open_area(film: PublishedFilm) -> Array:
+    """(e, 9) area of the points outside of grooves and holes."""
+    return np.where(film.mesh.covered[:, None], 0.0, film.mesh.area)

@@ -1,0 +1,119 @@
+"""Films on volumes as arrays for the compiled kernels: all films of a machine beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from frbcli.film.axial import axial_weights, end_slopes
+from frbcli.film.balance import NO_DISTANCE
+from frbcli.film.cell_law import law_code
+from frbcli.film.gap import gap_height
+from frbcli.film.grid import Array
+from frbcli.film.volumes import VolumeFilm
+
+ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
+CLOSED, GIVEN, FREE = range(3)
+
+# Numbers of one film. PULL: by which the given pressures fall with the square of the grid's speed, in s.
+(
+    ASPECT,
+    REFERENCE,
+    CAVITY,
+    AMBIENT,
+    LAW,
+    FIRST,
+    SECOND,
+    CLIPS,
+    REMEMBERS,
+    NEAR,
+    FAR,
+    FAR_PRESSURE,
+    NEAR_RISE,
+    NEAR_BEND,
+    FAR_RISE,
+    FAR_BEND,
+    FORCE_SCALE,
+    FOLLOWS,
+    PULL,
+    FILM_NUMBERS,
+) = range(20)
+# Whether the penalty's b (3.32) follows the eccentricity, FIRST and SECOND being those of the centred journal; whether
+# both follow the speed, being those of 1 rad/s.
+STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED = range(3)
+# Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
+# length of the cell; what a unit of pressure on it pushes the journal by.
+SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
+# Layers of cells: area; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where
+# the pressure is an unknown.
+AREA, AROUND, ALONG, GIVEN_PRESSURE, UNKNOWN, CELL_LAYERS = range(6)
+
+
+class VolumeFilms(NamedTuple):
+    """Films of equal numbers of cells m x k. numbers: (films, FILM_NUMBERS); ring: (films, RING_ROWS, m); width:
+    (films, 2, k) cells along the axis and weights of the integral; cells: (films, CELL_LAYERS, m, k)."""
+
+    numbers: Array
+    ring: Array
+    width: Array
+    cells: Array
+
+
+def volume_films(films: Sequence[VolumeFilm], follows: int = STANDS, pulls: Sequence[float] = ()) -> VolumeFilms:
+    """The films as arrays; all have grids of the same shape. follows: what a penalty does; pulls: of the films in s."""
+    m, k = films[0].grid.shape
+    data = VolumeFilms(
+        np.zeros((len(films), FILM_NUMBERS)),
+        np.zeros((len(films), RING_ROWS, m)),
+        np.zeros((len(films), 2, k)),
+        np.zeros((len(films), CELL_LAYERS, m, k)),
+    )
+    for index, film in enumerate(films):
+        _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
+        data.numbers[index, FOLLOWS], data.numbers[index, PULL] = follows, pulls[index] if pulls else 0.0
+    return data
+
+
+def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Array) -> None:
+    section, grid, scales, law = film.section, film.grid, film.scales, film.law
+    kind, first, second = law_code(law)
+    near, far = end_slopes(grid.z)
+    centred = (0.0, 0.0)
+    values = {
+        ASPECT: section.aspect,
+        REFERENCE: scales.reference,
+        CAVITY: scales.cavitation,
+        AMBIENT: scales.ambient,
+        LAW: kind,
+        FIRST: first,
+        SECOND: second,
+        CLIPS: float(law.clips),
+        REMEMBERS: float(law.conserves and not law.clips and kind != 0),
+        NEAR: ENDS[section.near],
+        FAR: ENDS[section.far],
+        FAR_PRESSURE: section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0,
+        NEAR_RISE: near.rise,
+        NEAR_BEND: near.bend,
+        FAR_RISE: far.rise,
+        FAR_BEND: far.bend,
+        FORCE_SCALE: section.copies * section.radius * section.width * section.pressure_scale,
+    }
+    for place, value in values.items():
+        numbers[place] = value
+    face = grid.phi[1:]
+    ring[SIN], ring[COS], ring[GAP] = (
+        np.sin(grid.centre),
+        np.cos(grid.centre),
+        gap_height(section, centred, grid.centre),
+    )
+    ring[FACE_SIN], ring[FACE_COS], ring[FACE_GAP] = np.sin(face), np.cos(face), gap_height(section, centred, face)
+    ring[LENGTH] = np.diff(grid.phi)
+    ring[PUSH_X], ring[PUSH_Y] = -np.diff(np.cos(grid.phi)), -np.diff(np.sin(grid.phi))
+    width[0], width[1] = np.diff(grid.z), axial_weights(grid.z, section.far == "symmetry")
+    cells[AREA] = grid.area
+    cells[AROUND] = np.where(grid.around > 0.0, width[0] / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    open_along = np.where(grid.along > 0.0, ring[LENGTH][:, None] / np.maximum(grid.along, NO_DISTANCE), 0.0)
+    cells[ALONG, :, :-1] = section.aspect * open_along
+    cells[GIVEN_PRESSURE], cells[UNKNOWN] = grid.fixed_pressure, np.where(grid.fixed, 0.0, 1.0)

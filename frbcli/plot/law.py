@@ -1,0 +1,94 @@
+"""Oil fraction over pressure: the two-phase step for several steepnesses (figure 4.10), the models beside each other
+(figure 4.11)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from frbcli.film.cavitation.saturation import elrod_fraction, peeken_fraction, two_phase_fraction
+from frbcli.plot.signals import CAVITATION_NAMES
+from frbcli.plot.style import COLOURS, GREY, Picture, new_figure, styled
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+
+Array = NDArray[np.float64]
+BAR = 1e5
+STEEPNESSES = (0.9, 0.95, 0.99, 0.999)  # x_1 beside that of the case
+BUNSENS = (0.1, 0.5, 1.0)  # alpha_B beside that of the case; air in oil has about 0.1
+DASHES = ((5, 1.5), (1.5, 1), (6, 1.5, 1.5, 1.5), (8, 2), (3, 1, 1, 1, 1, 1))
+LINES: tuple[Any, ...] = ("-", *((0, dash) for dash in DASHES))
+POINTS = 4001
+PLAIN, OWN = 1.0, 2.0  # width of a line, and of that of the case
+LEAST, WIDEST = 1e-6, 1.2  # p / p_cav over which the models are compared
+
+
+def law_figure(case: Case) -> Picture:
+    """theta(p) of the conserving models with the parameters of a case, whose own model is drawn thick."""
+    film, cavity = case.film, case.oil.cavitation_pressure
+    with styled():
+        model = CAVITATION_NAMES.get(film.cavitation, film.cavitation)
+        words = f"oil fraction over pressure; the case's model: {model}"
+        figure = new_figure(case.title or case.name, words, height=4.6)
+        left, right = figure.subplots(1, 2, sharey=True)
+        _draw_steps(left, case)
+        _draw_models(right, case)
+        left.set_ylabel("oil fraction")
+        right.set_xlim(0.0, WIDEST * cavity / BAR)
+        for axes in (left, right):
+            axes.set_xlabel("absolute pressure in bar")
+            axes.set_ylim(-0.03, 1.06)
+            axes.axvline(cavity / BAR, color=GREY, linewidth=0.8, zorder=0.5)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=1, fontsize=8.0)
+    return figure
+
+
+def _draw_steps(axes: Axes, case: Case) -> None:
+    """The steps (4.32) down to where the widest one ends, a dot at the steepest slope x_1 of each."""
+    x, cavity = case.film.two_phase.steepness, case.oil.cavitation_pressure
+    values = sorted({*STEEPNESSES, x})
+    start = max(0.0, 2.0 * values[0] - 1.0)
+    ratio = np.linspace(max(0.0, start - 0.1 * (1.0 - start)), 1.0 + 0.2 * (1.0 - start), POINTS)
+    for number, value in enumerate(values):
+        own = value == x and case.film.cavitation == "two-phase"
+        place = np.array([value])
+        _draw(axes, number, ratio * cavity, two_phase_fraction(ratio, value), f"two-phase, $x_1$ = {value:g}", own)
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(place * cavity / BAR, two_phase_fraction(place, value), color=colour, marker="o", markersize=4.0)
+    axes.margins(x=0.0)
+    axes.set_title("Two-phase: a step (4.32)")
+
+
+def _draw_models(axes: Axes, case: Case) -> None:
+    """Elrod's, the two-phase and Peeken's model from no pressure to above p_cav."""
+    film, cavity = case.film, case.oil.cavitation_pressure
+    ratio = np.linspace(LEAST, WIDEST, POINTS)
+    modulus = film.elrod.bulk_modulus
+    packed = np.inf if modulus is None else modulus / cavity
+    words = "incompressible" if modulus is None else f"bulk modulus {modulus / BAR:.4g} bar"
+    x = film.two_phase.steepness
+    curves = [
+        (f"Elrod, {words}", elrod_fraction(ratio, packed), film.cavitation == "elrod"),
+        (f"two-phase, $x_1$ = {x:g}", two_phase_fraction(ratio, x), film.cavitation == "two-phase"),
+    ]
+    for bunsen in sorted({*BUNSENS, film.peeken.bunsen}):
+        own = film.cavitation == "peeken" and bunsen == film.peeken.bunsen
+        curves.append((f"Peeken, $\\alpha_B$ = {bunsen:g}", peeken_fraction(ratio, bunsen), own))
+    for number, (label, fraction, own) in enumerate(curves):
+        _draw(axes, number, ratio * cavity, fraction, label, own)
+    axes.set_title("The models beside each other")
+
+
+def _draw(axes: Axes, number: int, pressure: Array, fraction: Array, label: str, own: bool) -> None:
+    axes.plot(
+        pressure / BAR,
+        fraction,
+        color=COLOURS[number % len(COLOURS)],
+        linestyle=LINES[number % len(LINES)],
+        linewidth=OWN if own else PLAIN,
+        label=f"{label} (the case)" if own else label,
+    )

@@ -1,0 +1,40 @@
+"""How full of oil the films are, over time or rotor speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+from frbcli.plot.curves import Over, draw_curves, finish
+from frbcli.plot.signals import heading
+from frbcli.plot.style import legend_below, new_figure, styled
+from frbcli.results.container import refuse
+from frbcli.results.store import Run
+
+SIGNAL = "oil_fraction"
+ROOM = 0.02  # above a full film
+
+
+def oil_content_figure(
+    runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None, over: Over = "time"
+) -> Figure:
+    """Oil fraction of each film, meaned over its gap, the runs overlaid, from from_time to to_time in s.
+
+    Raises RunFileError if a run has none: its cavitation model does not conserve oil.
+    """
+    names = [name for name in runs[0].signals if name.startswith(SIGNAL)]
+    for run in runs:
+        if not names or any(name not in run.signals for name in names):
+            remedy = "Run the case with a model that conserves oil: peeken, elrod or two-phase."
+            raise refuse(run.path, "does not tell how full its films are.", remedy)
+    curves = [(name[len(SIGNAL) + 1 :].replace("_", " "), [run[name] for run in runs]) for name in names]
+    with styled():
+        figure = new_figure(*heading(runs))
+        axes = figure.subplots()
+        draw_curves(axes, runs, curves, over, (from_time, to_time))
+        axes.set_ylim(top=1.0 + ROOM)
+        axes.set_ylabel("oil fraction")
+        finish(axes, over)
+        legend_below(figure, axes)
+    return figure

@@ -1,0 +1,130 @@
+"""Where the whirl begins, over one key of a sweep as a curve, over two as a map."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from frbcli.analysis.sweep import Sweep, SweepPoint
+from frbcli.plot.style import BLUE, LEVEL_MAP, VERMILION, new_figure, styled
+
+Values = NDArray[np.float64]
+
+KINDS = {"runup": ("onset", "onset of the whirl"), "stability": ("threshold", "threshold of stability")}
+MOST_TICKS = 12
+MOST_NUMBERS = 100  # cells of a map that still have room for their value
+DARK = 0.5  # share of the colour range below which white letters are read best
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """The values of a key, ascending. texts: as written; unit: of all of them, None if they are no numbers in one."""
+
+    key: str
+    texts: tuple[str, ...]
+    unit: str | None
+
+    @property
+    def label(self) -> str:
+        return f"{self.key} in {self.unit}" if self.unit else self.key
+
+    @property
+    def ticks(self) -> list[str]:
+        return list(self.texts) if self.unit is None else [f"{_number(text):.6g}" for text in self.texts]
+
+
+def can_draw(sweep: Sweep) -> bool:
+    """Whether `sweep_figure` can draw it: one or two keys have several values, and some point begins to whirl."""
+    return len(_scales(sweep)) in (1, 2) and any(not math.isnan(_speed(sweep, point)) for point in sweep.points)
+
+
+def sweep_figure(sweep: Sweep) -> Figure:
+    """Onset of the whirl, or threshold of stability, in Hz, over the one or two keys that change.
+
+    Points without one are marked. Raises ValueError for what `can_draw` refuses.
+    """
+    if not can_draw(sweep):
+        raise ValueError("one or two keys with several values and a whirl are needed")
+    scales = _scales(sweep)
+    with styled():
+        subtitle = f"{KINDS[sweep.method][1]}, {len(sweep.points)} points"
+        figure = new_figure(sweep.case.title or sweep.case.name, subtitle)
+        axes = figure.subplots()
+        if len(scales) == 1:
+            _draw_curve(axes, sweep, scales[0])
+        else:
+            _draw_map(figure, axes, sweep, scales[0], scales[1])
+    return figure
+
+
+def _draw_curve(axes: Axes, sweep: Sweep, over: _Scale) -> None:
+    speeds = dict.fromkeys(over.texts, math.nan)
+    speeds |= {point.settings.get(over.key, ""): _speed(sweep, point) for point in sweep.points}
+    speed = np.array([speeds[text] for text in over.texts])
+    at = np.arange(len(over.texts), dtype=float)
+    if over.unit is None:
+        axes.set_xticks(at, over.ticks)
+    else:
+        at = np.array([_number(text) for text in over.texts])
+    axes.plot(at, speed, marker="o", color=BLUE)
+    missing = np.isnan(speed)
+    if missing.any():
+        bottom = np.full(np.count_nonzero(missing), np.nanmin(speed))
+        axes.plot(at[missing], bottom, "x", color=VERMILION, label="none found")
+        axes.legend()
+    axes.set_xlabel(over.label)
+    axes.set_ylabel(f"{KINDS[sweep.method][0]} in Hz")
+
+
+def _draw_map(figure: Figure, axes: Axes, sweep: Sweep, across: _Scale, up: _Scale) -> None:
+    """A cell for each point; cells are equal, whatever the steps between the values."""
+    speeds = np.full((len(up.texts), len(across.texts)), math.nan)
+    for point in sweep.points:
+        column = across.texts.index(point.settings.get(across.key, ""))
+        speeds[up.texts.index(point.settings.get(up.key, "")), column] = _speed(sweep, point)
+    axes.set_facecolor("#E4E4E4")
+    mesh = axes.pcolormesh(np.arange(len(across.texts)), np.arange(len(up.texts)), np.ma.masked_invalid(speeds),
+                           cmap=LEVEL_MAP, shading="nearest")  # fmt: skip
+    figure.colorbar(mesh, ax=axes, label=f"{KINDS[sweep.method][0]} in Hz; grey: none found")
+    low, high = np.nanmin(speeds), np.nanmax(speeds)
+    for (row, column), speed in np.ndenumerate(speeds):
+        if speeds.size <= MOST_NUMBERS and not math.isnan(speed):
+            colour = "white" if speed < low + DARK * (high - low) or low == high else "black"
+            axes.text(column, row, f"{speed:.0f}", ha="center", va="center", color=colour, fontsize=7.5)
+    axes.grid(visible=False)
+    for scale, place in ((across, axes.set_xticks), (up, axes.set_yticks)):
+        every = math.ceil(len(scale.texts) / MOST_TICKS)
+        place(np.arange(len(scale.texts))[::every], scale.ticks[::every])
+    axes.set_xlabel(across.label)
+    axes.set_ylabel(up.label)
+
+
+def _scales(sweep: Sweep) -> list[_Scale]:
+    """The keys that have several values."""
+    values = {key: list(dict.fromkeys(point.settings.get(key, "") for point in sweep.points)) for key in sweep.keys}
+    return [_scale(key, texts) for key, texts in values.items() if len(texts) > 1]
+
+
+def _scale(key: str, texts: list[str]) -> _Scale:
+    read = [_QUANTITY.fullmatch(text) for text in texts]
+    units = {"" if found is None else found.group(2) for found in read}
+    if None in read or len(units) > 1:
+        return _Scale(key, tuple(texts), None)
+    return _Scale(key, tuple(sorted(texts, key=_number)), units.pop())
+
+
+def _number(text: str) -> float:
+    found = _QUANTITY.fullmatch(text)
+    return math.nan if found is None else float(found.group(1))
+
+
+def _speed(sweep: Sweep, point: SweepPoint) -> float:
+    event = point.first(KINDS[sweep.method][0])
+    return math.nan if event is None else float(event["speed_Hz"])

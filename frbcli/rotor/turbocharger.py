@@ -1,0 +1,96 @@
+"""A turbocharger's rotor (2.1.3): rigid wheels on an elastic shaft, reduced to its lowest free modes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.rotor.beam import Plane, Section, beam
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.reduction import FreeModes
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A rigid body on the shaft. position in m; mass in kg; polar, diametral: inertias about the axis of rotation and
+    about a diameter in kg m^2; unbalance in kg m; phase: its angle on the rotor in rad."""
+
+    name: str
+    position: float
+    mass: float
+    polar: float
+    diametral: float
+    unbalance: float
+    phase: float
+
+
+@dataclass(frozen=True)
+class Journal:
+    """The place of a bearing. position: of its middle, m."""
+
+    name: str
+    position: float
+
+
+def wheels_on_shaft(sections: Sequence[Section], wheels: Sequence[Wheel], journals: Sequence[Journal]) -> Plane:
+    """The free rotor in one plane, with nodes at all wheels and journals."""
+    places = [wheel.position for wheel in wheels] + [journal.position for journal in journals]
+    shaft = beam(sections, places)
+    mass, polar = shaft.mass.copy(), shaft.polar.copy()
+    for wheel in wheels:
+        v = 2 * shaft.node(wheel.position)
+        mass[v, v] += wheel.mass
+        mass[v + 1, v + 1] += wheel.diametral
+        polar[v + 1, v + 1] += wheel.polar
+    return replace(shaft, mass=mass, polar=polar)
+
+
+def turbocharger_rotor(
+    modes: FreeModes,
+    wheels: Sequence[Wheel],
+    journals: Sequence[Journal],
+    modal_damping: float,
+    external_damping: float,
+    gravity: float,
+) -> LinearRotor:
+    """The rotor in the given modes, which are its degrees of freedom: n of the x-plane, then n of the y-plane.
+
+    modal_damping: ratio to the critical damping of every elastic mode; external_damping: of each wheel against the
+    ground, N s/m; gravity in m/s^2.
+    """
+    n = len(modes.frequencies)
+    both, turned = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
+    damping = np.diag(2 * modal_damping * modes.frequencies)
+    unbalance_cos, unbalance_sin = np.zeros((2, n)), np.zeros((2, n))
+    for wheel in wheels:
+        shape = modes.at(wheel.position)
+        damping += external_damping * np.outer(shape, shape)
+        cos, sin = wheel.unbalance * math.cos(wheel.phase), wheel.unbalance * math.sin(wheel.phase)
+        unbalance_cos += np.outer([cos, sin], shape)
+        unbalance_sin += np.outer([-sin, cos], shape)
+    maps = [_of(both, modes.at(journal.position)) for journal in journals]
+    points = [(f"journal_{journal.name}", place) for journal, place in zip(journals, maps, strict=True)]
+    points += [(f"disk_{wheel.name}", _of(both, modes.at(wheel.position))) for wheel in wheels]
+    return LinearRotor(
+        mass=np.eye(2 * n),
+        damping=_of(both, damping),
+        gyroscopic=_of(turned, modes.polar),
+        stiffness=_of(both, np.diag(modes.frequencies**2)),
+        static_load=np.concatenate([np.zeros(n), -gravity * modes.weight]),
+        unbalance_cos=unbalance_cos.ravel(),
+        unbalance_sin=unbalance_sin.ravel(),
+        journals=np.stack(maps),
+        multiplicity=np.ones(len(journals)),
+        points=tuple(points),
+    )
+
+
+def _of(planes: Array, modes: Array) -> Array:
+    """What `modes` say of one plane for both, coupled by `planes` (2, 2)."""
+    return np.asarray(np.kron(planes, modes), dtype=np.float64)

@@ -1,0 +1,148 @@
+"""The films of a machine in the order in which the time loop sees them, and how they turn with rotor and rings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.case.bearing import Bores, FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.peeken import Peeken
+from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
+from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.gap import Section, graded_ring
+from frbcli.film.grid import Array
+from frbcli.film.volume_data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, STANDS
+from frbcli.film.volume_grid import VolumeGrid, volume_grid
+from frbcli.film.volumes import VolumeFilm
+from frbcli.scene.section import film_section
+
+ROTOR, HOUSING = -1, -2  # what a film lies against, if it is not a ring
+CLOSED_ENDS = ("sommerfeld", "half-sommerfeld")  # models that know no missing oil at the ends
+PUMPED = 0.3  # share of the pressure that the largest speed could build up: a good unit of the unknown w
+
+
+@dataclass(frozen=True)
+class FilmPlace:
+    """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING, which
+    a blocked ring counts as; the body that its openings turn with; the name that results carry."""
+
+    geometry: FilmGeometry
+    inside: int
+    outside: int
+    grid_body: int
+    name: str
+
+
+def film_places(case: Case) -> tuple[FilmPlace, ...]:
+    """All films of a case: the inner before the outer one of a floating ring, the bearings in their order."""
+    places, ring = [], 0
+    for bearing in case.bearings:
+        if isinstance(bearing, SingleFilmBearing):
+            places.append(FilmPlace(bearing, ROTOR, HOUSING, _opening_body(bearing, ROTOR, HOUSING), bearing.name))
+        else:
+            names = (f"{bearing.name}_{side}".lstrip("_") for side in ("inner", "outer"))
+            inner, outer = next(names), next(names)
+            between = ring if bearing.ring.spin == "free" else HOUSING
+            places.append(FilmPlace(bearing.inner, ROTOR, between, _opening_body(bearing.inner, ROTOR, between), inner))
+            body = _opening_body(bearing.outer, between, HOUSING)
+            places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer))
+            ring += between == ring
+    return tuple(places)
+
+
+def _opening_body(film: FilmGeometry, inside: int, outside: int) -> int:
+    """The body that the openings of a film are in."""
+    supply = film.supply
+    if isinstance(supply, Bores):
+        return inside if supply.on == "journal" else outside
+    return HOUSING
+
+
+def rings(case: Case) -> tuple[FloatingRingBearing, ...]:
+    """The bearings with floating rings."""
+    return tuple(bearing for bearing in case.bearings if isinstance(bearing, FloatingRingBearing))
+
+
+def turning_rings(case: Case) -> tuple[FloatingRingBearing, ...]:
+    """The bearings with rings that turn, in the order of the rings' numbers."""
+    return tuple(bearing for bearing in rings(case) if bearing.ring.spin == "free")
+
+
+def turning(places: tuple[FilmPlace, ...], ring_count: int) -> Array:
+    """(films, 3, 1 + rings) shares of the speeds of rotor and rings in omega_J + omega_S, in omega_J - omega_S, and in
+    the speed of the grid; see RotorData."""
+    shares = np.zeros((len(places), 3, 1 + ring_count))
+    for share, place in zip(shares, places, strict=True):
+        for body, signs in ((place.inside, (1.0, 1.0)), (place.outside, (1.0, -1.0))):
+            if body != HOUSING:
+                share[0, 1 + body] += signs[0]
+                share[1, 1 + body] += signs[1]
+        if place.grid_body != HOUSING:
+            share[2, 1 + place.grid_body] = 1.0
+    return shares
+
+
+def make_law(case: Case, section: Section) -> tuple[Law, int]:
+    """The law of a film in a run, and what its parameters follow; those of a penalty are of the centred journal."""
+    film = case.film
+    if film.cavitation == "reynolds":
+        return Reynolds(), STANDS
+    if film.cavitation == "penalty":
+        exponent = steepness_exponent(0.0)
+        if film.penalty.pressure == "absolute":
+            return Penalty(PREFACTOR, exponent * section.pressure_scale / section.ambient_pressure), BY_ECCENTRICITY
+        return Penalty(0.5 * PREFACTOR, 2.0 * exponent), BY_ECCENTRICITY_AND_SPEED
+    if film.cavitation == "peeken":
+        return Peeken(film.peeken.bunsen), STANDS
+    if film.cavitation == "elrod":
+        modulus = film.elrod.bulk_modulus
+        return (Elrod() if modulus is None else Elrod(modulus / section.pressure_scale)), STANDS
+    if film.cavitation == "two-phase":
+        return TwoPhase(film.two_phase.steepness), STANDS
+    return Sommerfeld(clips=film.cavitation == "half-sommerfeld"), STANDS
+
+
+def channel_pulls(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:
+    """By what the pressure in the channels of each film falls with the square of its ring's speed, (4.27), scaled.
+
+    Half of the difference between the two ends of a channel acts on the inner film (4.29); the pressure at the outer
+    end is that of the groove which they open to.
+    """
+    pulls = []
+    outer = {place.inside: place.geometry for place in film_places(case) if place.inside >= 0}
+    thrown = [bearing.centrifugal_pressure for bearing in turning_rings(case)]
+    for place, film in zip(film_places(case), volumes, strict=True):
+        pull = 0.0
+        if place.outside >= 0 and place.grid_body == place.outside and thrown[place.outside]:
+            inside, outside = 0.5 * place.geometry.diameter, 0.5 * outer[place.outside].diameter
+            pull = 0.25 * case.oil.density * (outside**2 - inside**2) / film.section.pressure_scale
+        pulls.append(pull)
+    return tuple(pulls)
+
+
+def volume_film(case: Case, geometry: FilmGeometry, cells: tuple[int, int]) -> tuple[VolumeFilm, int]:
+    """A film on volumes for a run, equal cells (around, along), and what its law follows."""
+    section = film_section(case, geometry)
+    if case.film.cavitation in CLOSED_ENDS and geometry.ends == "free-to-air":
+        far = "oil-bath" if section.far == "free-to-air" else section.far
+        section = replace(section, near="oil-bath", far=far)
+    law, follows = make_law(case, section)
+    speed = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)
+    reference = PUMPED * 0.5 * speed / section.aspect
+    return VolumeFilm(section, run_grid(section, cells), law, reference), follows
+
+
+def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:
+    """Equal cells, for the narrowest gap moves: (around, along), but for those that a groove's edges cut."""
+    around, along = cells
+    edges = [groove.position + side * 0.5 * groove.opening for groove in section.grooves for side in (-1.0, 1.0)]
+    ring = graded_ring(around, 0.0, 1.0, np.array(edges))
+    return volume_grid(section, ring, np.linspace(0.0, 1.0, along + 1))

@@ -1,0 +1,57 @@
+"""What a case lacks for a kinematic test, and what no such test can be made of."""
+
+from __future__ import annotations
+
+from frbcli.case.bearing import Bores, CircumferentialGroove, SingleFilmBearing
+from frbcli.case.schema import Case, Motion
+from frbcli.errors import Fault
+
+
+def motion_faults(motion: Motion | None, test: str) -> list[Fault]:
+    """Of the motion, for the test called "rotation", "squeeze" or "whirl"."""
+    if motion is None:
+        remedy = 'Add e.g. [motion] with eccentricity = 0.6, angle = "-60 deg", speed = "20 Hz".'
+        return [Fault("motion", "", None, f"is missing; a {test} needs it.", remedy)]
+    faults = []
+    if test == "rotation":
+        if motion.speed is None and motion.whirl_speed == 0.0 and motion.eccentricity_rate == 0.0:
+            faults.append(Fault("motion.speed", "", None, "is missing.", 'Add e.g. speed = "20 Hz" to [motion].'))
+        if motion.load is not None and not motion.speed:
+            problem = "cannot be carried by a journal that does not turn."
+            faults.append(Fault("motion.load", f"{motion.load:g} N", None, problem, "Give a speed other than zero."))
+        if motion.eccentricity is None and motion.load is None:
+            problem = "is missing, and there is no load."
+            faults.append(Fault("motion.eccentricity", "", None, problem, 'Add it, or e.g. load = "29.9 N".'))
+        return faults
+    if motion.eccentricity is None:
+        problem = f"is missing; it is the largest one of a {test}."
+        faults.append(Fault("motion.eccentricity", "", None, problem, "Add e.g. eccentricity = 0.6 to [motion]."))
+    if not motion.frequency:
+        problem = f"is missing; a {test} needs one above zero."
+        faults.append(Fault("motion.frequency", "", None, problem, 'Add e.g. frequency = "10 Hz" to [motion].'))
+    return faults
+
+
+def bearing_faults(case: Case, test: str) -> list[Fault]:
+    """Of the bearing, for the test called "rotation", "squeeze" or "whirl"."""
+    if len(case.bearings) != 1:
+        problem = "are too many: a kinematic test is of one bearing."
+        return [Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")]
+    bearing = case.bearings[0]
+    if not isinstance(bearing, SingleFilmBearing):
+        problem = "is not modelled in this version of kinematic tests."
+        return [Fault("bearing.kind", bearing.kind, None, problem, 'Modelled is: "single-film".')]
+    supply, faults = bearing.supply, []
+    if supply.kind == "none" and bearing.ends == "free-to-air":
+        problem = "with ends free to air gets no oil: the bearing runs dry."
+        remedy = 'Add a supply to [bearing], or write ends = "oil-bath".'
+        faults.append(Fault("bearing.supply.kind", supply.kind, None, problem, remedy))
+    if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, 0.5, 1.0):
+        problem = "is neither in the middle nor at an end: the two films would differ."
+        value = f"{supply.axial_position:g}"
+        faults.append(Fault("bearing.supply.axial_position", value, None, problem, "Write 0.5, 0 or 1."))
+    turns = test == "rotation" and case.motion is not None and case.motion.speed
+    if isinstance(supply, Bores) and supply.on == "journal" and turns:
+        problem = "turn with the journal: no film is steady in which the journal keeps its place."
+        faults.append(Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".'))
+    return faults

@@ -1,0 +1,84 @@
+"""The films of a case in operation: warm gap, viscosity, Reynolds number, growth of the journal (section 4.1.5.4)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from frbcli.case.bearing import ColdClearance, FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.schema import Case
+from frbcli.film.operating import (
+    BRASS,
+    LAMINAR_BELOW,
+    STEEL,
+    reynolds_number,
+    ring_rotation_strains,
+    shaft_rotation_strain,
+)
+
+RING_SPEED = 0.3  # of the rotor's, as table A.1 has it: what a floating ring reaches at most
+
+
+@dataclass(frozen=True)
+class FilmOperation:
+    """One film at the top speed of a case, SI units.
+
+    omega: omega_J + omega_S in rad/s; warming: what heat has added to the cold clearance in m; turning: what the growth
+    of a steel shaft and a brass ring that turn would add to the clearance in m, which is left out.
+    """
+
+    name: str
+    clearance: float
+    viscosity: float
+    omega: float
+    reynolds: float
+    warming: float
+    turning: float
+
+    @property
+    def laminar(self) -> bool:
+        """Whether (3.3) holds."""
+        return self.reynolds < LAMINAR_BELOW
+
+
+def operating_points(case: Case) -> tuple[FilmOperation, ...]:
+    """Every film of a case at its top speed: that of [speed], or that of a kinematic test."""
+    omega = 2.0 * math.pi * _top_speed(case)
+    found: list[FilmOperation] = []
+    for bearing in case.bearings:
+        if isinstance(bearing, SingleFilmBearing):
+            strain = shaft_rotation_strain(STEEL, omega, 0.5 * bearing.diameter)
+            found.append(_operation(case, bearing, bearing.name or "film", omega, -strain))
+        else:
+            found.extend(_floating(case, bearing, omega))
+    return tuple(found)
+
+
+def _floating(case: Case, bearing: FloatingRingBearing, omega: float) -> tuple[FilmOperation, FilmOperation]:
+    ring = RING_SPEED * omega
+    shaft = shaft_rotation_strain(STEEL, omega, 0.5 * bearing.inner.diameter)
+    inside, outside = ring_rotation_strains(BRASS, ring, 0.5 * bearing.inner.diameter, 0.5 * bearing.outer.diameter)
+    name = f"{bearing.name} ".lstrip()
+    return (
+        _operation(case, bearing.inner, f"{name}inner", omega + ring, inside - shaft),
+        _operation(case, bearing.outer, f"{name}outer", ring, -outside),
+    )
+
+
+def _operation(case: Case, film: FilmGeometry, name: str, omega: float, strain: float) -> FilmOperation:
+    radius, viscosity = 0.5 * film.diameter, case.viscosity(film)
+    given = film.given_clearance
+    return FilmOperation(
+        name=name,
+        clearance=film.clearance,
+        viscosity=viscosity,
+        omega=omega,
+        reynolds=reynolds_number(case.oil.density, omega, radius, film.clearance, viscosity),
+        warming=film.clearance - given.cold if isinstance(given, ColdClearance) else 0.0,
+        turning=radius * strain,
+    )
+
+
+def _top_speed(case: Case) -> float:
+    speeds = [] if case.given_speed is None else [case.given_speed.start, case.given_speed.end]
+    return max([*speeds, abs(case.motion.speed or 0.0) if case.motion is not None else 0.0])

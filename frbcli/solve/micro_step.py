@@ -1,0 +1,125 @@
+"""The slave of a co-simulation: all films on their way through one macro step of the rotor. Compiled.
+
+The journals' motion is a parabola through the last three macro time points (section 5.2.1), so that it is interpolated.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from frbcli.rotor.excitation import rotation
+from frbcli.solve.passengers import accept_films, begin_stage, move_film
+from frbcli.solve.stage import FORCE, X_0, U, forces, set_speeds
+from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE
+from frbcli.solve.step import SAFETY, step_after
+
+# Behind the numbers of a state: steps of the films, how many of them were repeated, the next one in s, and whether the
+# films keep their oil: those that do not are solved once per macro step.
+MICRO_STEPS, MICRO_REJECTED, MICRO_STEP, FILMS_REMEMBER, CO_NUMBERS = range(NUMBERS, NUMBERS + 5)
+NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
+SMALLEST_STEP = 1e-12  # s
+
+
+@njit(cache=True, error_model="numpy")
+def parabola(times, t, weights):  # type: ignore[no-untyped-def]
+    """weights (3,) <- of Lagrange's parabola through three times (3,), at the time t."""
+    a, b, c = times[0], times[1], times[2]
+    weights[0] = (t - b) * (t - c) / ((a - b) * (a - c))
+    weights[1] = (t - a) * (t - c) / ((b - a) * (b - c))
+    weights[2] = (t - a) * (t - b) / ((c - a) * (c - b))
+
+
+@njit(cache=True, error_model="numpy")
+def _move_journals(motions, times, t, g, film, bodies, angles, lagrange):  # type: ignore[no-untyped-def]
+    """U of the journals at the time t and X_0, g U short of where they are; speeds and angles of the rings."""
+    m, rings = film.shape[1], bodies.shape[0] - 1
+    parabola(times, t, lagrange)
+    for k in range(m):
+        place, rate = 0.0, 0.0
+        for p in range(3):
+            place += lagrange[p] * motions[p, k]
+            rate += lagrange[p] * motions[p, m + k]
+        film[U, k], film[X_0, k] = rate, place - g * rate
+    for r in range(rings):
+        angles[1 + r], bodies[1 + r] = 0.0, 0.0
+        for p in range(3):
+            angles[1 + r] += lagrange[p] * motions[p, 2 * m + r]
+            bodies[1 + r] += lagrange[p] * motions[p, 2 * m + rings + r]
+
+
+@njit(cache=True, error_model="numpy")
+def _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, film):  # type: ignore[no-untyped-def]
+    """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
+    for iteration in range(NEWTON_LIMIT):
+        forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration == 0, film)
+        unsettled = 0
+        for f in range(clearances.shape[0]):
+            if not math.isfinite(film[FORCE, 2 * f] + film[FORCE, 2 * f + 1]):
+                return 0
+            unsettled += move_film(films, work, f, 0.0, 0.0, g)
+        if unsettled == 0:
+            return iteration + 1
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def _oil_error(defect, stage_oil, step):  # type: ignore[no-untyped-def]
+    """Largest embedded error of the oil H theta of a cell."""
+    stages, count, m, k = stage_oil.shape
+    error = 0.0
+    for f in range(count):
+        for i in range(m):
+            for j in range(k):
+                total = 0.0
+                for p in range(stages):
+                    total += defect[p] * stage_oil[p, f, i, j]
+                error = max(error, abs(step * total))
+    return error
+
+
+@njit(cache=True, error_model="numpy")
+def films_follow(  # type: ignore[no-untyped-def]
+    films, work, wet, flows, numbers, weights, moments, defect, order, tolerance, profile_times, profile_speeds,
+    profile_angles, piece, turning, clearances, contact_at, contact_stiffness, motions, three, film, bodies, angles
+):
+    """Take the films from the macro time three[1] to three[2]; FORCE is then theirs. Returns whether that succeeded.
+
+    motions: (3, 4 films + 2 rings) of the journals and rings at the macro times three (3,), see macro_step.py.
+    """
+    remembers = numbers[FILMS_REMEMBER] != 0.0
+    lagrange = three.copy()
+    stages, gamma, t, end = moments.shape[0] if remembers else 2, weights[1, 1], three[1], three[2]
+    wanted = min(numbers[MICRO_STEP], end - t) if remembers else end - t
+    while t < end:
+        step = end - t
+        if wanted < (1.0 - 1e-9) * step:
+            step = min(wanted, 0.5 * step)
+        g, solved = gamma * step, True
+        for s in range(1, stages):
+            reach = moments[s] * step if remembers else step
+            _, bodies[0], angles[0] = rotation(profile_times, profile_speeds, profile_angles, piece, t + reach)
+            _move_journals(motions, three, t + reach, g, film, bodies, angles, lagrange)
+            set_speeds(turning, bodies, angles, film, work.grids)
+            lag = moments[s] / moments[s - 1] if moments[s - 1] > 0.0 else 1.0
+            begin_stage(films, work, wet, flows, weights, s, step, g, reach / numbers[STEP_DONE], lag)
+            iterations = _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, film)
+            numbers[SOLVES] += iterations * clearances.shape[0]
+            if iterations == 0:
+                solved = False
+                break
+        error = _oil_error(defect, work.stage_oil, step) / tolerance if solved and remembers else 0.0
+        if not solved or not error <= 1.0:
+            numbers[MICRO_REJECTED] += 1
+            wanted = step * (max(0.2, SAFETY * error ** (-1.0 / order)) if solved else 0.25)
+            if wanted < SMALLEST_STEP or not remembers:
+                return False
+            continue
+        accept_films(films, work, wet, flows, weights, step)
+        numbers[STEP_DONE] = step
+        numbers[MICRO_STEPS] += 1
+        t = t + step if step < end - t else end
+        wanted = step_after(max(wanted, step), error, error, order)
+    numbers[MICRO_STEP] = wanted
+    return True

@@ -1,0 +1,428 @@
+"""The films in the time loop, compiled. Two kinds ride in it:
+
+- FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
+- VolumeFilms, all films together: cells with unknowns of their own. Each stage is one equation for rotor and film: a
+  Newton step of the film, with what it does per journal velocity as further right-hand sides, leaves 2 x 2 equations
+  for the journal, and the journal's correction then moves the film (Schur's complement: the coupling is monolithic).
+
+Which of the two a function means is decided by the type of the films when the loop is compiled. Oil is the state: a
+stage asks for rate H theta - past = -(net outflow), the rates of all stages are added up as those of the velocities
+are. What a linearised step leaves of the balance stays in the oil that is carried on, so that none is lost.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numba.extending import overload
+
+from frbcli.film.block_cyclic import ENTRIES, solve_ring
+from frbcli.film.cell_kernel import (
+    BY_ITSELF,
+    BY_X,
+    BY_Y,
+    FLOWS,
+    FRACTION,
+    SIDES,
+    STATES,
+    evaluate_cells,
+    film_loads,
+    law_parameters,
+    store_rates,
+)
+from frbcli.film.kernel import film_force
+from frbcli.film.volume_data import AREA, COS, GAP, REMEMBERS, SIN, UNKNOWN, VolumeFilms
+from frbcli.solve.state import Array
+
+# Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate.
+W, W_BEFORE, OIL, RATE, WET = range(5)
+GRID_TURN, GRID_SPEED, GRID_X, GRID_Y, UNSETTLED, LAW_FIRST, LAW_SECOND, GRIDS = range(
+    8
+)  # rows of how the grids stand, and of where the journals are in them
+PASSED, NOW = range(2)
+SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
+# The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
+CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
+SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
+NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
+
+
+class Work(NamedTuple):
+    """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k,
+    k + SIDES); w, past (F, m, k) of the stage; stage_oil (stages, F, m, k) rates of the stages; stage_flows
+    (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4); all without rows for films without cells."""
+
+    states: Array
+    stencil: Array
+    blocks: Array
+    fields: Array
+    w: Array
+    past: Array
+    stage_oil: Array
+    stage_flows: Array
+    grids: Array
+    slopes: Array
+
+
+def _volumes(films: Any) -> bool:
+    return getattr(films, "instance_class", None) is VolumeFilms
+
+
+@njit(cache=True, error_model="numpy")
+def make_work(wet, stages):  # type: ignore[no-untyped-def]
+    """Scratch for the films' state wet (WET, F, m, k)."""
+    count, m, k = wet.shape[1], wet.shape[2], wet.shape[3]
+    return Work(
+        np.zeros((count, STATES, m, k)),
+        np.zeros((ENTRIES, m, k)),
+        np.zeros((m, k, k)),
+        np.zeros((count, m, k, k + SIDES)),
+        np.zeros((count, m, k)),
+        np.zeros((count, m, k)),
+        np.zeros((stages, count, m, k)),
+        np.zeros((stages, count, FLOWS)),
+        np.zeros((GRIDS, count)),
+        np.zeros((count, 4)),
+    )
+
+
+def begin_stage(
+    films: Any,
+    work: Work,
+    wet: Array,
+    flows: Array,
+    weights: Array,
+    s: int,
+    step: float,
+    g: float,
+    ahead: float,
+    lag: float,
+) -> None:
+    """What stage s knows of the films before it is solved: past, and a guess of w. ahead, lag: how far the stage and
+    the one before it lie from the start of the step, over the step before and over this one."""
+    raise NotImplementedError
+
+
+def film_numbers(
+    films: Any,
+    work: Work,
+    f: int,
+    d_x: float,
+    d_y: float,
+    v_x: float,
+    v_y: float,
+    omega: float,
+    g: float,
+    s: int,
+    first: bool,
+) -> Any:
+    """The ten numbers of film_force for film f; those of cells hold all in the derivatives by the velocity.
+
+    A film whose balances hold already, but not in the first iteration of stage s, is settled: its rates are kept, and
+    it only follows the journal.
+    """
+    raise NotImplementedError
+
+
+def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, g: float) -> int:
+    """Take the film along with a correction u of the journal's velocity over the clearance; 1 if it had not settled."""
+    raise NotImplementedError
+
+
+def write_oil(films: Any, work: Work, out_oil: Array, first: int, last: int) -> None:
+    """out_oil (rows, F), rows from first up to last: the mean oil fraction (4.46) of the last stage."""
+    raise NotImplementedError
+
+
+def accept_films(films: Any, work: Work, wet: Array, flows: Array, weights: Array, step: float) -> None:
+    """The step is done: the films' state moves on. flows: (2, F, FLOWS) oil that has passed so far, and passes now."""
+    raise NotImplementedError
+
+
+def drag_integral(films: Any, work: Work, f: int, d_x: float, d_y: float, factor: int) -> float:
+    """The integral of 1 / H over the turn, mean over the width, with the cavitation factor where the film knows one."""
+    raise NotImplementedError
+
+
+@overload(begin_stage)
+def _begin_stage(films, work, wet, flows, weights, s, step, g, ahead, lag):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, wet, flows, weights, s, step, g, ahead, lag: None
+
+    def volumes(films, work, wet, flows, weights, s, step, g, ahead, lag):  # type: ignore[no-untyped-def]
+        count, m, k = work.w.shape
+        for f in range(count):
+            if films.numbers[f, REMEMBERS] == 0.0:
+                _guess(work.w[f], wet[W, f], wet[W_BEFORE, f], s, ahead, lag)
+                continue
+            if s == 1:
+                for i in range(m):
+                    for j in range(k):
+                        work.stage_oil[0, f, i, j] = wet[RATE, f, i, j]
+                for flow in range(FLOWS):
+                    work.stage_flows[0, f, flow] = flows[NOW, f, flow]
+            for i in range(m):
+                for j in range(k):
+                    total = 0.0
+                    for p in range(s):
+                        total += weights[s, p] * work.stage_oil[p, f, i, j]
+                    work.past[f, i, j] = (wet[OIL, f, i, j] + step * total) / g
+            _guess(work.w[f], wet[W, f], wet[W_BEFORE, f], s, ahead, lag)
+
+    return volumes
+
+
+@njit(cache=True, error_model="numpy")
+def _guess(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-def]
+    """w of a stage by a straight line: in the first through the step before, later through the last stage."""
+    m, k = w.shape
+    for i in range(m):
+        for j in range(k):
+            if s == 1:
+                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
+            else:
+                w[i, j] = start[i, j] + lag * (w[i, j] - start[i, j])
+
+
+@overload(film_numbers, inline="always")
+def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, first):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, first: film_force(
+            films[f], d_x, d_y, v_x, v_y, omega
+        )
+
+    def volumes(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, first):  # type: ignore[no-untyped-def]
+        return _cell_numbers(
+            films.numbers[f],
+            films.ring[f],
+            films.width[f],
+            films.cells[f],
+            work.w[f],
+            work.past[f],
+            work.states[f],
+            work.stencil,
+            work.blocks,
+            work.fields[f],
+            work.stage_oil[s, f],
+            work.stage_flows[s, f],
+            work.grids[:, f],
+            work.slopes[f],
+            d_x,
+            d_y,
+            v_x,
+            v_y,
+            omega,
+            g,
+            first,
+        )
+
+    return volumes
+
+
+@njit(cache=True, error_model="numpy")
+def _cell_numbers(  # type: ignore[no-untyped-def]
+    numbers,
+    ring,
+    width,
+    cells,
+    w,
+    past,
+    states,
+    stencil,
+    blocks,
+    fields,
+    rates,
+    flows,
+    grid,
+    slopes,
+    d_x,
+    d_y,
+    v_x,
+    v_y,
+    omega,
+    g,
+    first,
+):
+    turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
+    c, s = math.cos(turn), math.sin(turn)
+    x, y = c * d_x + s * d_y, c * d_y - s * d_x
+    grid[GRID_X], grid[GRID_Y] = x, y
+    against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
+    v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
+    remembers = numbers[REMEMBERS] != 0.0
+    if first:  # what the law follows stays as it is at the guess: its derivatives are left out
+        grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, x, y, omega)
+    mean, largest = evaluate_cells(
+        numbers,
+        ring,
+        width,
+        cells,
+        grid[LAW_FIRST],
+        grid[LAW_SECOND],
+        w,
+        x,
+        y,
+        omega - 2.0 * spin,
+        1.0 / g if remembers else 0.0,
+        past,
+        g,
+        v_f,
+        v_g,
+        spin,
+        states,
+        stencil,
+        fields,
+        flows,
+    )
+    pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
+    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest)
+    if left < SETTLED * pace and not first:
+        grid[UNSETTLED] = 0.0
+        if remembers:
+            store_rates(ring, cells, states, x, y, g, past, fields, rates)
+        m, k = w.shape
+        for i in range(m):  # the journal takes the film along as it did before
+            for j in range(k):
+                fields[i, j, k + BY_ITSELF] = 0.0
+                fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, 0], fields[i, j, 1]
+        f_x, f_y, _, _, _, _ = film_loads(numbers, ring, width, states, fields)
+    else:
+        grid[UNSETTLED] = 1.0
+        solve_ring(stencil, blocks, fields)
+        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, width, states, fields)
+        m, k = w.shape
+        for i in range(m):
+            for j in range(k):
+                fields[i, j, 0], fields[i, j, 1] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
+    xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
+    # back from the grid's directions: Q^T B Q
+    a, b, p, q = c * xx - s * yx, c * xy - s * yy, s * xx + c * yx, s * xy + c * yy
+    return (
+        c * f_x - s * f_y,
+        s * f_x + c * f_y,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        a * c - b * s,
+        a * s + b * c,
+        p * c - q * s,
+        p * s + q * c,
+    )
+
+
+@overload(move_film, inline="always")
+def _move_film(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, f, u_x, u_y, g: 0
+
+    def volumes(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
+        return _moved(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g)
+
+    return volumes
+
+
+@njit(cache=True, error_model="numpy")
+def _moved(w, fields, grid, u_x, u_y, g):  # type: ignore[no-untyped-def]
+    m, k = w.shape
+    c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
+    x, y = c * u_x + s * u_y, c * u_y - s * u_x
+    grid[GRID_X] += g * x
+    grid[GRID_Y] += g * y
+    for i in range(m):
+        for j in range(k):
+            w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
+    return 1 if grid[UNSETTLED] != 0.0 else 0
+
+
+@overload(accept_films)
+def _accept_films(films, work, wet, flows, weights, step):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, wet, flows, weights, step: None
+
+    def volumes(films, work, wet, flows, weights, step):  # type: ignore[no-untyped-def]
+        count, m, k = work.w.shape
+        last = weights.shape[0] - 1
+        for f in range(count):
+            for i in range(m):
+                for j in range(k):
+                    wet[W_BEFORE, f, i, j], wet[W, f, i, j] = wet[W, f, i, j], work.w[f, i, j]
+            if films.numbers[f, REMEMBERS] == 0.0:
+                continue
+            for p in range(last + 1):
+                share = step * weights[last, p]
+                for i in range(m):
+                    for j in range(k):
+                        wet[OIL, f, i, j] += share * work.stage_oil[p, f, i, j]
+                for flow in range(FLOWS):
+                    flows[PASSED, f, flow] += share * work.stage_flows[p, f, flow]
+            for i in range(m):
+                for j in range(k):
+                    wet[RATE, f, i, j] = work.stage_oil[last, f, i, j]
+            for flow in range(FLOWS):
+                flows[NOW, f, flow] = work.stage_flows[last, f, flow]
+
+    return volumes
+
+
+@overload(write_oil)
+def _write_oil(films, work, out_oil, first, last):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, out_oil, first, last: None
+
+    def volumes(films, work, out_oil, first, last):  # type: ignore[no-untyped-def]
+        if last > first:
+            for f in range(work.w.shape[0]):
+                oil = _oil_fraction(films.cells[f], work.states[f])
+                for row in range(first, last):
+                    out_oil[row, f] = oil
+
+    return volumes
+
+
+@njit(cache=True, error_model="numpy")
+def _oil_fraction(cells, states):  # type: ignore[no-untyped-def]
+    m, k = states.shape[1], states.shape[2]
+    area, oil = 0.0, 0.0
+    for i in range(m):
+        for j in range(k):
+            if cells[UNKNOWN, i, j] != 0.0:
+                area += cells[AREA, i, j]
+                oil += cells[AREA, i, j] * states[FRACTION, i, j]
+    return oil / area
+
+
+@overload(drag_integral, inline="always")
+def _drag_integral(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        # of 1 / H over the turn, Sommerfeld's integral
+        return lambda films, work, f, d_x, d_y, factor: (
+            2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
+        )
+
+    def volumes(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+        return _sheared(
+            films.ring[f], films.cells[f], work.states[f], work.grids[GRID_X, f], work.grids[GRID_Y, f], factor
+        )
+
+    return volumes
+
+
+@njit(cache=True, error_model="numpy")
+def _sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+    if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
+        return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
+    m, k = states.shape[1], states.shape[2]
+    whole, weighed = 0.0, 0.0
+    for i in range(m):
+        h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
+        for j in range(k):
+            if cells[UNKNOWN, i, j] != 0.0:
+                whole += cells[AREA, i, j] / h
+                weighed += cells[AREA, i, j] * states[FRACTION, i, j] / h
+    if factor == LOCAL_FACTOR:
+        return weighed
+    return whole * _oil_fraction(cells, states) if factor == GLOBAL_FACTOR else whole

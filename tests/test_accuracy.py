@@ -1,0 +1,127 @@
+"""`frb accuracy`: the ladder, its reference, its front, table and picture."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli.analysis.accuracy import AccuracyLadder, Rung, RungError, RungResult, accuracy, ladder, planned_rung
+from frbcli.case.load import load_case
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError
+from frbcli.plot.accuracy import accuracy_figure
+from frbcli.scene.plan import make_plan
+from frbcli.solve.run import runup
+
+QUICK = ("speed.duration=0.4 s", "speed.from=20 Hz", "speed.to=60 Hz", "output.step=2e-4 s", "accuracy.mesh=[4, 48]")
+UNTIL = 0.1
+
+
+@pytest.fixture(scope="module")
+def found() -> AccuracyLadder:
+    return accuracy(load_case("jeffcott", QUICK), UNTIL)
+
+
+def test_the_ladder_has_every_mesh_with_every_tolerance(found: AccuracyLadder) -> None:
+    finite = [item.rung for item in found.ladder if item.rung.theory == "finite"]
+    meshes, tolerances = {rung.mesh for rung in finite}, {rung.tolerance for rung in finite}
+    assert meshes == {(2, 24), (4, 48), (6, 72)}
+    assert sorted(tolerances) == pytest.approx([1e-6, 1e-5, 1e-4, 1e-3])
+    assert len(finite) == len(meshes) * len(tolerances)
+    assert {item.rung.mesh for item in found.ladder if item.rung.theory == "short"} == {None}
+
+
+def test_the_plan_marks_its_own_rung(found: AccuracyLadder) -> None:
+    planned = [item.rung for item in found.ladder if item.planned]
+    assert planned == [planned_rung(make_plan(load_case("jeffcott", QUICK)))]
+    assert planned[0].mesh == (4, 48)
+
+
+def test_the_reference_is_finer_and_says_how_sure_it_is(found: AccuracyLadder) -> None:
+    reference, change = found.reference, found.reference.error
+    assert reference.rung.mesh == (8, 96)
+    assert found.coarser.mesh == (6, 72)
+    assert found.coarser.tolerance == pytest.approx(2.0 * reference.rung.tolerance)
+    assert 0.0 < change.eccentricity_rms < change.eccentricity_largest
+    planned = next(item for item in found.ladder if item.planned)
+    assert change.eccentricity_largest < 0.5 * planned.error.eccentricity_largest
+
+
+def test_errors_are_those_of_the_runs(found: AccuracyLadder, tmp_path: Path) -> None:
+    """The short bearing carries less than the finite one: its error is that of the theory, whatever the tolerance."""
+    short = [item.error for item in found.ladder if item.rung.theory == "short"]
+    assert all(error.eccentricity_largest > 0.01 and error.force_relative > 0.1 for error in short)
+    assert all(item.error.until_s == UNTIL for item in found.ladder)
+    end = 20.0 + 40.0 * UNTIL / 0.4
+    settings = [*QUICK, f"speed.duration={UNTIL} s", f"speed.to={end} Hz"]
+    fine = load_case("jeffcott", [*settings, "accuracy.mesh=[8, 96]", "accuracy.tolerance=2e-7"])
+    exact = runup(fine, tmp_path / "a.h5")
+    own = runup(load_case("jeffcott", settings), tmp_path / "b.h5")
+    planned = next(item for item in found.ladder if item.planned)
+    apart = np.abs(own["eccentricity"] - exact["eccentricity"])
+    assert planned.error.eccentricity_largest == pytest.approx(apart.max(), rel=1e-6)
+
+
+def test_a_tighter_tolerance_and_a_finer_mesh_are_closer(found: AccuracyLadder) -> None:
+    by_rung = {(item.rung.mesh, round(item.rung.tolerance, 9)): item.error for item in found.ladder}
+    assert by_rung[(6, 72), 1e-6].eccentricity_rms < by_rung[(6, 72), 1e-4].eccentricity_rms
+    assert by_rung[(6, 72), 1e-6].force_relative < by_rung[(2, 24), 1e-6].force_relative
+
+
+def made(cpu_s: float, error: float) -> RungResult:
+    rung = Rung("finite", "half-sommerfeld", (1, 12), 1e-5, "dynamic-static")
+    return RungResult(rung, "finished", cpu_s, RungError(error, error, 1.0, np.nan, np.nan))
+
+
+def test_the_front_is_what_nothing_cheaper_beats(found: AccuracyLadder) -> None:
+    results = [made(1.0, 0.1), made(2.0, 0.2), made(3.0, 0.01), made(4.0, 0.01), made(5.0, np.nan)]
+    assert replace(found, ladder=tuple(results)).front == (results[0], results[2])
+
+
+def test_a_film_without_a_short_theory_has_no_such_rung() -> None:
+    case = load_case("jeffcott", [*QUICK, "film.cavitation=reynolds"])
+    rungs = list(ladder(case, planned_rung(make_plan(case))))
+    assert {rung.theory for rung in rungs} == {"finite"}
+    with pytest.raises(InputError, match="short"):
+        list(ladder(case, planned_rung(make_plan(case)), theories=["short"]))
+
+
+def test_names_that_there_are_not() -> None:
+    with pytest.raises(InputError) as caught:
+        accuracy(load_case("jeffcott", QUICK), theories=["long"], couplings=["glue"])
+    assert [fault.key for fault in caught.value.faults] == ["--theory", "--coupling"]
+
+
+def test_a_run_shorter_than_a_sample_is_refused() -> None:
+    with pytest.raises(InputError, match="output step"):
+        accuracy(load_case("jeffcott", QUICK), 1e-5)
+
+
+def test_the_picture_marks_plan_and_front(found: AccuracyLadder) -> None:
+    figure = accuracy_figure(found)
+    axes = figure.axes[0]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    labels = axes.get_legend_handles_labels()[1]
+    assert {"short", "finite 4 x 48", "Pareto front", "choice of the plan"} <= set(labels)
+    with pytest.raises(ValueError, match="rung"):
+        accuracy_figure(replace(found, ladder=()))
+
+
+def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = tmp_path / "a.png"
+    settings = [part for setting in QUICK for part in ("--set", setting)]
+    options = ["--until", "0.02 s", "--theory", "short", "--json", "-o", str(picture)]
+    code = frb(["accuracy", "jeffcott", *settings, *options])
+    out = capsys.readouterr()
+    document = json.loads(out.out)
+    assert code == 0
+    assert picture.stat().st_size > 10_000
+    assert set(document["ladder"][0]) >= {
+        "theory", "cavitation", "mesh", "tolerance", "coupling", "cpu_s", "error", "planned"}
+    assert document["reference"]["change"]["window_s"] == [0.0, 0.02]
+    assert sum(item["planned"] for item in document["ladder"]) == 1
+    assert "Pareto" in out.err

@@ -1,0 +1,182 @@
+"""Beam elements against exact frequencies of beams and disks, and what a rigid body must keep."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.linalg import eigh, expm
+from scipy.optimize import brentq
+
+from frbcli.rotor.beam import Plane, Section, beam
+from frbcli.rotor.reduction import free_modes, reduction_error, whirl_modes
+from frbcli.rotor.turbocharger import Journal, Wheel, wheels_on_shaft
+
+Array = NDArray[np.float64]
+
+SLENDER = Section(1.0, 5e-4, 0.0, 7850.0, 210e9, 0.3)
+THICK = Section(0.2, 0.05, 0.02, 7850.0, 210e9, 0.3)
+STEPPED = (Section(0.05, 0.02, 0.0, 7850.0, 210e9, 0.3), Section(0.08, 0.03, 0.01, 4500.0, 110e9, 0.34))
+NO_SHAFT = Section(0.1, 0.02, 0.0, 1e-6, 1e22, 0.3)  # next to no mass, next to rigid
+
+
+def pinned(plane: Plane) -> Array:
+    """Indices of the degrees of freedom that are left when both ends are held."""
+    return np.delete(np.arange(len(plane.mass)), [0, len(plane.mass) - 2])
+
+
+def pinned_frequencies(plane: Plane) -> Array:
+    kept = np.ix_(pinned(plane), pinned(plane))
+    return np.sqrt(eigh(plane.stiffness[kept], plane.mass[kept], eigvals_only=True))
+
+
+def exact_pinned(section: Section, half_waves: int, omega: float = 0.0) -> float:
+    """Slowest forward whirl of a pinned Timoshenko shaft, v = V sin(k z), psi = P cos(k z), polar inertia 2 rho I."""
+    k = half_waves * math.pi / section.length
+    shear, bending = section.shear_stiffness, section.youngs_modulus * section.second_moment
+    line, rotary = section.density * section.area, section.density * section.second_moment
+    roots = np.roots(
+        np.polysub(
+            np.polymul([line, 0.0, -shear * k**2], [rotary, -2 * rotary * omega, -bending * k**2 - shear]),
+            [(shear * k) ** 2],
+        )
+    )
+    return float(np.min(roots.real[roots.real > 0]))
+
+
+def free_end_determinant(sections: tuple[Section, ...], omega: float) -> float:
+    """Zero where free ends fit the exact solution, by transfer matrices of (v, psi, moment, shear force)."""
+    transfer = np.eye(4)
+    for part in sections:
+        bending, shear = part.youngs_modulus * part.second_moment, part.shear_stiffness
+        line, rotary = part.density * part.area, part.density * part.second_moment
+        rates = np.zeros((4, 4))
+        rates[0, 1], rates[0, 3] = 1.0, 1.0 / shear
+        rates[1, 2] = 1.0 / bending
+        rates[2, 1], rates[2, 3] = -rotary * omega**2, -1.0
+        rates[3, 0] = -line * omega**2
+        transfer = expm(rates * part.length) @ transfer
+    return float(np.linalg.det(transfer[2:, :2]))
+
+
+def test_slender_free_beam_is_that_of_euler_and_bernoulli() -> None:
+    """(beta L) of a free-free beam."""
+    found = free_modes(beam([SLENDER], [])).frequencies[2:5]
+    stiffness = SLENDER.youngs_modulus * SLENDER.second_moment / (SLENDER.density * SLENDER.area)
+    exact = np.array([4.730040745, 7.853204624, 10.995607838]) ** 2 * math.sqrt(stiffness)
+    assert found == pytest.approx(exact, rel=1e-5)  # shear and rotary inertia: 3e-6 at the third
+
+
+def extrapolated(coarse: Array, fine: Array) -> Array:
+    """The limit of a second order from meshes one of which is twice as fine."""
+    return (4 * fine - coarse) / 3
+
+
+def test_thick_pinned_beam() -> None:
+    found = extrapolated(*(pinned_frequencies(beam([THICK], [], n))[:3] for n in (80, 160)))
+    assert found == pytest.approx([exact_pinned(THICK, n) for n in (1, 2, 3)], rel=5e-8)
+
+
+@pytest.mark.parametrize("sections", [(THICK,), STEPPED], ids=["thick", "stepped"])
+def test_free_beams_against_transfer_matrices(sections: tuple[Section, ...]) -> None:
+    for found in extrapolated(*(free_modes(beam(sections, [], n)).frequencies[2:5] for n in (78, 156))):
+        exact = brentq(lambda omega: free_end_determinant(sections, omega), 0.999 * found, 1.001 * found, rtol=1e-12)
+        assert found == pytest.approx(exact, rel=2e-7)
+
+
+@pytest.mark.parametrize(("section", "order", "meshes"), [(THICK, 2.0, (24, 48, 96)), (SLENDER, 4.0, (6, 12, 24))])
+def test_order_of_convergence(section: Section, order: float, meshes: tuple[int, ...]) -> None:
+    """The exact static solution of a slender element is a cubic; where shear counts, slopes are next to linear."""
+    errors = [pinned_frequencies(beam([section], [], n))[2] / exact_pinned(section, 3) - 1 for n in meshes]
+    orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert np.all(np.abs(orders - order) < 0.1)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0], ids=["forward", "backward"])
+def test_gyroscopic_whirl_of_a_thick_pinned_shaft(direction: float) -> None:
+    """Backward whirl is forward whirl of a shaft that turns the other way."""
+    omega, plane = direction * 3000.0, beam([THICK], [], 160)
+    kept = np.ix_(pinned(plane), pinned(plane))
+    mass, stiffness, polar = plane.mass[kept], plane.stiffness[kept], plane.polar[kept]
+    n = len(mass)
+    state = np.block([[np.zeros((n, n)), np.eye(n)], list(np.linalg.solve(mass, np.hstack([stiffness, omega * polar]))
+                                                          .reshape(n, 2, n).swapaxes(0, 1))])  # fmt: skip
+    values = np.linalg.eigvals(state).real
+    assert np.min(values[values > 0]) == pytest.approx(exact_pinned(THICK, 1, omega), rel=5e-6)
+    assert abs(exact_pinned(THICK, 1, omega) / exact_pinned(THICK, 1) - 1) > 1e-3
+
+
+def test_shear_coefficient_is_that_of_cowper() -> None:
+    nu = 0.3
+    assert SLENDER.shear_coefficient == pytest.approx(6 * (1 + nu) / (7 + 6 * nu))
+    tube = Section(1.0, 1.0, 1.0 - 1e-9, 7850.0, 210e9, nu)
+    assert tube.shear_coefficient == pytest.approx(2 * (1 + nu) / (4 + 3 * nu))  # thin-walled
+
+
+def test_nodes_lie_on_every_end_and_station() -> None:
+    plane = beam(STEPPED, [0.0333, 0.05 + 1e-12, 0.13], 10)
+    for place in (0.0, 0.05, 0.0333, 0.13):
+        assert np.min(np.abs(plane.positions - place)) < 1e-9
+    gaps = np.diff(plane.positions)
+    assert 1e-3 < gaps.min() <= gaps.max() <= 0.013 * (1 + 1e-6)
+    with pytest.raises(ValueError, match="no node"):
+        plane.node(0.0123)
+
+
+def test_a_rigid_body_keeps_mass_and_inertias_and_is_not_strained() -> None:
+    wheel = Wheel("w", 0.05, 2.0, 3e-3, 2e-3, 0.0, 0.0)
+    plane = wheels_on_shaft(STEPPED, [wheel], [])
+    z = plane.positions
+    shift = np.column_stack([np.ones_like(z), np.zeros_like(z)]).ravel()
+    tilt = np.column_stack([z, np.ones_like(z)]).ravel()
+    parts = [(0.0, STEPPED[0]), (0.05, STEPPED[1])]
+    masses = [part.density * part.area * part.length for _, part in parts]
+    about_origin = [
+        mass * (start**2 + start * part.length + part.length**2 / 3) + part.density * part.second_moment * part.length
+        for mass, (start, part) in zip(masses, parts, strict=True)
+    ]
+    polar = [2 * part.density * part.second_moment * part.length for _, part in parts]
+    assert shift @ plane.mass @ shift == pytest.approx(sum(masses) + 2.0, rel=1e-12)
+    assert tilt @ plane.mass @ tilt == pytest.approx(sum(about_origin) + 2.0 * 0.05**2 + 2e-3, rel=1e-12)
+    assert tilt @ plane.polar @ tilt == pytest.approx(sum(polar) + 3e-3, rel=1e-12)
+    assert shift @ plane.polar @ tilt == pytest.approx(0.0, abs=1e-15)
+    scale = np.max(np.abs(plane.stiffness))
+    assert np.max(np.abs(plane.stiffness @ np.column_stack([shift, tilt]))) < 1e-10 * scale
+    modes = free_modes(plane)
+    assert modes.frequencies[0] == modes.frequencies[1] == 0.0 < modes.frequencies[2]
+    assert modes.weight[0] ** 2 == pytest.approx(sum(masses) + 2.0, rel=1e-12)
+    assert np.max(np.abs(modes.weight[1:])) < 1e-9
+
+
+@pytest.mark.parametrize("polar", [4e-3, 1e-3], ids=["disk", "drum"])
+def test_exact_gyroscopic_splitting_of_a_rigid_disk(polar: float) -> None:
+    """Two springs s at a distance l from the disk: I_d omega^2 - I_p Omega omega - 2 s l^2 = 0, and m omega^2 = 2 s."""
+    wheel = Wheel("w", 0.05, 3.0, polar, 2.5e-3, 0.0, 0.0)
+    ends = [Journal("a", 0.0), Journal("b", 0.1)]
+    modes = free_modes(wheels_on_shaft([NO_SHAFT], [wheel], ends)).lowest(2)
+    spring, arm, omega = 1e6, 0.05, 2 * math.pi * 500
+    springs = np.stack([modes.at(end.position) for end in ends])
+    found = whirl_modes(modes, springs, np.full(2, spring), omega)
+    split = np.roots([wheel.diametral, -polar * omega, -2 * spring * arm**2])
+    shift = math.sqrt(2 * spring / wheel.mass)
+    assert np.sort(found.frequencies) == pytest.approx(sorted([*split, shift, -shift]), rel=1e-9)
+    assert whirl_modes(modes, springs[:0], np.zeros(0), omega).frequencies == pytest.approx(
+        [omega * polar / wheel.diametral], rel=1e-6
+    )
+
+
+def test_what_a_reduction_leaves_out() -> None:
+    """All modes together have the flexibility of the shaft between its ends; the missing part is what the rest adds."""
+    ends = [Journal("a", 0.0), Journal("b", 0.2)]
+    modes = free_modes(wheels_on_shaft([THICK], [], ends))
+    springs = np.stack([modes.at(end.position) for end in ends])
+    none = reduction_error(modes, len(modes.frequencies), springs, np.full(2, 1e7), 100.0)
+    assert none.frequency == 0.0
+    assert not none.missing_flexibility.any()
+    few, more = (reduction_error(modes, count, springs, np.full(2, 1e7), 100.0) for count in (4, 8))
+    step = springs[:, 4:8] / modes.frequencies[4:8]
+    assert few.missing_flexibility - more.missing_flexibility == pytest.approx(step @ step.T, rel=1e-9)
+    assert 0 < more.frequency < few.frequency < 0.05
+    assert np.all(few.reduced >= few.full)  # Rayleigh: fewer modes are stiffer, where nothing turns quickly

@@ -1,0 +1,161 @@
+"""The compiled kernel of films on volumes against the plain one, and its derivatives against differences."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from frbcli.film.balance import Balance, Storage
+from frbcli.film.block_cyclic import ENTRIES, solve_ring
+from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.law import Law, Scales
+from frbcli.film.cavitation.peeken import Peeken
+from frbcli.film.cavitation.penalty import Penalty
+from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cell_kernel import FLOWS, SIDES, STATES, balances, cell_states, film_newton, wright_omega
+from frbcli.film.cell_law import cell_law, law_code
+from frbcli.film.gap import Hole, Section, gap_height
+from frbcli.film.volume_data import volume_films
+from frbcli.film.volume_grid import volume_grid
+from frbcli.film.volumes import Motion, VolumeFilm
+
+LAWS: dict[str, Law] = {
+    "sommerfeld": Sommerfeld(),
+    "half-sommerfeld": Sommerfeld(clips=True),
+    "reynolds": Reynolds(),
+    "penalty": Penalty(0.01, 30.0),
+    "peeken": Peeken(0.1),
+    "elrod": Elrod(),
+    "elrod, compressible": Elrod(2e4),
+    "two-phase 0.9": TwoPhase(0.9),
+    "two-phase 0.9999": TwoPhase(0.9999, 1e-6),
+}
+HOLES = (Hole(1.0, 0.005, 0.2, 0.0018, 1.5e5, True), Hole(-2.0, 0.0095, 0.15, 0.0012, 0.5e5, False))
+M, K = 30, 6
+
+
+def section(near: str, far: str) -> Section:
+    return Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 0.9e5, 2, near, far, 0.7e5, holes=HOLES)
+
+
+def film_of(law: Law, near: str, far: str) -> VolumeFilm:
+    cut = section(near, far)
+    grid = volume_grid(cut, np.linspace(0, 2 * np.pi, M + 1), np.linspace(0, 1, K + 1))
+    return VolumeFilm(cut, grid, law, 500.0)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_compiled_laws_are_the_plain_ones(law: Law) -> None:
+    w = np.concatenate([np.linspace(-1.3, 0.4, 400), [-1e-9, 0.0, 1e-9]])
+    scales = Scales(reference=900.0, cavitation=-60.0, ambient=500.0)
+    plain = law.cells(w, scales)
+    kind, first, second = law_code(law)
+    names = ("pressure", "fraction", "source", "pressure_slope", "fraction_slope", "source_slope")
+    compiled = np.array([cell_law(kind, first, second, x, 900.0, -60.0, 500.0) for x in w]).T
+    for name, values in zip(names, compiled, strict=True):
+        expected = getattr(plain, name)
+        assert np.allclose(values, expected, rtol=1e-9, atol=1e-9 * np.max(np.abs(expected)) + 1e-300), name
+
+
+def test_wrights_function_solves_its_equation() -> None:
+    for x in np.concatenate([np.linspace(-35.0, 60.0, 500), [200.0, 1e4]]):
+        omega = wright_omega(x)
+        assert omega + math.log(omega) == pytest.approx(x, abs=1e-12, rel=1e-13)
+    assert wright_omega(-50.0) == pytest.approx(math.exp(-50.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_ring_solver_against_a_dense_one(closed: bool) -> None:
+    random = np.random.default_rng(1)
+    stencil = -random.uniform(0.2, 1.0, (ENTRIES, M, K))
+    stencil[0] = 5.0
+    stencil[3, :, 0] = stencil[4, :, -1] = 0.0
+    if closed:
+        stencil[2, -1] = 0.0
+    right, fields = random.random((M, K, SIDES)), np.zeros((M, K, K + SIDES))
+    fields[:, :, K:] = right
+    solve_ring(stencil, np.empty((M, K, K)), fields)
+    cell = np.arange(M * K).reshape(M, K)
+    matrix = np.zeros((M * K, M * K))
+    matrix[cell, cell] = stencil[0]
+    matrix[cell, np.roll(cell, 1, axis=0)] += stencil[1]
+    matrix[cell, np.roll(cell, -1, axis=0)] += stencil[2]
+    matrix[cell[:, 1:], cell[:, :-1]] = stencil[3, :, 1:]
+    matrix[cell[:, :-1], cell[:, 1:]] = stencil[4, :, :-1]
+    exact = np.linalg.solve(matrix, right.reshape(-1, SIDES))
+    assert np.allclose(fields[:, :, K:].reshape(-1, SIDES), exact, rtol=1e-11, atol=1e-13)
+
+
+def arrays() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    return (
+        np.zeros((STATES, M, K)),
+        np.zeros((ENTRIES, M, K)),
+        np.zeros((M, K, K)),
+        np.zeros((M, K, K + SIDES)),
+        np.zeros(FLOWS),
+    )
+
+
+@pytest.mark.parametrize("ends", [("oil-bath", "groove"), ("free-to-air", "symmetry"), ("free-to-air", "oil-bath")])
+@pytest.mark.parametrize("omega", [300.0, -200.0])
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_balances_are_the_plain_ones(law: Law, omega: float, ends: tuple[str, str]) -> None:
+    film = film_of(law, *ends)
+    random = np.random.default_rng(2)
+    w, past, rate = random.uniform(-0.6, 0.6, (M, K)), random.uniform(0.0, 3e3, (M, K)), 2e3
+    motion = Motion((0.3, -0.5), (10.0, 40.0), omega)
+    gap = gap_height(film.section, motion.d, film.grid.centre)[:, None]
+    residual, _, plain = Balance(film.section, film.grid, motion).residual(film.cells(w), Storage(rate * gap, past))
+    data = volume_films([film])
+    states, stencil, _, fields, flows = arrays()
+    parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
+    cell_states(parts[0], parts[3], *law_code(law)[1:], 0.0, w, states)
+    balances(*parts, states, *motion.d, omega, rate, past, 1e-4, 0.0, 0.0, 0.0, stencil, fields, flows)
+    size = np.max(np.abs(residual))
+    assert np.allclose(-fields[:, :, K], residual, rtol=1e-10, atol=1e-11 * size)
+    for entry, name in enumerate(("centre", "before", "behind", "below", "above")):
+        expected = getattr(plain, name)
+        assert np.allclose(stencil[entry], expected, rtol=1e-10, atol=1e-11 * np.max(np.abs(expected))), name
+
+
+@pytest.mark.parametrize("remembers", [True, False])
+@pytest.mark.parametrize("name", LAWS)
+def test_derivatives_by_the_journals_velocity(name: str, remembers: bool) -> None:
+    law = LAWS[name]
+    film = film_of(law, "free-to-air", "groove")
+    data = volume_films([film])
+    parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
+    random = np.random.default_rng(3)
+    g, spin, rate = 1e-4, 150.0, 1e4 if remembers else 0.0
+    past = random.uniform(0.5, 1.0, (M, K)) * rate
+    start = np.array([0.2, -0.4])
+
+    def solved(v: np.ndarray) -> tuple[float, ...]:
+        """Loads of a film in equilibrium with a journal that moves with v; v is that against a grid that turns."""
+        w = film.full() + 0.01
+        d = start + g * v
+        against = v - spin * np.array([-d[1], d[0]])
+        for _ in range(60):
+            states, stencil, blocks, fields, flows = arrays()
+            loads = film_newton(
+                *parts, w, d[0], d[1], 250.0, rate, past, g, against[0], against[1], spin,
+                states, stencil, blocks, fields, flows,
+            )  # fmt: skip
+            w = w + fields[:, :, K]
+            if np.max(np.abs(fields[:, :, K])) < 1e-12:
+                break
+        found: tuple[float, ...] = loads
+        return found
+
+    at = np.array([30.0, 50.0])
+    loads = solved(at)
+    for side, direction in enumerate(np.eye(2)):
+        step = 1e-3
+        loads_1, loads_0 = solved(at + step * direction), solved(at - step * direction)
+        change = (np.array(loads_1[:2]) - np.array(loads_0[:2])) / (2 * step)
+        expected = np.array([loads[2 + side], loads[4 + side]])
+        assert np.allclose(change, expected, rtol=2e-4, atol=1e-4 * np.max(np.abs(loads[2:])))

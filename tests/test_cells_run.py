@@ -1,0 +1,143 @@
+"""Run-ups on films with cells: oil is kept, nothing depends on pauses, the limits are those of films without cells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import frbcli
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.system import System, make_system, run_up_profile
+from frbcli.solve.march import advance
+from frbcli.solve.oil import net_flow, oil_defect
+from frbcli.solve.run import control_of
+from frbcli.solve.start import first_state, rotor_data
+from frbcli.solve.state import RUNNING, State
+from frbcli.solve.tableau import METHODS
+
+Array = NDArray[np.float64]
+SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]
+
+
+def case_of(name: str, *settings: str) -> Case:
+    return load_case(name, [*SHORT, *settings])
+
+
+def planned(case: Case, **changes: object) -> tuple[Plan, System]:
+    plan = replace(make_plan(case), **changes)  # type: ignore[arg-type]
+    return plan, make_system(case, plan)
+
+
+def run(case: Case, plan: Plan, system: System, state: State | None = None, budget: int = 10**6) -> tuple[Array, State]:
+    """Displacements (rows, n) at the output times, and the last state."""
+    profile = run_up_profile(case)
+    state = first_state(case.start, system, profile) if state is None else state
+    rows, n = 4000, system.rotor.size
+    out_q, out_v, out_oil = np.empty((rows, n)), np.empty((rows, n)), np.empty((rows, len(system.volumes)))
+    status, written = RUNNING, 0
+    tableau, control, rotor = METHODS[plan.method].tableau, control_of(case, plan), rotor_data(system, profile)
+    while status == RUNNING:
+        status, fresh = advance(
+            rotor, system.films, tableau, control, state, budget, out_q[written:], out_v[written:], out_oil[written:]
+        )
+        written += fresh
+    return out_q[:written], state
+
+
+@pytest.mark.parametrize(
+    "settings", [["film.cavitation=two-phase"], ["film.cavitation=elrod", "bearing.supply.pressure=2bar"]]
+)
+def test_all_oil_is_accounted_for(settings: list[str]) -> None:
+    case = case_of("jeffcott", "start.position=resting", *settings)
+    plan, system = planned(case)
+    film = system.volumes[0]
+    before = first_state(case.start, system, run_up_profile(case))
+    _, after = run(case, plan, system)
+    free = ~film.grid.fixed
+
+    def oil(state: State) -> float:
+        return float((film.grid.area * state.wet[2, 0])[free].sum())
+
+    passed = float(after.flows[0, 0].max())
+    assert passed > 1.0  # several times the film's own oil
+    assert oil(after) - oil(before) == pytest.approx(net_flow(after, 0), abs=1e-10 * passed)
+    defect = oil_defect(system, after)
+    assert defect is not None
+    assert defect < 1e-4
+
+
+@pytest.mark.parametrize("name", ["jeffcott", "floating-ring"])
+def test_pauses_do_not_change_the_run(name: str) -> None:
+    case = case_of(name, "film.cavitation=two-phase", "speed.duration=0.02s")
+    plan, system = planned(case)
+    whole, end = run(case, plan, system)
+    pieces, paused = run(case, plan, system, budget=7)
+    np.testing.assert_array_equal(pieces, whole)
+    np.testing.assert_array_equal(paused.wet, end.wet)
+
+
+def test_half_sommerfeld_on_cells_is_that_of_the_table() -> None:
+    case = case_of("jeffcott", "accuracy.mesh=[8,96]")
+    (_, closed), (plan, cells) = planned(case), planned(case, cells=(96, 8))
+    exact, _ = run(case, make_plan(case), closed)
+    found, _ = run(case, plan, cells)
+    clearance = closed.clearances[0]
+    assert np.max(np.abs(found[:, :2] - exact[:, :2])) < 3e-3 * clearance
+
+
+def test_a_rotor_that_rests_stays_there() -> None:
+    settings = [
+        "film.cavitation=two-phase",
+        "start.position=resting",
+        "speed.from=60Hz",
+        "speed.to=60Hz",
+        "rotor.unbalance=0 kg*m",
+    ]
+    case = case_of("jeffcott", *settings)
+    plan, system = planned(case)
+    q, _ = run(case, plan, system)
+    assert np.max(np.abs(q - q[0])) < 2e-5 * system.clearances[0]
+
+
+def test_a_tighter_tolerance_moves_the_run_by_less_than_the_stated_error(tmp_path: Path) -> None:
+    settings = ["film.cavitation=two-phase", "bearing.supply.pressure=2bar"]
+    loose = frbcli.runup(case_of("jeffcott", *settings), tmp_path / "loose.h5")
+    tight = frbcli.runup(case_of("jeffcott", *settings, "accuracy.tolerance=1e-5"), tmp_path / "tight.h5")
+    apart = np.max(
+        np.abs(np.asarray(loose.signals["eccentricity"].values) - np.asarray(tight.signals["eccentricity"].values))
+    )
+    stated = loose.error["time_integration"]
+    assert stated is not None
+    assert apart < stated
+
+
+@pytest.mark.parametrize("cavitation", ["reynolds", "penalty", "peeken", "elrod", "two-phase"])
+def test_every_model_runs_and_records_its_oil(cavitation: str, tmp_path: Path) -> None:
+    run_ = frbcli.runup(
+        case_of("jeffcott", f"film.cavitation={cavitation}", "bearing.supply.pressure=2bar"), tmp_path / "run.h5"
+    )
+    assert run_.status == "finished"
+    force_error = run_.error["film_force_relative"]
+    assert force_error is not None
+    assert force_error < 0.05
+    remembers = cavitation in ("peeken", "elrod", "two-phase")
+    assert ("oil_fraction" in run_.signals) == remembers
+    assert (run_.error["oil_balance_relative"] is not None) == remembers
+
+
+def test_elrod_tends_to_reynolds_where_oil_comes_in(tmp_path: Path) -> None:
+    # The groove lies where the gap is widest: from there on the film is full up to its only rupture.
+    settings = ["speed.from=30Hz", "speed.to=30Hz", "start.position=resting", "rotor.unbalance=0 kg*m"]
+    settings.append("bearing.supply.position=100 deg")
+    ends = [
+        frbcli.runup(case_of("axial-groove", f"film.cavitation={model}", *settings), tmp_path / f"{model}.h5")
+        for model in ("reynolds", "elrod")
+    ]
+    last = [float(np.asarray(item.signals["eccentricity"].values)[-1]) for item in ends]
+    assert last[1] == pytest.approx(last[0], abs=1e-3)

@@ -1,0 +1,144 @@
+"""Couplings of rotor and films (chapter 5): how they approach each other, and what they cost."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from frbcli.analysis.compare import compare
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.errors import InputError
+from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_system, run_up_profile
+from frbcli.solve.cosimulation import in_turn, micro_cost
+from frbcli.solve.macro_step import advance_in_turn
+from frbcli.solve.march import advance
+from frbcli.solve.micro_step import MICRO_STEPS, parabola
+from frbcli.solve.run import control_of, runup
+from frbcli.solve.start import first_state, rotor_data
+from frbcli.solve.state import FINISHED, STEPS, State
+from frbcli.solve.tableau import METHODS
+
+Array = NDArray[np.float64]
+
+HEAVY = ("film.theory=short", "speed.from=20 Hz", "speed.to=22 Hz", "speed.duration=0.05 s", "output.step=1e-4 s")
+WET = ("film.cavitation=two-phase", "bearing.supply.pressure=2 bar", "accuracy.mesh=[3, 12]", "speed.from=20 Hz",
+       "speed.to=21 Hz", "speed.duration=2 ms", "output.step=2e-5 s")  # fmt: skip
+FREE = 1e6  # a tolerance that leaves all steps at their longest
+
+
+def marched(case: Case, apart: bool, longest: float, tolerance: float) -> tuple[Array, State]:
+    """Displacements over the clearance at the output times, and the last state."""
+    plan = make_plan(case)
+    system, profile = make_system(case, plan), run_up_profile(case)
+    control = control_of(case, plan)._replace(longest_step=longest, tolerance=tolerance, steps_per_revolution=1.0)
+    state = first_state(case.start, system, profile)
+    if apart:
+        state = in_turn(system, state, float(profile.speeds[0]))
+    rows = int(profile.end / control.output_step) + 10
+    q, v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
+    oil = np.empty((rows, len(system.volumes)))
+    step = advance_in_turn if apart else advance
+    tableau = METHODS["esdirk4"].tableau
+    status, written = step(rotor_data(system, profile), system.films, tableau, control, state, 10**8, q, v, oil)
+    assert status == FINISHED
+    return q[:written] / system.clearances[0], state
+
+
+def test_parabola_is_exact_for_a_parabola() -> None:
+    times, weights = np.array([0.1, 0.4, 0.5]), np.empty(3)
+    parabola(times, 0.9, weights)
+    assert weights @ (3.0 - 2.0 * times + 5.0 * times**2) == pytest.approx(3.0 - 2.0 * 0.9 + 5.0 * 0.81)
+
+
+def test_a_rigid_rotor_approaches_the_monolithic_one_with_third_order() -> None:
+    """Forces are extrapolated by parabolas: what they are off by shrinks with the cube of the macro step."""
+    case = load_case("rigid", HEAVY)
+    exact, _ = marched(case, apart=False, longest=1e-5, tolerance=1e-10)
+    errors = []
+    for macro_step in (20e-6, 10e-6, 5e-6):
+        found, state = marched(case, apart=True, longest=macro_step, tolerance=FREE)
+        assert state.numbers[STEPS] == pytest.approx(case.speed.duration / macro_step, rel=0.1)
+        errors.append(np.abs(found - exact).max())
+    orders = [math.log2(a / b) for a, b in pairwise(errors)]
+    assert all(2.5 < order < 3.5 for order in orders)
+    assert errors[-1] < 1e-7
+
+
+def test_beyond_its_stable_step_a_co_simulation_is_off_but_its_control_holds_it() -> None:
+    """The method is explicit. Left alone at 80 us it goes astray; the same longest step under control does not."""
+    case = load_case("rigid", HEAVY)
+    exact, _ = marched(case, apart=False, longest=1e-5, tolerance=1e-10)
+    alone, _ = marched(case, apart=True, longest=80e-6, tolerance=FREE)
+    held, _ = marched(case, apart=True, longest=80e-6, tolerance=1e-6)
+    assert np.abs(alone - exact).max() > 1e-2
+    assert np.abs(held - exact).max() < 1e-4
+
+
+def test_a_film_with_oil_of_its_own_follows_as_in_the_monolithic_system() -> None:
+    case = load_case("jeffcott", WET)
+    exact, _ = marched(case, apart=False, longest=1e-5, tolerance=1e-7)
+    found, state = marched(case, apart=True, longest=5e-7, tolerance=1e-6)
+    assert np.abs(exact[-1]).max() > 1e-3
+    np.testing.assert_allclose(found, exact, atol=2e-5)
+    cost = micro_cost(state, 1.0)
+    assert cost["micro_steps_per_macro_step"] >= 1.0
+    assert cost["micro_steps"] == state.numbers[MICRO_STEPS]
+
+
+def test_the_case_chooses_the_coupling() -> None:
+    assert make_plan(load_case("jeffcott")).coupling == "dynamic-static"
+    assert make_plan(load_case("jeffcott", ["film.cavitation=elrod"])).coupling == "monolithic"
+    plan = make_plan(load_case("jeffcott", ["film.coupling=co-simulation", "accuracy.macro_step=2 us"]))
+    assert (plan.coupling, plan.macro_step) == ("co-simulation", 2e-6)
+    assert make_plan(load_case("jeffcott", ["film.coupling=monolithic"])).macro_step is None
+    assert {chosen_coupling("auto", cavitation) for cavitation in ("penalty", "peeken")} <= set(COUPLINGS)
+
+
+@pytest.mark.parametrize("coupling", ["dynamic-static", "dynamic-static-semi-implicit"])
+def test_oil_that_is_kept_is_no_static_film(coupling: str) -> None:
+    with pytest.raises(InputError, match="keeps its oil"):
+        make_plan(load_case("jeffcott", ["film.cavitation=two-phase", f"film.coupling={coupling}"]))
+
+
+def test_cells_are_not_solved_in_one_go() -> None:
+    with pytest.raises(InputError, match="has cells"):
+        make_plan(load_case("jeffcott", ["film.cavitation=reynolds", "film.coupling=dynamic-static-semi-implicit"]))
+
+
+QUICK = ("speed.duration=0.02 s", "speed.from=20 Hz", "speed.to=22 Hz", "output.step=1e-4 s", "accuracy.mesh=[4, 48]")
+
+
+def test_all_couplings_of_a_jeffcott_rotor_agree() -> None:
+    found = compare(load_case("jeffcott", QUICK), couplings=COUPLINGS)
+    assert [result.variant.coupled for result in found.results] == list(COUPLINGS)
+    monolithic, static, semi, apart = found.results
+    # A film without a state makes the same equations of both.
+    np.testing.assert_array_equal(static.run["eccentricity"], monolithic.run["eccentricity"])
+    assert 0.0 < semi.deviation.largest < 1e-4
+    assert semi.run.cost["film_solves"] < static.run.cost["film_solves"]
+    assert 0.0 < apart.deviation.largest < 1e-4
+    assert apart.run.cost["micro_steps_per_macro_step"] == 1.0
+    assert apart.run.cost["steps"] > 0.02 / 1e-6
+    table = found.to_pandas()
+    assert table["coupling"].tolist() == list(COUPLINGS)
+    assert table["micro_steps_per_macro_step"].isna().tolist() == [True, True, True, False]
+    assert (table["simulated_ms_per_hour"] > 0.0).all()
+
+
+def test_a_co_simulation_of_a_floating_ring(tmp_path: Path) -> None:
+    settings = [*QUICK, "film.cavitation=half-sommerfeld", "accuracy.mesh=[3, 12]", "speed.duration=2 ms"]
+    runs = [runup(load_case("floating-ring", [*settings, f"film.coupling={name}"]), tmp_path / f"{name}.h5")
+            for name in ("monolithic", "co-simulation")]  # fmt: skip
+    for name in ("eccentricity_inner", "eccentricity_outer"):
+        np.testing.assert_allclose(runs[1][name], runs[0][name], atol=1e-4)
+    speeds = [run["ring_speed_Hz"] for run in runs]
+    assert abs(speeds[0][-1]) > 1e-3
+    np.testing.assert_allclose(speeds[1], speeds[0], atol=1e-3 * abs(speeds[0][-1]))

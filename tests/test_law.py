@@ -1,0 +1,107 @@
+"""theta(p) of the conserving models: limits, the laws that the films are solved with, and the picture of them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli.case.load import load_case
+from frbcli.cli.main import run
+from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.law import Law, Scales
+from frbcli.film.cavitation.peeken import Peeken
+from frbcli.film.cavitation.saturation import elrod_fraction, peeken_fraction, two_phase_fraction
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.plot.law import law_figure
+
+CAVITY = 5.0  # 1/s, absolute
+SCALES = Scales(reference=3.0, cavitation=0.0, ambient=CAVITY)
+
+
+def curve(law: Law) -> tuple[np.ndarray, np.ndarray]:
+    """p / p_cav and theta (n,) of what a film is solved with."""
+    state = law.cells(np.linspace(-1.5, 0.5, 401), SCALES)
+    ratio, kept = 1.0 + state.pressure / CAVITY, state.fraction > 1e-3
+    return ratio[kept], state.fraction[kept]
+
+
+def test_curves_are_those_of_the_films() -> None:
+    ratio, fraction = curve(TwoPhase(0.9))
+    np.testing.assert_allclose(two_phase_fraction(ratio, 0.9), fraction, atol=1e-9)
+    ratio, fraction = curve(Peeken(0.1))
+    np.testing.assert_allclose(peeken_fraction(ratio, 0.1), fraction, atol=1e-12)
+    ratio, fraction = curve(Elrod(bulk_modulus=20.0 * CAVITY))
+    full = ratio > 1.0
+    np.testing.assert_allclose(elrod_fraction(ratio[full], 20.0), fraction[full], rtol=1e-12)
+    assert np.all(ratio[~full] == 1.0)  # every fraction at p_cav itself
+
+
+def test_fractions_at_known_places() -> None:
+    place = np.array([0.5, 1.0, 1.2])
+    assert elrod_fraction(place, np.inf) == pytest.approx([0.0, 1.0, 1.0])
+    assert elrod_fraction(place, 2.0) == pytest.approx([0.0, 1.0, np.exp(0.1)])
+    assert peeken_fraction(place, 0.1) == pytest.approx([1.0 / 1.1, 1.0, 1.0])  # r = alpha at half of p_cav
+    assert peeken_fraction(place, 1.0) == pytest.approx([0.5, 1.0, 1.0])
+    x_0, x_1 = 0.8, 0.9
+    fraction = two_phase_fraction(np.array([x_0, x_1, 1.0, 1.5]), x_1)
+    assert fraction == pytest.approx([1e-3 * x_0, 0.5 * (1.0 + 1e-3 * x_0), 1.0, 1.0005])
+
+
+def test_two_phase_step_tends_to_elrods() -> None:
+    ratio = np.array([0.9, 0.99, 0.999, 1.0, 1.1])
+    elrod = elrod_fraction(ratio, np.inf)
+    smooth, steep = (np.abs(two_phase_fraction(ratio, x) - elrod).max() for x in (0.9, 0.9999))
+    assert smooth > 0.9
+    assert steep < 2e-3
+
+
+def test_peekens_curve_tends_to_the_others_where_there_is_much_air() -> None:
+    """As said of figure 4.11."""
+    ratio = np.array([0.3, 0.6, 0.9])
+    low, high = (peeken_fraction(ratio, bunsen) for bunsen in (0.1, 100.0))
+    assert np.all(low > 0.8)
+    assert np.all(high < 0.1)
+
+
+@pytest.mark.parametrize("model", ["two-phase", "peeken", "elrod", "half-sommerfeld"])
+def test_picture_names_the_case_and_its_model(model: str) -> None:
+    settings = [f"film.cavitation={model}", "film.peeken.bunsen=0.3", "film.two-phase.steepness=0.97"]
+    figure = law_figure(load_case("bearing", settings))
+    assert figure.get_suptitle().startswith("Journal bearing, groove at one end")
+    left, right = figure.axes
+    assert "bar" in left.get_xlabel()
+    labels = [text.get_text() for axes in (left, right) for text in axes.get_legend().get_texts()]
+    own = [label for label in labels if label.endswith("(the case)")]
+    assert len(own) == {"two-phase": 2, "peeken": 1, "elrod": 1, "half-sommerfeld": 0}[model]
+    assert any("0.97" in label for label in labels)
+    assert any("0.3" in label for label in labels)
+    thick = [line for line in right.lines if line.get_linewidth() > 1.5]
+    assert len(thick) == (0 if model == "half-sommerfeld" else 1)
+
+
+def test_command_draws_a_case(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["plot", "bearing", "--what", "law", "--set", "film.cavitation=elrod", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found == {"command": "plot", "case": "bearing", "output": "bearing-law.png", "what": "law"}
+    assert (tmp_path / "bearing-law.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("bearing", "squeeze", "--what", "law"),
+        ("bearing", "--what", "law", "--from", "1 s"),
+        ("bearing", "--what", "law", "--set", "film.cavitation=nonsense"),
+        ("nonsense.toml", "--what", "law"),
+        ("run.h5", "--set", "film.cavitation=elrod"),
+    ],
+)
+def test_wrong_words_are_refused(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["plot", *words]) == 2
+    assert capsys.readouterr().err

@@ -1,0 +1,220 @@
+"""Rotor files of ROSS: shaft and disks are taken, faults are named, and the case stays whole in itself."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from frbcli.analysis.modes import natural_modes
+from frbcli.case.load import load_case, load_case_text
+from frbcli.case.schema import Case
+from frbcli.case.toml import to_toml
+from frbcli.errors import Fault, InputError
+
+STEEL = {"name": "Steel", "rho": 7810.0, "E": 211e9, "G_s": 81.2e9, "color": "#525252"}
+
+CASE = """
+[rotor]
+kind = "turbocharger"
+file = "rotor.toml"
+[[disk]]
+name = "Disk-1"
+unbalance = "2 g*mm"
+phase = "90 deg"
+[[disk]]
+name = "nut"
+position = "0 mm"
+mass = "0.1 kg"
+[[bearing]]
+kind = "single-film"
+position = "50 mm"
+width = "20 mm"
+diameter = "25 mm"
+clearance = "35 um"
+[[bearing]]
+kind = "single-film"
+position = "150 mm"
+width = "20 mm"
+diameter = "25 mm"
+clearance = "35 um"
+[oil]
+viscosity = "12 mPa*s"
+[speed]
+from = "0 Hz"
+to = "300 Hz"
+duration = "1 s"
+"""
+
+
+def shaft(n: int, length: float = 0.05, **other: Any) -> dict[str, Any]:
+    values = {"L": length, "idl": 0.0, "odl": 0.02, "idr": 0.0, "odr": 0.02, "n": n, "axial_force": 0, "torque": 0,
+              "shear_effects": True, "rotary_inertia": True, "gyroscopic": True, "shear_method_calc": "cowper",
+              "tag": f"ShaftElement {n}", "material": STEEL}  # fmt: skip
+    return {**values, **other}
+
+
+def disk(number: int, node: int, mass: float = 1.0) -> dict[str, Any]:
+    return {"n": node, "m": mass, "Id": 1e-3, "Ip": 1.5e-3, "tag": f"Disk {number}", "scale_factor": 1.0,
+            "color": "Firebrick"}  # fmt: skip
+
+
+def rotor_file() -> dict[str, Any]:
+    """Four elements, the third a tube, the last a cone; two disks; a bearing."""
+    elements = [shaft(0), shaft(1), shaft(2, idl=0.01, idr=0.01), shaft(3, odl=0.02, odr=0.03)]
+    data: dict[str, Any] = {"ross_version": "2.3.0", "parameters": {}}
+    data |= {f"ShaftElement_{element['tag']}": element for element in elements}
+    data |= {"DiskElement_Disk 0": disk(0, 0), "DiskElement_Disk 1": disk(1, 4, 2.0)}
+    return data | {"BearingElement_Bearing 0": {"n": 1, "kxx": [1e6], "cxx": [0.0], "tag": "Bearing 0"}}
+
+
+def case_with(data: dict[str, Any], folder: Path, text: str = CASE) -> Case:
+    (folder / "rotor.toml").write_text("# written by ROSS\n\n" + to_toml(data), encoding="utf-8")
+    (folder / "case.toml").write_text(text, encoding="utf-8")
+    return load_case(folder / "case.toml")
+
+
+def fault_of(data: dict[str, Any], folder: Path) -> Fault:
+    with pytest.raises(InputError) as caught:
+        case_with(data, folder)
+    return next(fault for fault in caught.value.faults if fault.key == "rotor.file")
+
+
+def test_shaft_and_disks(tmp_path: Path) -> None:
+    case = case_with(rotor_file(), tmp_path)
+    assert [round(part.length, 6) for part in case.shaft] == [0.1, 0.05, *[0.0125] * 4]  # equal neighbours are one
+    assert [part.inner_diameter for part in case.shaft] == [0.0, 0.01, 0.0, 0.0, 0.0, 0.0]
+    assert [part.diameter for part in case.shaft[2:]] == pytest.approx([0.02125, 0.02375, 0.02625, 0.02875])
+    first = case.shaft[0]
+    assert (first.density, first.youngs_modulus) == (7810.0, 211e9)
+    assert first.poisson_ratio == pytest.approx(211 / (2 * 81.2) - 1)
+    assert [(d.name, d.mass, round(d.position, 9)) for d in case.disks] == [
+        ("Disk-1", 2.0, 0.2), ("nut", 0.1, 0.0), ("Disk-0", 1.0, 0.0)
+    ]  # fmt: skip
+    assert (case.disks[0].polar_inertia, case.disks[0].diametral_inertia) == (1.5e-3, 1e-3)
+    assert (case.disks[0].unbalance, case.disks[0].phase) == pytest.approx((2e-6, math.pi / 2))
+
+
+def test_cylinders_of_a_cone_keep_its_mass(tmp_path: Path) -> None:
+    case = case_with(rotor_file(), tmp_path)
+    cone = math.pi / 12 * 0.05 * (0.02**2 + 0.02 * 0.03 + 0.03**2) * 7810.0
+    mass = sum(math.pi / 4 * part.diameter**2 * part.length * part.density for part in case.shaft[2:])
+    assert mass == pytest.approx(cone, rel=2e-3)
+
+
+def test_case_is_whole_without_the_file(tmp_path: Path) -> None:
+    case = case_with(rotor_file(), tmp_path)
+    (tmp_path / "rotor.toml").unlink()
+    assert "rotor.toml" not in case.source_text
+    assert load_case_text(case.source_text) == case
+
+
+def test_json_is_the_same_and_settings_reach_the_file_name(tmp_path: Path) -> None:
+    data = rotor_file()
+    (tmp_path / "other.json").write_text(json.dumps({"_note": "by ROSS", **data}))
+    case = case_with(data, tmp_path)
+    assert load_case(tmp_path / "case.toml", ["rotor.file=other.json"]) == case
+    assert load_case_text(CASE, ["rotor.file=other.json"], folder=tmp_path, name="case") == case
+
+
+def test_same_rotor_as_written_by_hand(tmp_path: Path) -> None:
+    data = {key: value for key, value in rotor_file().items() if key != "ShaftElement_ShaftElement 3"}
+    data["DiskElement_Disk 1"]["n"] = 3
+    sections = """
+[[shaft]]
+length = "100 mm"
+diameter = "20 mm"
+density = 7810
+youngs_modulus = "211 GPa"
+poisson_ratio = 0.29926108
+[[shaft]]
+length = "50 mm"
+diameter = "20 mm"
+inner_diameter = "10 mm"
+density = 7810
+youngs_modulus = "211 GPa"
+poisson_ratio = 0.29926108
+[[disk]]
+position = "150 mm"
+mass = "2 kg"
+polar_inertia = 1.5e-3
+diametral_inertia = 1e-3
+[[disk]]
+position = "0 mm"
+mass = "1.1 kg"
+polar_inertia = 1.5e-3
+diametral_inertia = 1e-3
+[[bearing]]
+"""
+    begin, end = CASE.index("file"), CASE.index("[[bearing]]")
+    text = CASE[:begin] + sections.removesuffix("[[bearing]]\n") + CASE[end:]
+    found = [natural_modes(case, 1e6, [200.0]) for case in (case_with(data, tmp_path), load_case_text(text))]
+    ours, theirs = ([mode.frequency_Hz for mode in modes.points[0].modes] for modes in found)
+    assert ours == pytest.approx(theirs, rel=1e-7)
+
+
+def test_published_frequencies_of_the_example_rotor_of_ross(tmp_path: Path) -> None:
+    """Its documentation: 91.79655318 and 96.28899977 rad/s at rest, in planes with bearings of 0.8e6 and 1e6 N/m."""
+    inertias = {"m": 32.58972765, "Id": 0.17808928, "Ip": 0.32956362}
+    data: dict[str, Any] = {f"ShaftElement_{n}": shaft(n, 0.25, odl=0.05, odr=0.05) for n in range(6)}
+    data |= {f"DiskElement_Disk {n}": {**disk(n, 2 + 2 * n), **inertias} for n in range(2)}
+    ends = CASE.replace('"50 mm"', '"0 m"').replace('"150 mm"', '"1.5 m"')
+    nut = CASE[CASE.index('[[disk]]\nname = "nut"') : CASE.index("[[bearing]]")]
+    case = case_with(data, tmp_path, ends.replace(nut, ""))
+    for stiffness, printed in ((0.8e6, 91.79655318), (1e6, 96.28899977)):
+        slowest = natural_modes(case, stiffness, [0.0]).points[0].modes[0]
+        assert 2 * math.pi * slowest.frequency_Hz == pytest.approx(printed, rel=5e-6)
+
+
+def _change(element: str, **values: Any) -> dict[str, Any]:
+    data = rotor_file()
+    data[element] |= values
+    return data
+
+
+CHANGED: list[tuple[dict[str, Any], str]] = [
+    (_change("ShaftElement_ShaftElement 1", n=2), "where the element from node 1 belongs"),
+    (_change("ShaftElement_ShaftElement 1", axial_force=10.0), "axial_force"),
+    (_change("ShaftElement_ShaftElement 1", L="long"), 'a number "L"'),
+    (_change("ShaftElement_ShaftElement 1", material="Steel"), '"E" in "ShaftElement_ShaftElement 1.material"'),
+    (_change("ShaftElement_ShaftElement 0", L=True), 'a number "L"'),
+    (_change("DiskElement_Disk 0", n=9), "beyond the shaft"),
+    ({**rotor_file(), "PointMass_Point 0": {"n": 5, "m": 1.0}}, "does not model"),
+    ({"parameters": {}}, "no shaft elements"),
+]
+
+
+@pytest.mark.parametrize(("data", "problem"), CHANGED, ids=[problem for _, problem in CHANGED])
+def test_faults_of_a_file(data: dict[str, Any], problem: str, tmp_path: Path) -> None:
+    fault = fault_of(data, tmp_path)
+    assert problem in fault.problem
+    assert (fault.value, fault.line) == ('"rotor.toml"', 4)
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [(b"{", "neither"), (b"\xff\xfe", "neither"), (b"a = 1" + b"0" * 5000, "neither"), (None, "names no file")],
+)
+def test_files_that_hold_no_rotor(content: bytes | None, problem: str, tmp_path: Path) -> None:
+    if content is not None:
+        (tmp_path / "rotor.toml").write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        load_case_text(CASE, folder=tmp_path)
+    assert {fault.key: fault.problem for fault in caught.value.faults}["rotor.file"].startswith(("is", "names"))
+    assert problem in str(caught.value)
+    assert "shaft: is missing" not in str(caught.value)
+
+
+def test_not_beside_sections(tmp_path: Path) -> None:
+    (tmp_path / "rotor.toml").write_text(to_toml(rotor_file()))
+    text = CASE.replace("[oil]", '[[shaft]]\nlength = "1 m"\ndiameter = "10 mm"\n[oil]')
+    with pytest.raises(InputError, match=r"given beside \[\[shaft\]\]"):
+        load_case_text(text, folder=tmp_path)
+
+
+def test_own_disk_needs_its_mass_if_the_file_has_none_of_its_name(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"disk\.0\.mass"):
+        case_with(rotor_file(), tmp_path, CASE.replace("Disk-1", "Disk-7"))

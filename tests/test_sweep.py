@@ -1,0 +1,452 @@
+"""Parameter studies: which points there are, that each is the run it would be alone, that none is ever lost."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import sys
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from frbcli import Case, InputError, load_case, read_run, runup, stability, sweep
+from frbcli.analysis.sweep import LOG, SweepPoint, Workers, write_table
+from frbcli.analysis.sweep_points import grid, product, read_list, split_values
+from frbcli.analysis.sweep_task import Task, solve
+from frbcli.analysis.sweep_workers import DIED, solved
+from frbcli.cli.main import run as frb
+from frbcli.plot.sweep import can_draw, sweep_figure
+
+SHORT = ["film.theory=short", "speed.duration=0.3 s", "speed.to=250 Hz"]
+VISCOSITIES = ["8 mPa*s", "12 mPa*s"]
+CLEARANCES = ["30 um", "35 um"]
+TWO = Workers(jobs=2)
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return load_case("jeffcott", SHORT)
+
+
+def said(error: pytest.ExceptionInfo[InputError]) -> str:
+    return str(error.value)
+
+
+# --- points ---
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("10 mPa*s,12 mPa*s", ("10 mPa*s", "12 mPa*s")),
+        (" 1 , 2,3 ", ("1", "2", "3")),
+        ("[0.1, 0.2],[0, 0]", ("[0.1, 0.2]", "[0, 0]")),
+        ("{ kind = 'none' },{ kind = 'a,b', x = [1, 2] }", ("{ kind = 'none' }", "{ kind = 'a,b', x = [1, 2] }")),
+        ('"a, b","c]"', ('"a, b"', '"c]"')),
+        ("one", ("one",)),
+        ("1,,2", ("1", "", "2")),
+    ],
+)
+def test_values_are_parted_at_commas(text: str, values: tuple[str, ...]) -> None:
+    assert split_values(text) == values
+
+
+def test_grid_has_every_combination_and_the_last_key_changes_fastest() -> None:
+    found = grid({"a": ["1", "2"], "b": [3.5, True, "x y"]})
+    assert [(point["a"], point["b"]) for point in found] == [
+        ("1", "3.5"), ("1", "true"), ("1", "x y"), ("2", "3.5"), ("2", "true"), ("2", "x y"),
+    ]  # fmt: skip
+
+
+def test_list_times_grid() -> None:
+    assert product([{"a": "1"}, {"a": "2", "c": "0"}], grid({"b": [3, 4]})) == (
+        {"a": "1", "b": "3"}, {"a": "1", "b": "4"}, {"a": "2", "c": "0", "b": "3"}, {"a": "2", "c": "0", "b": "4"},
+    )  # fmt: skip
+    with pytest.raises(InputError, match="set twice"):
+        product([{"a": "1"}], [{"a": "2"}])
+
+
+def test_a_list_reads_quoted_commas_blank_lines_and_empty_cells(tmp_path: Path) -> None:
+    file = tmp_path / "points.csv"
+    file.write_text('\ufeffoil.viscosity, start.displacement\n12 mPa*s,"[0.1, 0.2]"\n\n8 mPa*s,\n', encoding="utf-8")
+    assert read_list(file) == (
+        {"oil.viscosity": "12 mPa*s", "start.displacement": "[0.1, 0.2]"},
+        {"oil.viscosity": "8 mPa*s"},
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        (b"", "holds no points"),
+        (b"a,b\n", "holds no points"),
+        (b"a,a\n1,2\n", "name every column once"),
+        (b"a,\n1,2\n", "name every column once"),
+        (b"a,b\n1,2\n1\n", "(line 3): has 1 values for 2 keys"),
+        (b"\xff\xfe\x00", "not UTF-8"),
+        (b'a,b\n"1,2\n', "cannot be read"),
+        (b"a\n \n", "nothing to change"),
+    ],
+)
+def test_a_wrong_list_is_refused(tmp_path: Path, content: bytes, problem: str) -> None:
+    file = tmp_path / "points.csv"
+    file.write_bytes(content)
+    with pytest.raises(InputError) as error:
+        read_list(file)
+    assert problem in said(error)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_list(tmp_path / "absent.csv")
+
+
+@pytest.mark.parametrize("points", [{}, {"oil.viscosity": []}, [], [{}]])
+def test_no_points_are_refused(case: Case, points: Any, tmp_path: Path) -> None:
+    with pytest.raises(InputError):
+        sweep(case, points, tmp_path / "s")
+    assert not list(tmp_path.iterdir())
+
+
+# --- results ---
+
+
+def test_each_point_is_the_run_it_would_be_alone(case: Case, tmp_path: Path) -> None:
+    seen: list[tuple[int, int]] = []
+    found = sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path / "s", workers=TWO,
+                  observe=lambda _, done, whole: seen.append((done, whole)))  # fmt: skip
+    assert seen == [(1, 2), (2, 2)]
+    assert [point.number for point in found.points] == [1, 2]
+    for point, viscosity in zip(found.points, VISCOSITIES, strict=True):
+        assert point.settings == {"oil.viscosity": viscosity}
+        assert point.run is not None
+        kept = read_run(point.run)
+        alone = runup(load_case("jeffcott", [*SHORT, f"oil.viscosity={viscosity}"]), tmp_path / "alone.h5")
+        for name in alone.signals:
+            np.testing.assert_array_equal(kept[name], alone[name], strict=True)
+        assert (point.status, list(point.events)) == (alone.status, alone.events)
+        assert point.cost["steps"] == alone.cost["steps"]
+    assert not np.array_equal(read_run(found.points[0].run or "")["eccentricity"], alone["eccentricity"])
+
+
+def test_runs_that_are_not_kept_leave_nothing(case: Case, tmp_path: Path) -> None:
+    found = sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path / "s", keep_runs=False, workers=TWO)
+    assert [point.status for point in found.points] == ["finished", "finished"]
+    assert [point.run for point in found.points] == [None, None]
+    assert [file.name for file in (tmp_path / "s").iterdir()] == [LOG]
+
+
+def test_thresholds_are_those_of_the_linear_stability(case: Case, tmp_path: Path) -> None:
+    found = sweep(case, {"bearing.clearance": CLEARANCES}, tmp_path, "stability", workers=TWO)
+    for point, clearance in zip(found.points, CLEARANCES, strict=True):
+        alone = stability(load_case("jeffcott", [*SHORT, f"bearing.clearance={clearance}"])).threshold
+        event = point.first("threshold")
+        assert alone is not None
+        assert event is not None
+        assert (event["speed_Hz"], event["frequency_Hz"]) == (alone.speed_Hz, alone.frequency_Hz)
+        assert event["frequency_ratio"] == alone.whirl_ratio
+    # a wider clearance at the same load: a lower load parameter of the film, hence an earlier whirl
+    narrow, wide = found.to_pandas()["threshold_speed_Hz"]
+    assert narrow > wide
+
+
+def test_a_range_without_a_threshold_finishes_and_says_where_it_lies(case: Case, tmp_path: Path) -> None:
+    found = sweep(case, {"speed.to": ["100 Hz", "300 Hz"]}, tmp_path, "stability", workers=TWO)
+    low, high = found.points
+    assert (low.status, low.events) == ("finished", ())
+    assert "above 100 Hz" in low.message
+    assert high.first("threshold")
+    assert math.isnan(found.to_pandas()["threshold_speed_Hz"][0])
+
+
+def test_points_that_fail_are_kept_and_the_others_go_on(case: Case, tmp_path: Path) -> None:
+    points = [
+        {"oil.viscosity": "-1 Pa*s"},
+        {"start.position": "resting"},  # there is no resting position at standstill
+        {"film.cavitation": "no-such-model"},
+        {"contact.eccentricity": "0.6"},
+        {"oil.viscosity": "12 mPa*s"},
+    ]
+    found = sweep(case, points, tmp_path, workers=TWO)
+    assert [point.status for point in found.points] == [
+        "input-error", "not-converged", "input-error", "contact", "finished",
+    ]  # fmt: skip
+    assert "must be greater than 0" in found.points[0].message
+    assert "resting position" in found.points[1].message
+    assert "contact at" in found.points[3].message
+    assert [point.message for point in found.points if "\n" in point.message] == []
+    table = found.to_pandas()
+    assert list(table["point"]) == [1, 2, 3, 4, 5]
+    assert list(table["status"]) == [point.status for point in found.points]
+
+
+def test_a_sweep_of_faults_alone_is_refused(case: Case, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="clearanse"):
+        sweep(case, {"bearing.clearanse": CLEARANCES}, tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_bug_at_one_point_is_its_result() -> None:
+    broken: Any = None
+    point = solve(Task(3, {"a": "1"}, broken, "runup", None))
+    assert (point.number, point.status) == (3, "error")
+    assert "AttributeError" in point.message
+
+
+class Bomb:
+    """Ends the process that unpickles it."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return os._exit, (1,)
+
+
+def test_a_process_that_dies_takes_no_other_point_with_it(case: Case) -> None:
+    bomb: Any = Bomb()
+    stability(case, [100.0])  # compiled once, not in each process
+    tasks = [Task(n, {"n": str(n)}, bomb if n == 3 else case, "stability", None) for n in range(1, 9)]
+    found = {point.number: point for point in solved(tasks, TWO)}
+    assert sorted(found) == list(range(1, 9))
+    assert (found[3].status, found[3].message) == ("error", DIED)
+    assert {found[n].status for n in found if n != 3} == {"finished"}
+
+
+# --- broken off ---
+
+
+def table_of(points: tuple[SweepPoint, ...]) -> list[tuple[Any, ...]]:
+    return [(point.number, point.settings, point.status, point.events, point.run) for point in points]
+
+
+def test_a_broken_sweep_goes_on_with_what_is_missing(case: Case, tmp_path: Path) -> None:
+    axes = {"oil.viscosity": VISCOSITIES, "bearing.clearance": CLEARANCES}
+    whole = sweep(case, axes, tmp_path / "whole", "stability", workers=TWO)
+
+    def break_off(_point: SweepPoint, done: int, _whole: int) -> None:
+        if done == 2:
+            raise KeyboardInterrupt
+
+    broken = sweep(case, axes, tmp_path / "s", "stability", workers=TWO, observe=break_off)
+    assert sorted(point.status for point in broken.points) == ["finished"] * 2 + ["interrupted"] * 2
+    log = tmp_path / "s" / LOG
+    log.write_bytes(log.read_bytes()[:-20])  # a crash tears the last line
+    computed: list[int] = []
+    found = sweep(case, axes, tmp_path / "s", "stability", workers=TWO,
+                  observe=lambda point, *_: computed.append(point.number))  # fmt: skip
+    assert len(computed) == 3
+    assert table_of(found.points) == table_of(whole.points)
+    again = sweep(case, axes, tmp_path / "s", "stability", workers=TWO, observe=break_off)
+    assert again == found  # nothing left to do, the costs are those of the first time
+
+
+def test_an_interrupted_run_goes_on_from_its_file(case: Case, tmp_path: Path) -> None:
+    axes = {"oil.viscosity": VISCOSITIES}
+    found = sweep(case, axes, tmp_path, workers=TWO)
+    (tmp_path / LOG).unlink()
+    stamps = [(tmp_path / "runs" / name).stat().st_mtime_ns for name in ("001.h5", "002.h5")]
+    again = sweep(case, axes, tmp_path, workers=TWO)
+    assert again == found
+    assert stamps == [(tmp_path / "runs" / name).stat().st_mtime_ns for name in ("001.h5", "002.h5")]
+
+
+def test_a_directory_of_another_sweep_is_left_alone(case: Case, tmp_path: Path) -> None:
+    sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, "stability", workers=TWO)
+    before = (tmp_path / LOG).read_bytes()
+    with pytest.raises(InputError, match="another sweep"):
+        sweep(case, {"oil.viscosity": [*VISCOSITIES, "9 mPa*s"]}, tmp_path, "stability", workers=TWO)
+    with pytest.raises(InputError, match="another sweep"):
+        sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, "runup", workers=TWO)
+    (tmp_path / "foreign").mkdir()
+    (tmp_path / "foreign" / LOG).write_bytes(b"\x93PNG not a log")
+    with pytest.raises(InputError, match="cannot be used"):
+        sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path / "foreign", "stability", workers=TWO)
+    assert (tmp_path / LOG).read_bytes() == before
+    assert (tmp_path / "foreign" / LOG).read_bytes() == b"\x93PNG not a log"
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ({"method": "no-such"}, "method"),
+        ({"workers": Workers("no-such")}, "--backend"),
+        ({"workers": Workers("dask")}, "--scheduler"),
+        ({"workers": Workers(jobs=0)}, "--jobs"),
+        ({"workers": Workers(scheduler="tcp://localhost:1")}, "--scheduler"),
+        ({"directory": "file"}, "cannot be made"),
+    ],
+)
+def test_wrong_options_are_refused(case: Case, options: dict[str, Any], problem: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("not a directory")
+    directory = tmp_path / options.pop("directory", "s")
+    with pytest.raises(InputError) as error:
+        sweep(case, {"oil.viscosity": VISCOSITIES}, directory, **options)
+    assert problem in said(error)
+    assert not (tmp_path / "s").exists()
+
+
+# --- a cluster ---
+
+
+@pytest.mark.filterwarnings("default")  # not of frb
+def test_a_cluster_gives_the_same_table(case: Case, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    axes = {"oil.viscosity": VISCOSITIES, "bearing.clearance": CLEARANCES}
+    here = sweep(case, axes, tmp_path / "here", "stability", workers=TWO)
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, local_directory=str(tmp_path)
+    ) as cluster:
+        workers = Workers("dask", scheduler=cluster.scheduler_address)
+        found = sweep(case, axes, tmp_path / "there", "stability", workers=workers)
+        runs = sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path / "runs", workers=workers)
+    assert table_of(found.points) == table_of(here.points)
+    assert [point.status for point in runs.points] == ["finished"] * 2
+    assert all(read_run(point.run or "").status == "finished" for point in runs.points)
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_cluster_that_is_not_there_is_wrong_input(
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("frbcli.analysis.sweep_workers.CONNECT_WITHIN_s", 0.5)
+    with pytest.raises(InputError, match="cannot be reached"):
+        sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, workers=Workers("dask", scheduler="tcp://127.0.0.1:9"))
+
+
+# --- table, picture, command ---
+
+
+def test_parquet_needs_its_library(case: Case, tmp_path: Path) -> None:
+    found = sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, "stability", workers=TWO)
+    with pytest.raises(InputError, match="no format"):
+        write_table(found, tmp_path / "t.xls", "xls")
+    if find_spec("pyarrow") is None:
+        with pytest.raises(InputError, match="pyarrow"):
+            write_table(found, tmp_path / "t.parquet", "parquet")
+    else:
+        import pandas as pd
+
+        read = pd.read_parquet(write_table(found, tmp_path / "t.parquet", "parquet"))
+        pd.testing.assert_frame_equal(read, found.to_pandas(), check_dtype=False)
+
+
+def test_map_and_curve_show_the_thresholds(case: Case, tmp_path: Path) -> None:
+    axes = {"oil.viscosity": ["12 mPa*s", "8 mPa*s"], "bearing.clearance": [*CLEARANCES, "1 m"]}
+    found = sweep(case, axes, tmp_path / "map", "stability", workers=TWO)
+    speeds = found.to_pandas()["threshold_speed_Hz"].to_numpy().reshape(2, 3)
+    figure = sweep_figure(found)
+    drawn = np.ma.filled(figure.axes[0].collections[0].get_array(), np.nan)
+    # across: viscosity, ascending; up: clearance, ascending, "1 m" beside the others' um: as written
+    np.testing.assert_array_equal(drawn, speeds[::-1].T)
+    assert figure.axes[0].get_xlabel() == "oil.viscosity in mPa*s"
+    assert [label.get_text() for label in figure.axes[0].get_xticklabels()] == ["8", "12"]
+    assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["30 um", "35 um", "1 m"]
+    curve = sweep(case, {"bearing.clearance": ["35 um", "30 um", "2000 um"]}, tmp_path / "c", "stability", workers=TWO)
+    line, missing = sweep_figure(curve).axes[0].lines
+    np.testing.assert_array_equal(line.get_xdata(), [30.0, 35.0, 2000.0])
+    expected = curve.to_pandas()["threshold_speed_Hz"].to_numpy()
+    np.testing.assert_array_equal(line.get_ydata(), expected[[1, 0, 2]])
+    np.testing.assert_array_equal(missing.get_xdata(), [2000.0])
+    three = sweep(case, [{"oil.viscosity": "8 mPa*s"}, {"oil.density": "800 kg/m^3"}, {"speed.to": "260 Hz"}],
+                  tmp_path / "three", "stability", workers=TWO)  # fmt: skip
+    assert not can_draw(three)
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_the_command_says_one_document_and_leaves_table_and_picture(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["sweep", "jeffcott", "--set", "film.theory=short", "--set", "oil.viscosity=8 mPa*s,12 mPa*s"]
+    assert frb([*words, "--stability", "--json", "--jobs", "2"]) == 0
+    told = capsys.readouterr()
+    document = json.loads(told.out)
+    assert list(document) == ["command", "case", "points", "table", "picture"]
+    assert [point["set"] for point in document["points"]] == [{"oil.viscosity": value} for value in VISCOSITIES]
+    for point in document["points"]:
+        assert list(point) == ["set", "status", "message", "events", "cost", "run"]
+        assert set(point["cost"]) == {"cpu_s", "wall_s"}
+        assert [event["kind"] for event in point["events"]] == ["threshold"]
+        assert set(point["events"][0]) == {"kind", "film", "t_s", "speed_Hz", "frequency_Hz", "frequency_ratio"}
+    assert "1/2 " in told.err
+    assert "2/2 " in told.err
+    with Path(document["table"]).open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["oil.viscosity"] for row in rows] == VISCOSITIES
+    events = [point["events"][0]["speed_Hz"] for point in document["points"]]
+    assert [float(row["threshold_speed_Hz"]) for row in rows] == events
+    assert Path(document["picture"]).read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_command_takes_a_list_and_tells_of_failures(elsewhere: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("points.csv").write_text("oil.viscosity,bearing.clearance\n8 mPa*s,35 um\n-8 mPa*s,35 um\n")
+    words = ["sweep", "jeffcott", "--list", "points.csv", "--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
+    assert frb([*words, "--json", "-o", "out", "--jobs", "2"]) == 3
+    told = capsys.readouterr()
+    good, bad = json.loads(told.out)["points"]
+    assert (good["status"], good["run"]) == ("finished", str(elsewhere / "out" / "runs" / "001.h5"))
+    assert (bad["status"], bad["events"], bad["cost"], bad["run"]) == ("input-error", [], {}, None)
+    assert "greater than 0" in bad["message"]
+    assert "1 of 2 points did not finish" in told.err
+    assert frb([*words, "--quiet", "-o", "out", "--jobs", "2"]) == 3
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.usefixtures("elsewhere")
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (["--set", "oil.viscosity=8 mPa*s"], "several values"),
+        ([], "several values"),
+        (["--set", "oil.viscosity=1 Pa*s,", "--stability"], "empty value"),
+        (["--set", "speed.to=1,2", "--set", "speed.to=3,4"], "second time"),
+        (["--set", "rotor.massive=1,2"], "massive"),
+        (["--list", "nowhere.csv"], "nowhere.csv"),
+        (["--set", "speed.to=1 Hz,2 Hz", "--format", "xls"], "no format"),
+        (["--set", "speed.to=1 Hz,2 Hz", "--backend", "dask"], "--scheduler"),
+    ],
+)
+def test_wrong_input_is_exit_2(words: list[str], problem: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["sweep", "jeffcott", *words, "--json"]) == 2
+    told = capsys.readouterr()
+    assert json.loads(told.out)["status"] == "input-error"
+    assert problem in told.err
+    assert not os.listdir()
+
+
+def children() -> list[Path]:
+    """The entries in /proc of all processes that this one has started."""
+    entries = [entry for entry in Path("/proc").iterdir() if entry.name.isdigit()]
+    parents = [(entry / "stat").read_text().rpartition(")")[2].split()[1] for entry in entries]
+    return [entry for entry, parent in zip(entries, parents, strict=True) if parent == str(os.getpid())]
+
+
+def worked_and_waited() -> tuple[float, float]:
+    """CPU time of the children's main threads, and how long these could have run, but for other programs, in s."""
+    times = [[float(number) for number in (child / "schedstat").read_text().split()[:2]] for child in children()]
+    return sum(cpu for cpu, _ in times) / 1e9, sum(queued for _, queued in times) / 1e9
+
+
+@pytest.mark.benchmark
+@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the scheduler's statistics of Linux")
+def test_all_cores_work(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """64 run-ups of some tenths of a second each: the share of the cores' time that the workers ask for."""
+    jobs = len(os.sched_getaffinity(0))
+    case = load_case("jeffcott", ["film.theory=short", "speed.duration=20 s", "output.step=1 ms"])
+    sweep(case, {"oil.viscosity": ["7 mPa*s", "7.5 mPa*s"]}, tmp_path / "warm")
+    (cpu, queued), began = worked_and_waited(), time.perf_counter()
+    found = sweep(case, {"oil.viscosity": [f"{8 + 0.25 * n} mPa*s" for n in range(64)]}, tmp_path / "s")
+    wall, (cpu_after, queued_after) = time.perf_counter() - began, worked_and_waited()
+    cpu, queued = cpu_after - cpu, queued_after - queued
+    with capsys.disabled():
+        sys.stdout.write(
+            f"\n64 run-ups on {jobs} cores: {wall:.1f} s wall; the workers computed {cpu / wall / jobs:.0%} of it "
+            f"and waited {queued / wall / jobs:.0%} for a core that another program had\n"
+        )
+    assert all(point.status in ("finished", "contact") for point in found.points)
+    assert (cpu + queued) / wall / jobs >= 0.9

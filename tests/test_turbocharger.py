@@ -1,0 +1,339 @@
+"""Turbocharger rotors: natural frequencies, the reduced rotor as a whole, and floating rings."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+from frbcli.analysis.modes import film_springs, natural_modes
+from frbcli.analysis.stability import RestingFilm, eigenvalues
+from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError
+from frbcli.plot.modes import modes_figure
+from frbcli.rotor.jeffcott import jeffcott_rotor
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.ring import with_rings
+from frbcli.scene.turbocharger import all_modes, make_turbocharger
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.81
+SPRING = 5e6
+
+
+@pytest.fixture(scope="module")
+def heavy() -> Case:
+    return load_case("turbocharger-heavy")
+
+
+def exact_whirl(case: Case, spring: float, speed_Hz: float, near_Hz: float) -> float:
+    """Forward whirl in Hz of the unreduced rotor on springs, by transfer matrices of (v, psi, moment, shear force)."""
+    spin = 2 * math.pi * speed_Hz
+    ends = np.cumsum([0.0, *(section.length for section in case.shaft)])
+    places = sorted({*ends, *(d.position for d in case.disks), *(b.position or 0.0 for b in case.bearings)})
+    places = [a for a, b in zip(places, [*places[1:], math.inf], strict=True) if b - a > 1e-9]
+
+    def determinant(omega: float) -> float:
+        transfer = np.eye(4)
+        for place, following in zip(places, [*places[1:], None], strict=True):
+            station = np.eye(4)
+            for disk in case.disks:
+                if math.isclose(disk.position, place, abs_tol=1e-9):
+                    station[2, 1] -= disk.diametral_inertia * omega**2 - disk.polar_inertia * spin * omega
+                    station[3, 0] -= disk.mass * omega**2
+            for bearing in case.bearings:
+                if math.isclose(bearing.position or 0.0, place, abs_tol=1e-9):
+                    station[3, 0] += spring
+            transfer = station @ transfer
+            if following is None:
+                break
+            part = case.shaft[int(np.searchsorted(ends, 0.5 * (place + following))) - 1]
+            area, moment = math.pi / 4 * part.diameter**2, math.pi / 64 * part.diameter**4
+            nu = part.poisson_ratio
+            shear = 6 * (1 + nu) / (7 + 6 * nu) * area * part.youngs_modulus / (2 * (1 + nu))
+            rates = np.zeros((4, 4))
+            rates[0, 1], rates[2, 3] = 1.0, -1.0
+            rates[0, 3], rates[1, 2] = 1 / shear, 1 / (part.youngs_modulus * moment)
+            rates[2, 1] = -part.density * moment * (omega**2 - 2 * spin * omega)
+            rates[3, 0] = -part.density * area * omega**2
+            transfer = expm(rates * (following - place)) @ transfer
+        return float(np.linalg.det(transfer[2:, :2]))
+
+    root = brentq(determinant, 2 * math.pi * near_Hz * 0.99, 2 * math.pi * near_Hz * 1.01)
+    return float(root) / (2 * math.pi)
+
+
+# -------------------------------------------------------------------------------------------- natural frequencies
+
+
+def test_heavy_turbocharger_free(heavy: Case) -> None:
+    """An independent program has 5.99 kg and free bending modes at 619 and 1118 Hz."""
+    found = natural_modes(heavy, None, [0.0])
+    assert found.mass_kg == pytest.approx(5.99, abs=0.005)
+    assert found.free_Hz[:2] == pytest.approx([619.0, 1118.0], rel=0.002)
+    assert {mode.kind for mode in found.points[0].modes} == {"bending"}
+    assert found.free_Hz[:4] == pytest.approx([mode.frequency_Hz for mode in found.points[0].directed("forward")])
+
+
+@pytest.mark.parametrize("speed", [0.0, 350.0, 1200.0])
+def test_heavy_turbocharger_on_springs_against_transfer_matrices(heavy: Case, speed: float) -> None:
+    forward = natural_modes(heavy, SPRING, [speed]).points[0].directed("forward")
+    assert [mode.kind for mode in forward[:3]] == ["conical", "cylindrical", "bending"]
+    for mode in forward[:3]:
+        assert mode.frequency_Hz == pytest.approx(exact_whirl(heavy, SPRING, speed, mode.frequency_Hz), rel=2e-6)
+
+
+def test_spin_raises_forward_and_lowers_backward_modes(heavy: Case) -> None:
+    at_rest, spinning = natural_modes(heavy, SPRING, [0.0, 350.0]).points
+    for direction, sign in (("forward", 1), ("backward", -1)):
+        pairs = zip(at_rest.directed(direction), spinning.directed(direction), strict=True)
+        assert all(sign * (b.frequency_Hz - a.frequency_Hz) > 0 for a, b in pairs)
+    assert [m.frequency_Hz for m in at_rest.directed("forward")] == pytest.approx(
+        [m.frequency_Hz for m in at_rest.directed("backward")]
+    )
+
+
+def test_free_precession_of_the_spinning_rotor(heavy: Case) -> None:
+    """Between the rigid body's Omega I_p / I_d and less: an elastic shaft lets the wheels tilt on their own."""
+    slowest = natural_modes(heavy, None, [10.0]).points[0].directed("forward")[0]
+    modes = all_modes(heavy)
+    assert slowest.kind == "conical"
+    assert slowest.frequency_Hz == pytest.approx(10.0 * modes.polar[1, 1], rel=1e-3)  # the inertia of the tilt is 1
+
+
+def test_soft_springs_carry_a_rigid_rotor(heavy: Case) -> None:
+    """On springs that are soft against the shaft, at rest: sum of s x = omega^2 m x and the same about the tilt."""
+    found = natural_modes(heavy, 1e3, [0.0]).points[0].directed("forward")[:2]
+    modes = all_modes(heavy)
+    rigid = np.stack([modes.at(b.position or 0.0)[:2] for b in heavy.bearings])
+    exact = np.sqrt(np.linalg.eigvalsh(1e3 * rigid.T @ rigid)) / (2 * math.pi)
+    assert [mode.frequency_Hz for mode in found] == pytest.approx(exact, rel=1e-4)
+    assert [mode.kind for mode in found] == ["conical", "cylindrical"]
+
+
+def test_reduction_of_the_shipped_rotors() -> None:
+    for name in ("turbocharger-heavy", "turbocharger-car"):
+        error = natural_modes(load_case(name), 1e6, [0.0, 1000.0]).error
+        assert error is not None
+        assert error.frequency < 2e-3
+        assert np.max(np.abs(error.missing_flexibility)) * 1e6 < 5e-3  # of the springs' own
+
+
+def test_car_turbocharger_weighs_100_g() -> None:
+    assert natural_modes(load_case("turbocharger-car"), None, [0.0]).mass_kg == pytest.approx(0.1, rel=1e-3)
+
+
+def test_modes_table_and_faults(heavy: Case) -> None:
+    table = natural_modes(heavy, SPRING, [0.0, 350.0]).to_pandas()
+    assert list(table.columns) == ["speed_Hz", "frequency_Hz", "direction", "kind"]
+    assert len(table) == 16
+    for stiffness, speeds in ((0.0, [1.0]), (math.inf, [1.0]), (1e6, []), (1e6, [-1.0]), (1e6, [math.nan])):
+        with pytest.raises(InputError):
+            natural_modes(heavy, stiffness, speeds)
+    with pytest.raises(InputError, match="no shaft"):
+        natural_modes(load_case("jeffcott"))
+
+
+@pytest.mark.parametrize("stiffness", [None, SPRING])
+def test_picture_of_the_modes(heavy: Case, stiffness: float | None) -> None:
+    figure = modes_figure(natural_modes(heavy, stiffness, [0.0, 600.0, 1200.0]))
+    campbell, *shapes = figure.axes
+    assert campbell.get_xlim() == (0.0, 1200.0)
+    assert len(shapes) == 4
+    assert all(axes.lines for axes in shapes)
+
+
+# ---------------------------------------------------------------------------------------------------- whole rotor
+
+
+def test_size_films_and_points(heavy: Case) -> None:
+    rotor = make_turbocharger(heavy)
+    assert rotor.size == 2 * 6 + 2 * 2
+    assert rotor.journals.shape == (4, 2, 16)
+    assert rotor.multiplicity.tolist() == [1.0] * 4
+    assert [name for name, _ in rotor.points] == [
+        "journal_compressor", "journal_turbine", "disk_nut", "disk_compressor", "disk_turbine",
+        "ring_compressor", "ring_turbine",
+    ]  # fmt: skip
+    for matrix, sign in ((rotor.mass, 1), (rotor.damping, 1), (rotor.stiffness, 1), (rotor.gyroscopic, -1)):
+        assert np.allclose(matrix, sign * matrix.T, rtol=1e-12, atol=1e-12)
+
+
+def test_cutoff_keeps_the_modes_below_it() -> None:
+    low = load_case("turbocharger-heavy", ["rotor={kind='turbocharger', cutoff='1.2 kHz'}"])
+    assert make_turbocharger(low).size == 2 * 4 + 2 * 2  # translation, tilt, 619 and 1120 Hz
+    rigid = load_case("turbocharger-heavy", ["rotor={kind='turbocharger', cutoff='1 Hz'}"])
+    assert make_turbocharger(rigid).size == 2 * 2 + 2 * 2
+    with pytest.raises(InputError, match="beside modes"):
+        load_case("turbocharger-heavy", ["rotor.cutoff=2 kHz"])
+
+
+def test_films_carry_the_weights_and_no_moment(heavy: Case) -> None:
+    """At rest on springs: inner films the rotor, outer ones the rings as well; moments about the bearings balance."""
+    rotor = make_turbocharger(heavy)
+    stiffness = rotor.stiffness + 1e7 * np.einsum("fki,fkj->ij", rotor.journals, rotor.journals)
+    forces = -1e7 * (rotor.journals @ np.linalg.solve(stiffness, rotor.static_load))
+    mass = natural_modes(heavy, None, [0.0]).mass_kg
+    assert forces[:, 0] == pytest.approx(np.zeros(4), abs=1e-9)
+    inner, outer = forces[::2, 1], forces[1::2, 1]
+    assert inner.sum() == pytest.approx(mass * GRAVITY, rel=1e-9)
+    assert outer - inner == pytest.approx([0.075 * GRAVITY] * 2, rel=1e-6)
+    masses = [(d.mass, d.position) for d in heavy.disks]
+    start = 0.0
+    for part in heavy.shaft:
+        masses.append((part.density * math.pi / 4 * part.diameter**2 * part.length, start + part.length / 2))
+        start += part.length
+    moment = GRAVITY * sum(mass * place for mass, place in masses)
+    assert inner @ [0.08, 0.185] == pytest.approx(moment, rel=1e-9)
+
+
+def test_unbalance_turns_with_the_rotor() -> None:
+    """At constant speed: U omega^2 in the direction of the eccentric mass; upwards for an angle and a phase of 0."""
+    case = load_case("turbocharger-heavy", ["disk.1.unbalance=0 g*mm", "disk.2.phase=30 deg"])
+    rotor, modes = make_turbocharger(case), all_modes(case).lowest(6)
+    alpha, omega, unbalance, phase = 0.7, 100.0, 2e-6, math.pi / 6
+    force = -(omega**2) * (rotor.unbalance_cos * math.sin(alpha) - rotor.unbalance_sin * math.cos(alpha))
+    direction = np.array([-math.sin(alpha + phase), math.cos(alpha + phase)])
+    assert force[:12] == pytest.approx(unbalance * omega**2 * np.kron(direction, modes.at(0.224)))
+    assert not force[12:].any()
+
+
+def test_reduced_rotor_whirls_as_the_whole_one(heavy: Case) -> None:
+    """Eigenvalues of the linear rotor with single films of stiffness s, undamped, are those of the free modes."""
+    text = heavy.source_text
+    assert 'kind = "floating-ring"' in text
+    case = load_case("turbocharger-heavy", ["rotor.modal_damping=0", "bearing=" + SINGLE])
+    rotor = make_turbocharger(case)
+    assert rotor.journals.shape == (2, 2, 12)
+    omega = 2 * math.pi * 350
+    springs, none = np.tile(SPRING * np.eye(2), (2, 1, 1)), np.zeros((2, 2, 2))
+    found = eigenvalues(rotor, omega, springs, none)
+    assert np.max(np.abs(found.real)) < 1e-6 * np.max(np.abs(found.imag))
+    pairs = np.sort(found.imag[found.imag > 0])[:6] / (2 * math.pi)
+    exact = sorted(mode.frequency_Hz for mode in natural_modes(case, SPRING, [350.0]).points[0].modes)[:6]
+    assert pairs == pytest.approx(exact, rel=2e-3)
+
+
+SINGLE = "[" + ", ".join(
+    f"{{kind='single-film', name='{z}', position='{z} mm', width='20 mm', diameter='25 mm', clearance='40 um'}}"
+    for z in (80, 185)
+) + "]"  # fmt: skip
+
+
+def test_damping_is_modal_and_external(heavy: Case) -> None:
+    rotor = make_turbocharger(heavy)
+    frequencies = np.sqrt(np.diag(rotor.stiffness))[:6]
+    assert np.diag(rotor.damping)[:6] == pytest.approx(2 * 0.002 * frequencies)
+    outside = make_turbocharger(load_case("turbocharger-heavy", ["rotor.external_damping=2 N*s/m"]))
+    places = np.stack([place[0] for name, place in rotor.points if name.startswith("disk")])
+    assert (outside.damping - rotor.damping)[:6, :6] == pytest.approx(2.0 * (places.T @ places)[:6, :6])
+
+
+# ---------------------------------------------------------------------------------------------------------- rings
+
+
+def jeffcott() -> LinearRotor:
+    """Table 7.1."""
+    return jeffcott_rotor(5.0, 1.0, 2e7, 3e-6, 1.0, 0.1, GRAVITY)
+
+
+def test_rings_of_a_symmetric_rotor_are_two() -> None:
+    """m_F x_F'' = F_o - F_i of each ring, m_J x_J'' = 2 F_i + shaft (2.4)."""
+    rotor = with_rings(jeffcott(), [0.075], GRAVITY)
+    assert rotor.multiplicity.tolist() == [2.0, 2.0]
+    assert np.diag(rotor.mass)[4:].tolist() == [0.15, 0.15]
+    assert rotor.static_load[[4, 5]].tolist() == [0.0, -0.15 * GRAVITY]
+    q = np.arange(1.0, 7.0)  # x_J, x_D, y_J, y_D, x_F, y_F
+    inner, outer = rotor.journals @ q
+    assert (inner.tolist(), outer.tolist()) == ([1.0 - 5.0, 3.0 - 6.0], [5.0, 6.0])
+    force = np.einsum("f,fki,fk->i", rotor.multiplicity, rotor.journals, np.array([[1.0, 2.0], [10.0, 20.0]]))
+    assert force.tolist() == [2.0, 0.0, 4.0, 0.0, 2 * (10.0 - 1.0), 2 * (20.0 - 2.0)]
+    assert [name for name, _ in rotor.points] == ["journal", "disk", "ring"]
+
+
+def test_a_ring_on_a_stiff_film_is_a_shell() -> None:
+    springs = np.stack([1e6 * np.eye(2), 1e14 * np.eye(2)])
+    ringed = eigenvalues(with_rings(jeffcott(), [0.075], GRAVITY), 100.0, springs, 0 * springs)
+    single = eigenvalues(jeffcott(), 100.0, springs[:1], 0 * springs[:1])
+    assert ringed[: len(single)] == pytest.approx(single, rel=1e-6)
+
+
+def test_a_light_ring_puts_films_in_series() -> None:
+    inner, outer = 2e6, 3e6
+    springs = np.stack([inner * np.eye(2), outer * np.eye(2)])
+    ringed = eigenvalues(with_rings(jeffcott(), [1e-9], GRAVITY), 100.0, springs, 0 * springs)
+    series = np.eye(2)[None] / (1 / inner + 1 / outer)
+    single = eigenvalues(jeffcott(), 100.0, series, 0 * series)
+    assert ringed[: len(single)] == pytest.approx(single, rel=1e-6)
+
+
+def test_bearings_with_and_without_a_ring() -> None:
+    base = jeffcott()
+    two = replace(base, journals=np.repeat(base.journals, 2, axis=0), multiplicity=np.ones(2))
+    rotor = with_rings(two, [None, 0.1], GRAVITY, ["a", "b"])
+    q = np.arange(1.0, 7.0)
+    assert (rotor.journals @ q).tolist() == [[1.0, 3.0], [1.0 - 5.0, 3.0 - 6.0], [5.0, 6.0]]
+    assert rotor.mass[4, 4] == 0.1
+    assert rotor.points[-1][0] == "ring_b"
+
+
+def test_warm_films_of_the_heavy_turbocharger(heavy: Case) -> None:
+    """(4.24) with the oil temperatures of section 7.3, by an independent program, in um."""
+    films = [b for b in heavy.bearings if isinstance(b, FloatingRingBearing)]
+    assert [b.inner.clearance * 1e6 for b in films] == pytest.approx([39.6, 39.8], abs=0.05)
+    assert [b.outer.clearance * 1e6 for b in films] == pytest.approx([51.9, 49.1], abs=0.06)
+
+
+# --------------------------------------------------------------------------------------------------------- command
+
+
+def test_springs_of_films_at_rest(heavy: Case) -> None:
+    films = [
+        RestingFilm(np.zeros(2), 0.0, np.array([[k, 9e9], [-9e9, 3 * k]]), np.eye(2)) for k in (1e6, 2e6, 4e6, 4e6)
+    ]
+    assert film_springs(heavy, films) == pytest.approx((1 / (1 / 2e6 + 1 / 4e6), 4e6))
+    with pytest.raises(InputError, match="as many as bearings"):
+        natural_modes(heavy, [1e6, 1e6, 1e6])
+    unequal = natural_modes(heavy, film_springs(heavy, films), [0.0])
+    assert unequal.stiffness_N_m == pytest.approx((4e6 / 3, 4e6))
+
+
+def test_command_with_a_stiffness(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+    call = ["stability", "turbocharger-heavy", "--stiffness", "5e6 N/m", "--speed", "350 Hz", "--json"]
+    assert frb(call) == 0
+    said = capsys.readouterr()
+    document = json.loads(said.out)
+    free, held = document["natural_frequencies"]
+    assert free["free_bending_Hz"][0] == pytest.approx(619.0, rel=1e-3)
+    assert (held["stiffness_N_m"], held["points"][0]["speed_Hz"]) == ([5e6, 5e6], pytest.approx(350.0))
+    assert {"frequency_Hz", "direction", "kind"} == set(held["points"][0]["modes"][0])
+    assert held["reduction"]["modes"] == 6
+    assert "bending modes of 619.3, 1120, 2850 Hz" in said.err
+    assert max(map(len, said.err.splitlines())) <= 80
+    assert (tmp_path / "turbocharger-heavy-modes.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("stiffness", ["0 N/m", "-1", "5 kg", "soft"])
+def test_command_refuses_a_stiffness(stiffness: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["stability", "turbocharger-heavy", "--no-picture", "--stiffness", stiffness]) == 2
+    assert stiffness.split()[0] in capsys.readouterr().err
+
+
+def test_command_refuses_another_rotor(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["stability", "jeffcott", "--no-picture", "--stiffness", "1e6"]) == 2
+    assert "no shaft of sections" in capsys.readouterr().err
