@@ -141,3 +141,16 @@ def test_elrod_tends_to_reynolds_where_oil_comes_in(tmp_path: Path) -> None:
     ]
     last = [float(np.asarray(item.signals["eccentricity"].values)[-1]) for item in ends]
     assert last[1] == pytest.approx(last[0], abs=1e-3)
+
+
+def test_a_steep_law_costs_no_more_steps_than_a_soft_one(tmp_path: Path) -> None:
+    """A whirl that an unbalance drives: steps and film solves of all steepnesses and of their limit, within 1.5."""
+    whirl = ["speed.from=60Hz", "speed.to=60Hz", "rotor.unbalance=100 g*mm", "start.displacement=[0.3,-0.3]"]
+    models = [["film.cavitation=two-phase", f"film.two-phase.steepness={x}"] for x in (0.9, 0.99, 0.999, 0.9999)]
+    costs = []
+    for number, model in enumerate([*models, ["film.cavitation=elrod"]]):
+        case = case_of("jeffcott", "bearing.supply.pressure=2bar", *whirl, *model)
+        costs.append(frbcli.runup(case, tmp_path / f"{number}.h5").cost)
+    for name in ("steps", "film_solves"):
+        counts = [cost[name] for cost in costs]
+        assert max(counts) < 1.5 * min(counts), name

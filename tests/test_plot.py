@@ -195,8 +195,11 @@ def test_levels_of_a_ring_bearing_refer_to_both_clearances(ringed: Run, run: Run
 
 
 def test_the_summary_of_a_ring_names_its_whirls(ringed: Run) -> None:
-    told = [{"kind": kind, "film": film, "t_s": t, "speed_Hz": 100.0 * t, "frequency_ratio": 0.5}
-            for kind, film, t in (("onset", "inner", 0.5), ("lock-in", "inner", 0.8), ("onset", "outer", 2.2))]  # fmt: skip
+    moments = (("onset", "inner", 0.5), ("lock-in", "inner", 0.8), ("onset", "outer", 2.2))
+    told = [
+        {"kind": kind, "film": film, "t_s": t, "speed_Hz": 100.0 * t, "frequency_ratio": 0.5}
+        for kind, film, t in moments
+    ]
     written = texts(summary_figure(replace(ringed, events=told)))
     for text in ("Sub$_i$ inner\n50.0 Hz", "Sub$_o$ outer\n220.0 Hz"):
         assert text in written

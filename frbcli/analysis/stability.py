@@ -189,15 +189,13 @@ def _linearised(system: System, speed: float, resting: Array) -> StabilityPoint:
     omega = 2 * math.pi * speed
     journals = system.rotor.journals @ resting
     turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
-    omegas = system.omegas(omega, turning)
     films = tuple(
-        _resting_film(system.film_force(i, position, np.zeros(2), float(omegas[i])), position / clearance)
-        for i, (clearance, position) in enumerate(zip(system.clearances, journals, strict=True))
+        _resting_film(system.film_force(i, place, np.zeros(2), float(total)), place / system.clearances[i])
+        for i, (place, total) in enumerate(zip(journals, system.omegas(omega, turning), strict=True))
     )
     stiffness, damping = np.stack([film.stiffness for film in films]), np.stack([film.damping for film in films])
-    rotor = without_spins(system.rotor, system.ring_count)
-    rings = tuple((turning / (2 * math.pi)).tolist())
-    return StabilityPoint(speed, films, eigenvalues(rotor, omega, stiffness, damping), ring_speeds_Hz=rings)
+    values = eigenvalues(without_spins(system.rotor, system.ring_count), omega, stiffness, damping)
+    return StabilityPoint(speed, films, values, ring_speeds_Hz=tuple((turning / (2 * math.pi)).tolist()))
 
 
 def _resting_film(force: FilmForce, displacement: Array) -> RestingFilm:
@@ -236,8 +234,8 @@ def _crossing(system: System, low: float, high: float) -> tuple[Threshold | None
 
 def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
     if not speeds:
-        fault = Fault("speed.to", f"{case.speed.end:g} Hz", None, "leaves no speed.", "Let the rotor turn.")
-        raise InputError(case.name or "case", (fault,))
+        given = f"{case.speed.end:g} Hz"
+        raise InputError(case.name or "case", (Fault("speed.to", given, None, "leaves no speed.", "Let it turn."),))
     wrong = [speed for speed in speeds if not (math.isfinite(speed) and speed > 0.0)]
     if wrong:
         faults = [Fault("speed", f"{s:g} Hz", None, "must be greater than 0.", 'Write e.g. "25 Hz".') for s in wrong]
@@ -252,8 +250,6 @@ def _row(point: StabilityPoint) -> dict[str, float | str]:
         row |= {f"eccentricity{end}": film.eccentricity, f"attitude_deg{end}": film.attitude_deg}
         row |= {f"d{axis}{end}": value for axis, value in zip("xy", film.displacement.tolist(), strict=True)}
         for name, matrix in (("stiffness_{}_N_m", film.stiffness), ("damping_{}_N_s_m", film.damping)):
-            row |= {
-                name.format("xy"[i] + "xy"[j]) + end: float(value) for (i, j), value in np.ndenumerate(matrix)
-            }
+            row |= {name.format("xy"[i] + "xy"[j]) + end: float(value) for (i, j), value in np.ndenumerate(matrix)}
     critical = point.critical
     return row | {"growth_1_s": critical.real, "frequency_Hz": critical.imag / (2 * math.pi)}

@@ -159,6 +159,8 @@ def _point(point: StabilityPoint) -> dict[str, object]:
     document |= films[0] if films else dict.fromkeys(_FILM_KEYS)
     if len(films) > 1:
         document["films"] = films
+    if point.ring_speeds_Hz:
+        document["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
     if point.problem:
         document["problem"] = point.problem
     return document | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}

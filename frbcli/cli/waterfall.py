@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("run_file", metavar="RUN.h5", type=RUN)
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-waterfall.png]")
-@click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME of a bearing, disk_NAME.")
+@click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME, disk_NAME.")
 @click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
 @click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
 @click.option("--window", type=SECONDS, default="0.2 s", show_default=True, help="Length of one spectrum.")

@@ -31,8 +31,8 @@ PUMPED = 0.3  # share of the pressure that the largest speed could build up: a g
 
 @dataclass(frozen=True)
 class FilmPlace:
-    """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING, which
-    a blocked ring counts as; the body that its openings turn with; the name that results carry."""
+    """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING,
+    which a blocked ring counts as; the body that its openings turn with; the name that results carry."""
 
     geometry: FilmGeometry
     inside: int

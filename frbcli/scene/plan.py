@@ -5,7 +5,7 @@ Everything that a run decides on its own is decided here, in the open; what the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
@@ -233,7 +233,11 @@ def _refuse_what_is_not_modelled(case: Case) -> None:
         if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):
             missing("bearing.supply.axial_position", f"{supply.axial_position:g}", ("0.5, 0 and 1",))
             continue
-        for found in section_faults(film_section(case, place.geometry)):
+        section = film_section(case, place.geometry)
+        if case.film.cavitation not in REMEMBERING:  # a film that makes its oil cannot run dry
+            far = "oil-bath" if section.far == "free-to-air" else section.far
+            section = replace(section, near="oil-bath", far=far)
+        for found in section_faults(section):
             faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
     if not faults and len(case.bearings) != 1 and not isinstance(case.rotor, TurbochargerRotor):
         both = "one [bearing], which stands for both of a symmetric rotor"

@@ -84,8 +84,8 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
 
 
 def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
-    """(rings,) speeds in rad/s at which the torques (4.17) on the rings balance, films full of oil, at rest in `position`
-    (films, 2) in m.
+    """(rings,) speeds in rad/s at which the torques (4.17) on the rings balance, films full of oil, at rest in
+    `position` (films, 2) in m.
 
     Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
     """

@@ -18,9 +18,9 @@ from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_down_profile, run_up_profile
+from frbcli.solve.cosimulation import in_turn, micro_cost
 from frbcli.solve.film_error import SAMPLES, film_force_error
 from frbcli.solve.interrupt import held_back
-from frbcli.solve.cosimulation import in_turn, micro_cost
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.march import advance
 from frbcli.solve.oil import no_oil_comes_in, oil_defect, oil_passed
