@@ -36,6 +36,7 @@ AXIAL, AROUND = 10, 20  # the mesh of the naive film, as published
 WINDOW_s = 5e-4  # of the run-up that the naive way is timed on, at each of these times
 WINDOW_STARTS_s = (2.0, 4.5)
 REPEATS = 3
+FORCES_ms = 30.0  # of five naive forces, on the machine of the limits in seconds
 
 
 def report(text: str) -> None:
@@ -203,12 +204,33 @@ def start_seconds(tmp_path: Path, cache: Path) -> float:
     return float(result.stdout)
 
 
+def slowness() -> float:
+    """How many times slower this machine is now than the one that the limits in seconds are meant for, at least 1.
+
+    Told by five naive forces, which took FORCES_ms there: limits in seconds say nothing on a machine that is half as
+    fast, or at a moment when others use it.
+    """
+    case = load_case("jeffcott")
+    film = NaiveFilm(make_system(case, make_plan(case)).bearings[0])
+    d, v = np.array([0.3, -0.2]), np.array([1.0, -2.0])
+    film.force(d, v, 200.0)
+    times = []
+    for _ in range(5):
+        began = time.perf_counter()
+        for _ in range(5):
+            film.force(d, v, 200.0)
+        times.append(1e3 * (time.perf_counter() - began))
+    return max(1.0, min(times) / FORCES_ms)
+
+
 def test_start_of_a_run(tmp_path: Path) -> None:
+    slow = slowness()
     cold = start_seconds(tmp_path, tmp_path / "cache")
     warm = min(start_seconds(tmp_path, tmp_path / "cache") for _ in range(5))
     report(f"\nto the first step: {cold:.1f} s after installation, with compilation; {warm:.2f} s later")
-    assert cold < 30
-    assert warm < 1
+    report(f"; this machine is {slow:.1f} times slower than the one of the limits\n")
+    assert cold < 30 * slow
+    assert warm < 1 * slow
 
 
 def test_help_answers_at_once() -> None:

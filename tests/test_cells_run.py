@@ -154,3 +154,11 @@ def test_a_steep_law_costs_no_more_steps_than_a_soft_one(tmp_path: Path) -> None
     for name in ("steps", "film_solves"):
         counts = [cost[name] for cost in costs]
         assert max(counts) < 1.5 * min(counts), name
+
+
+@pytest.mark.parametrize("cavitation", ["reynolds", "penalty"])
+def test_kinked_models_settle_where_bores_turn_fast(cavitation: str, tmp_path: Path) -> None:
+    """Plain Newton steps go to and fro here, however short the time step."""
+    settings = ["speed.from=600Hz", "speed.to=606Hz", "speed.duration=0.01s", "film.penalty.pressure=absolute"]
+    case = load_case("floating-ring", [f"film.cavitation={cavitation}", *settings, "accuracy.mesh=[6,48]"])
+    assert frbcli.runup(case, tmp_path / "run.h5").status == "finished"

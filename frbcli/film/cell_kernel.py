@@ -327,6 +327,15 @@ def evaluate_cells(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
+def damp(cells, rate, stencil):  # type: ignore[no-untyped-def]
+    """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see newton.py."""
+    m, k = stencil.shape[1], stencil.shape[2]
+    for i in range(m):
+        for j in range(k):
+            stencil[CENTRE, i, j] += rate * cells[UNKNOWN, i, j] * cells[AREA, i, j]
+
+
+@njit(cache=True, error_model="numpy")
 def film_newton(  # type: ignore[no-untyped-def]
     numbers,
     ring,

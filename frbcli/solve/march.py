@@ -56,6 +56,7 @@ from frbcli.solve.state import (
 from frbcli.solve.step import SAFETY, local_error, step_after, step_to_take, write_outputs
 
 NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
+CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer
 NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
 SMALLEST_STEP = 1e-12  # s
 ERROR_MEMORY = 0.1  # s: how long a local error is taken to live on in a damped rotor
@@ -159,8 +160,8 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil
                 for i in range(n):
                     at[LATE, i] = at[FREE, i]
             solved = False
-            for iteration in range(NEWTON_LIMIT):
-                forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration == 0, film)
+            for iteration in range(CELL_LIMIT if has_cells else NEWTON_LIMIT):
+                forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
                 numbers[SOLVES] += m // 2
                 share, left, moved, unsettled = correct(films, work, compliance, clearances, g, limit, film, newton)
                 if left == math.inf:

@@ -53,7 +53,7 @@ def _move_journals(motions, times, t, g, film, bodies, angles, lagrange):  # typ
 def _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, film):  # type: ignore[no-untyped-def]
     """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
     for iteration in range(NEWTON_LIMIT):
-        forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration == 0, film)
+        forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
         unsettled = 0
         for f in range(clearances.shape[0]):
             if not math.isfinite(film[FORCE, 2 * f] + film[FORCE, 2 * f + 1]):

@@ -28,6 +28,7 @@ from frbcli.film.cell_kernel import (
     FRACTION,
     SIDES,
     STATES,
+    damp,
     evaluate_cells,
     film_loads,
     law_parameters,
@@ -46,6 +47,7 @@ PASSED, NOW = range(2)
 SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
+PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
 SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
@@ -117,12 +119,12 @@ def film_numbers(
     omega: float,
     g: float,
     s: int,
-    first: bool,
+    iteration: int,
 ) -> Any:
     """The ten numbers of film_force for film f; those of cells hold all in the derivatives by the velocity.
 
     A film whose balances hold already, but not in the first iteration of stage s, is settled: its rates are kept, and
-    it only follows the journal.
+    it only follows the journal. One that does not settle goes on with shorter steps.
     """
     raise NotImplementedError
 
@@ -188,13 +190,13 @@ def _guess(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-def]
 
 
 @overload(film_numbers, inline="always")
-def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, first):  # type: ignore[no-untyped-def]
+def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
     if not _volumes(films):
-        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, first: film_force(
+        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: film_force(
             films[f], d_x, d_y, v_x, v_y, omega
         )
 
-    def volumes(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, first):  # type: ignore[no-untyped-def]
+    def volumes(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
         return _cell_numbers(
             films.numbers[f],
             films.ring[f],
@@ -216,7 +218,7 @@ def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, first):  # ty
             v_y,
             omega,
             g,
-            first,
+            iteration,
         )
 
     return volumes
@@ -244,7 +246,7 @@ def _cell_numbers(  # type: ignore[no-untyped-def]
     v_y,
     omega,
     g,
-    first,
+    iteration,
 ):
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
     c, s = math.cos(turn), math.sin(turn)
@@ -253,7 +255,7 @@ def _cell_numbers(  # type: ignore[no-untyped-def]
     against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
     v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
     remembers = numbers[REMEMBERS] != 0.0
-    if first:  # what the law follows stays as it is at the guess: its derivatives are left out
+    if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, x, y, omega)
     mean, largest = evaluate_cells(
         numbers,
@@ -279,7 +281,7 @@ def _cell_numbers(  # type: ignore[no-untyped-def]
     )
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
     left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest)
-    if left < SETTLED * pace and not first:
+    if left < SETTLED * pace and iteration > 0:
         grid[UNSETTLED] = 0.0
         if remembers:
             store_rates(ring, cells, states, x, y, g, past, fields, rates)
@@ -291,6 +293,8 @@ def _cell_numbers(  # type: ignore[no-untyped-def]
         f_x, f_y, _, _, _, _ = film_loads(numbers, ring, width, states, fields)
     else:
         grid[UNSETTLED] = 1.0
+        if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
+            damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
         solve_ring(stencil, blocks, fields)
         f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, width, states, fields)
         m, k = w.shape

@@ -40,11 +40,11 @@ def norm(x, y):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _bearing(  # type: ignore[no-untyped-def]
-    films, work, f, d_x, d_y, v_x, v_y, speed, g, s, first, clearance, contact_at, contact_stiffness
+    films, work, f, d_x, d_y, v_x, v_y, speed, g, s, iteration, clearance, contact_at, contact_stiffness
 ):
     """The film's force plus, beyond the contact eccentricity, the elastic contact of the case."""
     f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
-        films, work, f, d_x, d_y, v_x, v_y, speed, g, s, first)
+        films, work, f, d_x, d_y, v_x, v_y, speed, g, s, iteration)
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     if contact_stiffness > 0.0 and eccentricity > contact_at:
         k = contact_stiffness * clearance
@@ -179,13 +179,13 @@ def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ig
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def forces(films, work, clearances, contact_at, contact_stiffness, g, s, first, film):  # type: ignore[no-untyped-def]
+def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film):  # type: ignore[no-untyped-def]
     """Fill FORCE, BY_X, BY_Y at the velocities U."""
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _bearing(
             films, work, f, (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c,
-            film[U, x] / c, film[U, y] / c, film[OMEGA, x], g, s, first, c, contact_at, contact_stiffness)
+            film[U, x] / c, film[U, y] / c, film[OMEGA, x], g, s, iteration, c, contact_at, contact_stiffness)
         film[FORCE, x], film[FORCE, y] = f_x, f_y
         film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
         film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
