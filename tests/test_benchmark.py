@@ -220,13 +220,14 @@ def slowness() -> float:
         for _ in range(5):
             film.force(d, v, 200.0)
         times.append(1e3 * (time.perf_counter() - began))
-    return max(1.0, min(times) / FORCES_ms)
+    return max(1.0, float(np.median(times)) / FORCES_ms)
 
 
 def test_start_of_a_run(tmp_path: Path) -> None:
     slow = slowness()
     cold = start_seconds(tmp_path, tmp_path / "cache")
     warm = min(start_seconds(tmp_path, tmp_path / "cache") for _ in range(5))
+    slow = max(slow, slowness())  # its speed changes within a minute
     report(f"\nto the first step: {cold:.1f} s after installation, with compilation; {warm:.2f} s later")
     report(f"; this machine is {slow:.1f} times slower than the one of the limits\n")
     assert cold < 30 * slow

@@ -10,6 +10,7 @@ from concurrent.futures import BrokenExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
+from typing import Any
 
 import joblib
 
@@ -105,8 +106,9 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
         return
     from distributed import Client, KilledWorker
 
+    connect: Any = Client  # without types where it is installed
     try:
-        client = Client(workers.scheduler, timeout=CONNECT_WITHIN_s, set_as_default=False)  # type: ignore[no-untyped-call]
+        client = connect(workers.scheduler, timeout=CONNECT_WITHIN_s, set_as_default=False)
     except (OSError, ValueError) as error:
         remedy = "Start `dask scheduler` and `dask worker`, and give the scheduler's address."
         raise _refuse("--scheduler", workers.scheduler, f"cannot be reached: {error}.", remedy) from error
