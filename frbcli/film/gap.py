@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -100,6 +100,12 @@ class Section:
     def aspect(self) -> float:
         """(R/b)^2 of (3.9)."""
         return (self.radius / self.width) ** 2
+
+
+def ends_at_ambient(section: Section) -> Section:
+    """The section with its free ends at the ambient pressure, for models that know no oil that is missing there."""
+    near, far = ("oil-bath" if edge == "free-to-air" else edge for edge in (section.near, section.far))
+    return replace(section, near=near, far=far)
 
 
 def gap_height(section: Section, d: tuple[float, float], phi: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.gap import Section, graded_ring
+from frbcli.film.gap import Section, ends_at_ambient, graded_ring
 from frbcli.film.grid import Array
 from frbcli.film.volume_data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, STANDS
 from frbcli.film.volume_grid import VolumeGrid, volume_grid
@@ -132,8 +132,7 @@ def volume_film(case: Case, geometry: FilmGeometry, cells: tuple[int, int]) -> t
     """A film on volumes for a run, equal cells (around, along), and what its law follows."""
     section = film_section(case, geometry)
     if case.film.cavitation in CLOSED_ENDS and geometry.ends == "free-to-air":
-        far = "oil-bath" if section.far == "free-to-air" else section.far
-        section = replace(section, near="oil-bath", far=far)
+        section = ends_at_ambient(section)
     law, follows = make_law(case, section)
     speed = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect

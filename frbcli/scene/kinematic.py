@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from frbcli.case.bearing import Bores, SingleFilmBearing
 from frbcli.case.schema import Case
@@ -16,7 +16,7 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.gap import Section
+from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.section_faults import section_faults, starves
 from frbcli.scene.kinematic_faults import bearing_faults, motion_faults
 from frbcli.scene.plan import Decision
@@ -93,8 +93,7 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     rectangle = film_rectangle(bearing, section)
     closed = cavitation in ("sommerfeld", "half-sommerfeld") and bearing.ends == "free-to-air"
     if closed:
-        far = "oil-bath" if section.far == "free-to-air" else section.far
-        section = replace(section, near="oil-bath", far=far)
+        section = ends_at_ambient(section)
     decisions = [_gap_decision(section, bearing), *_lobe_decision(section)]
     published = cavitation == "two-phase" and case.film.two_phase.form == "published"
     decisions.append(PUBLISHED_FILM if published else _film_decision(cavitation, rectangle is not None))

@@ -5,12 +5,13 @@ Everything that a run decides on its own is decided here, in the open; what the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import section_faults, starves
 from frbcli.film.table import Mesh
 from frbcli.scene.coupling import REMEMBERING, coupling_fault, plan_coupling
@@ -235,8 +236,7 @@ def _refuse_what_is_not_modelled(case: Case) -> None:
             continue
         section = film_section(case, place.geometry)
         if case.film.cavitation not in REMEMBERING:  # a film that makes its oil cannot run dry
-            far = "oil-bath" if section.far == "free-to-air" else section.far
-            section = replace(section, near="oil-bath", far=far)
+            section = ends_at_ambient(section)
         for found in section_faults(section):
             faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
     if not faults and len(case.bearings) != 1 and not isinstance(case.rotor, TurbochargerRotor):
