@@ -16,8 +16,10 @@ from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cell_kernel import FLOWS, SIDES, STATES, balances, cell_states, film_newton, wright_omega
-from frbcli.film.cell_law import cell_law, law_code
+from frbcli.film.cell_balances import FLOWS, SIDES, balances
+from frbcli.film.cell_law import cell_law, law_code, wright_omega
+from frbcli.film.cell_newton import film_newton
+from frbcli.film.cell_states import STATES, cell_states
 from frbcli.film.gap import Hole, Section, gap_height
 from frbcli.film.volume_data import volume_films
 from frbcli.film.volume_grid import volume_grid

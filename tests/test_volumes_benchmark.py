@@ -23,7 +23,9 @@ from frbcli.film.block_cyclic import ENTRIES
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cell_kernel import FLOWS, FRACTION, SIDES, STATES, cell_states, film_newton
+from frbcli.film.cell_balances import FLOWS, SIDES
+from frbcli.film.cell_newton import film_newton
+from frbcli.film.cell_states import FRACTION, STATES, cell_states
 from frbcli.film.volume_data import COS, FIRST, GAP, SECOND, SIN, volume_films
 from frbcli.film.volumes import VolumeFilm, fitted_grid, reference_pressure
 

@@ -10,7 +10,9 @@ from frbcli.film.balance import Motion
 from frbcli.film.bearing import FilmForce
 from frbcli.film.block_cyclic import ENTRIES
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cell_kernel import FLOWS, SIDES, STATES, film_newton
+from frbcli.film.cell_balances import FLOWS, SIDES
+from frbcli.film.cell_newton import film_newton
+from frbcli.film.cell_states import STATES
 from frbcli.film.grid import Array
 from frbcli.film.loads import force
 from frbcli.film.volume_data import BY_ECCENTRICITY_AND_SPEED, STANDS, volume_films

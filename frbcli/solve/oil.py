@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.film.balance import Motion
-from frbcli.film.cell_kernel import ENDS_NET, INFLOW, OUTFLOW, SUPPLY_NET
+from frbcli.film.cell_balances import ENDS_NET, INFLOW, OUTFLOW, SUPPLY_NET
 from frbcli.film.section_faults import starves
 from frbcli.scene.system import System
 from frbcli.solve.passengers import OIL, PASSED, W

@@ -16,8 +16,9 @@ import math
 import numpy as np
 from numba import njit
 
+from frbcli.solve.cell_passengers import GRID_SPEED, GRID_TURN
 from frbcli.solve.dense import solve_dense
-from frbcli.solve.passengers import GRID_SPEED, GRID_TURN, drag_integral, film_numbers, move_film
+from frbcli.solve.passengers import drag_integral, film_numbers, move_film
 from frbcli.solve.state import GRID, SLIP, SUM
 
 CLOSEST = 0.5  # share of the remaining gap that one Newton correction may close
@@ -44,7 +45,8 @@ def _bearing(  # type: ignore[no-untyped-def]
 ):
     """The film's force plus, beyond the contact eccentricity, the elastic contact of the case."""
     f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
-        films, work, f, d_x, d_y, v_x, v_y, speed, g, s, iteration)
+        films, work, f, d_x, d_y, v_x, v_y, speed, g, s, iteration
+    )
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     if contact_stiffness > 0.0 and eccentricity > contact_at:
         k = contact_stiffness * clearance
@@ -94,7 +96,8 @@ def prepare(rotor, pick, g, speed, products, loads, spread, compliance):  # type
     for i in range(n):
         for j in range(n):
             dynamic[i, j] = rotor.mass[i, j] + g * (
-                rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j])
+                rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j]
+            )
             right[i, j] = rotor.damping[i, j]
             right[i, n + j] = rotor.stiffness[i, j]
             right[i, 2 * n + j] = rotor.gyroscopic[i, j]
@@ -184,8 +187,21 @@ def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iterati
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _bearing(
-            films, work, f, (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c,
-            film[U, x] / c, film[U, y] / c, film[OMEGA, x], g, s, iteration, c, contact_at, contact_stiffness)
+            films,
+            work,
+            f,
+            (film[X_0, x] + g * film[U, x]) / c,
+            (film[X_0, y] + g * film[U, y]) / c,
+            film[U, x] / c,
+            film[U, y] / c,
+            film[OMEGA, x],
+            g,
+            s,
+            iteration,
+            c,
+            contact_at,
+            contact_stiffness,
+        )
         film[FORCE, x], film[FORCE, y] = f_x, f_y
         film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
         film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
@@ -233,7 +249,8 @@ def correct(films, work, compliance, clearances, g, limit, film, newton):  # typ
     for f in range(clearances.shape[0]):
         c = clearances[f]
         unsettled += move_film(
-            films, work, f, share * film[CORRECTION, 2 * f] / c, share * film[CORRECTION, 2 * f + 1] / c, g)
+            films, work, f, share * film[CORRECTION, 2 * f] / c, share * film[CORRECTION, 2 * f + 1] / c, g
+        )
     return share, min(left, moved), moved, unsettled
 
 

@@ -9,21 +9,13 @@ import numpy as np
 from frbcli.case.schema import Start
 from frbcli.errors import NotConverged
 from frbcli.film.balance import Motion
-from frbcli.film.cell_kernel import FLOWS
+from frbcli.film.cell_balances import FLOWS
 from frbcli.film.steady_force import steady_solution
 from frbcli.film.volume_data import VolumeFilms
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.system import System
-from frbcli.solve.passengers import (
-    GLOBAL_FACTOR,
-    LOCAL_FACTOR,
-    NO_FACTOR,
-    OIL,
-    SIMPLE_FACTOR,
-    W_BEFORE,
-    WET,
-    W,
-)
+from frbcli.solve.cell_passengers import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
+from frbcli.solve.passengers import OIL, W_BEFORE, WET, W
 from frbcli.solve.resting import held_rotor, resting_position, ring_speeds
 from frbcli.solve.state import HISTORY, NUMBERS, STEP, STEP_DONE, Array, RotorData, State
 

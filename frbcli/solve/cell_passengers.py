@@ -1,0 +1,178 @@
+"""Films with cells in one stage of the time loop, one film at a time, compiled.
+
+A Newton step of the film with what it does per journal velocity as further right-hand sides leaves 2 x 2 equations for
+the journal; the journal's correction then moves the film (Schur's complement: the coupling is monolithic).
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from frbcli.film.block_cyclic import solve_ring
+from frbcli.film.cell_balances import BY_ITSELF, BY_X, BY_Y
+from frbcli.film.cell_newton import damp, evaluate_cells, film_loads, store_rates
+from frbcli.film.cell_states import FRACTION, law_parameters
+from frbcli.film.volume_data import AREA, COS, GAP, REMEMBERS, SIN, UNKNOWN
+
+# How a film's grid stands, where the journal is in it, and the parameters of its law.
+GRID_TURN, GRID_SPEED, GRID_X, GRID_Y, UNSETTLED, LAW_FIRST, LAW_SECOND, GRIDS = range(8)
+SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
+# The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
+CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
+PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
+SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
+NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
+
+
+@njit(cache=True, error_model="numpy")
+def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-def]
+    """w of a stage by a straight line: in the first through the step before, later through the last stage."""
+    m, k = w.shape
+    for i in range(m):
+        for j in range(k):
+            if s == 1:
+                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
+            else:
+                w[i, j] = start[i, j] + lag * (w[i, j] - start[i, j])
+
+
+@njit(cache=True, error_model="numpy")
+def cell_numbers(  # type: ignore[no-untyped-def]
+    numbers,
+    ring,
+    width,
+    cells,
+    w,
+    past,
+    states,
+    stencil,
+    blocks,
+    fields,
+    rates,
+    flows,
+    grid,
+    slopes,
+    d_x,
+    d_y,
+    v_x,
+    v_y,
+    omega,
+    g,
+    iteration,
+):
+    """film_numbers of passengers.py for a film with cells; grid (GRIDS,) says how its grid stands."""
+    turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
+    c, s = math.cos(turn), math.sin(turn)
+    x, y = c * d_x + s * d_y, c * d_y - s * d_x
+    grid[GRID_X], grid[GRID_Y] = x, y
+    against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
+    v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
+    remembers = numbers[REMEMBERS] != 0.0
+    if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
+        grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, x, y, omega)
+    mean, largest = evaluate_cells(
+        numbers,
+        ring,
+        width,
+        cells,
+        grid[LAW_FIRST],
+        grid[LAW_SECOND],
+        w,
+        x,
+        y,
+        omega - 2.0 * spin,
+        1.0 / g if remembers else 0.0,
+        past,
+        g,
+        v_f,
+        v_g,
+        spin,
+        states,
+        stencil,
+        fields,
+        flows,
+    )
+    pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
+    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest)
+    if left < SETTLED * pace and iteration > 0:
+        grid[UNSETTLED] = 0.0
+        if remembers:
+            store_rates(ring, cells, states, x, y, g, past, fields, rates)
+        m, k = w.shape
+        for i in range(m):  # the journal takes the film along as it did before
+            for j in range(k):
+                fields[i, j, k + BY_ITSELF] = 0.0
+                fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, 0], fields[i, j, 1]
+        f_x, f_y, _, _, _, _ = film_loads(numbers, ring, width, states, fields)
+    else:
+        grid[UNSETTLED] = 1.0
+        if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
+            damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
+        solve_ring(stencil, blocks, fields)
+        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, width, states, fields)
+        m, k = w.shape
+        for i in range(m):
+            for j in range(k):
+                fields[i, j, 0], fields[i, j, 1] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
+    xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
+    # back from the grid's directions: Q^T B Q
+    a, b, p, q = c * xx - s * yx, c * xy - s * yy, s * xx + c * yx, s * xy + c * yy
+    return (
+        c * f_x - s * f_y,
+        s * f_x + c * f_y,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        a * c - b * s,
+        a * s + b * c,
+        p * c - q * s,
+        p * s + q * c,
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def move_cells(w, fields, grid, u_x, u_y, g):  # type: ignore[no-untyped-def]
+    """The unknowns w (m, k) follow a correction u of the journal's velocity; 1 if the film had not settled."""
+    m, k = w.shape
+    c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
+    x, y = c * u_x + s * u_y, c * u_y - s * u_x
+    grid[GRID_X] += g * x
+    grid[GRID_Y] += g * y
+    for i in range(m):
+        for j in range(k):
+            w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
+    return 1 if grid[UNSETTLED] != 0.0 else 0
+
+
+@njit(cache=True, error_model="numpy")
+def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
+    """The mean oil fraction of a film, (4.46)."""
+    m, k = states.shape[1], states.shape[2]
+    area, oil = 0.0, 0.0
+    for i in range(m):
+        for j in range(k):
+            if cells[UNKNOWN, i, j] != 0.0:
+                area += cells[AREA, i, j]
+                oil += cells[AREA, i, j] * states[FRACTION, i, j]
+    return oil / area
+
+
+@njit(cache=True, error_model="numpy")
+def sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+    """drag_integral of passengers.py for a film with cells."""
+    if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
+        return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
+    m, k = states.shape[1], states.shape[2]
+    whole, weighed = 0.0, 0.0
+    for i in range(m):
+        h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
+        for j in range(k):
+            if cells[UNKNOWN, i, j] != 0.0:
+                whole += cells[AREA, i, j] / h
+                weighed += cells[AREA, i, j] * states[FRACTION, i, j] / h
+    if factor == LOCAL_FACTOR:
+        return weighed
+    return whole * oil_fraction(cells, states) if factor == GLOBAL_FACTOR else whole
