@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import frbcli
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
+from frbcli.film.cell_states import whirl_share
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
 from frbcli.solve.march import advance
@@ -162,3 +163,27 @@ def test_kinked_models_settle_where_bores_turn_fast(cavitation: str, tmp_path: P
     settings = ["speed.from=600Hz", "speed.to=606Hz", "speed.duration=0.01s", "film.penalty.pressure=absolute"]
     case = load_case("floating-ring", [f"film.cavitation={cavitation}", *settings, "accuracy.mesh=[6,48]"])
     assert frbcli.runup(case, tmp_path / "run.h5").status == "finished"
+
+
+def test_whirl_share() -> None:
+    def share(ratio: float, speed: float = 600.0) -> float:
+        rate = ratio * speed  # of a circle of 0.4 of the clearance
+        return float(whirl_share(0.4, 0.0, 0.0, 0.4 * rate, speed))
+
+    assert share(0.5) == share(0.4) == share(0.5, -600.0) == 1.0
+    assert share(0.0) == share(1.0) == share(-0.5) == 0.0  # at rest, synchronous, backward
+    assert share(0.275) == pytest.approx(0.5, abs=1e-3)
+    assert whirl_share(0.0, 0.0, 1.0, 1.0, 600.0) == 0.0
+    assert whirl_share(0.4, 0.0, 0.0, 10.0, 0.0) == 0.0
+
+
+def test_steepness_follows_the_whirl() -> None:
+    def path(*settings: str) -> Array:
+        case = case_of("jeffcott", "film.cavitation=two-phase", "speed.duration=0.03s", *settings)
+        return run(case, *planned(case))[0]
+
+    once, same = path(), path("film.two-phase.whirl_steepness=0.99")
+    assert np.array_equal(once, same)
+    other, steep = path("film.two-phase.whirl_steepness=0.9"), path("film.two-phase.steepness=0.9")
+    moved, whole = np.abs(other - once).max(), np.abs(steep - once).max()  # it whirls for a part of the way only
+    assert 0.0 < moved < whole

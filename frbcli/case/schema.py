@@ -117,6 +117,9 @@ class TwoPhase(Model):
     """The mass-conserving two-phase model."""
 
     steepness: OpenFraction = Field(default=0.99, description="x_1")
+    whirl_steepness: OpenFraction | None = Field(
+        default=None, description="x_1 while the journal whirls at about half the speed, in run-ups"
+    )
     form: Literal["conservative", "published"] = "conservative"
     diffusion: Literal["consistent", "streamline", "none"] = "consistent"
 

@@ -115,7 +115,7 @@ def film_newton(  # type: ignore[no-untyped-def]
 
     See balances for the arguments; returns film_loads.
     """
-    first, second = law_parameters(numbers, d_x, d_y, omega + 2.0 * spin)
+    first, second = law_parameters(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin)
     evaluate_cells(
         numbers,
         ring,

@@ -17,7 +17,8 @@ from frbcli.film.volumes import VolumeFilm
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
-# Numbers of one film. PULL: by which the given pressures fall with the square of the grid's speed, in s.
+# Numbers of one film. PULL: by which the given pressures fall with the square of the grid's speed, in s; WHIRLING: what
+# FIRST becomes in a half-frequency whirl.
 (
     ASPECT,
     REFERENCE,
@@ -38,11 +39,12 @@ CLOSED, GIVEN, FREE = range(3)
     FORCE_SCALE,
     FOLLOWS,
     PULL,
+    WHIRLING,
     FILM_NUMBERS,
-) = range(20)
+) = range(21)
 # Whether the penalty's b (3.32) follows the eccentricity, FIRST and SECOND being those of the centred journal; whether
-# both follow the speed, being those of 1 rad/s.
-STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED = range(3)
+# both follow the speed, being those of 1 rad/s; whether the first follows the whirl of the journal.
+STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL = range(4)
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
 # length of the cell; what a unit of pressure on it pushes the journal by.
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
@@ -61,8 +63,11 @@ class VolumeFilms(NamedTuple):
     cells: Array
 
 
-def volume_films(films: Sequence[VolumeFilm], follows: int = STANDS, pulls: Sequence[float] = ()) -> VolumeFilms:
-    """The films as arrays; all have grids of the same shape. follows: what a penalty does; pulls: of the films in s."""
+def volume_films(
+    films: Sequence[VolumeFilm], follows: int = STANDS, pulls: Sequence[float] = (), whirling: float = 0.0
+) -> VolumeFilms:
+    """The films as arrays; all have grids of the same shape. follows: what the parameters of the laws do; pulls: of the
+    films in s; whirling: what the laws' first parameter becomes in a whirl, if it follows that."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
@@ -73,6 +78,7 @@ def volume_films(films: Sequence[VolumeFilm], follows: int = STANDS, pulls: Sequ
     for index, film in enumerate(films):
         _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
         data.numbers[index, FOLLOWS], data.numbers[index, PULL] = follows, pulls[index] if pulls else 0.0
+        data.numbers[index, WHIRLING] = whirling
     return data
 
 

@@ -19,7 +19,7 @@ from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.gap import Section, ends_at_ambient, graded_ring
 from frbcli.film.grid import Array
-from frbcli.film.volume_data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, STANDS
+from frbcli.film.volume_data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL, STANDS
 from frbcli.film.volume_grid import VolumeGrid, volume_grid
 from frbcli.film.volumes import VolumeFilm
 from frbcli.scene.section import film_section
@@ -106,7 +106,7 @@ def make_law(case: Case, section: Section) -> tuple[Law, int]:
         modulus = film.elrod.bulk_modulus
         return (Elrod() if modulus is None else Elrod(modulus / section.pressure_scale)), STANDS
     if film.cavitation == "two-phase":
-        return TwoPhase(film.two_phase.steepness), STANDS
+        return TwoPhase(film.two_phase.steepness), STANDS if film.two_phase.whirl_steepness is None else BY_WHIRL
     return Sommerfeld(clips=film.cavitation == "half-sommerfeld"), STANDS
 
 

@@ -103,7 +103,8 @@ def make_system(case: Case, plan: Plan) -> System:
     if plan.cells is not None:
         made = [volume_film(case, place.geometry, plan.cells) for place in places]
         volumes, follows = tuple(film for film, _ in made), made[0][1]
-        data = volume_films(volumes, follows, channel_pulls(case, volumes))
+        whirling = case.film.two_phase.whirl_steepness or 0.0
+        data = volume_films(volumes, follows, channel_pulls(case, volumes), whirling)
         factor = case.film.cavitation_factor
         return replace(system, films=data, volumes=volumes, follows=follows, cavitation_factor=factor)
     bearings = tuple(_bearing(case, place.geometry) for place in places)

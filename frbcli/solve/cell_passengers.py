@@ -71,7 +71,7 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
     remembers = numbers[REMEMBERS] != 0.0
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
-        grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, x, y, omega)
+        grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, d_x, d_y, v_x, v_y, omega)
     mean, largest = evaluate_cells(
         numbers,
         ring,
