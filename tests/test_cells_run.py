@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import frbcli
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
+from frbcli.errors import InputError
 from frbcli.film.cell_states import whirl_share
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
@@ -187,3 +188,28 @@ def test_steepness_follows_the_whirl() -> None:
     other, steep = path("film.two-phase.whirl_steepness=0.9"), path("film.two-phase.steepness=0.9")
     moved, whole = np.abs(other - once).max(), np.abs(steep - once).max()  # it whirls for a part of the way only
     assert 0.0 < moved < whole
+
+
+@pytest.mark.parametrize("cavitation", ["penalty", "two-phase"])
+def test_a_grid_that_turns_with_half_the_speed_finds_the_same_path(cavitation: str) -> None:
+    settings = [f"film.cavitation={cavitation}", "bearing.supply.pressure=1.5bar", "speed.duration=0.03s"]
+
+    def apart(around: int) -> float:
+        """How far the paths on both grids are from each other, over the clearance."""
+        paths = []
+        for grid in ("fixed", "half-speed"):
+            case = case_of("jeffcott", *settings, f"film.grid={grid}", f"accuracy.mesh=[5,{around}]")
+            paths.append(run(case, *planned(case))[0])
+        return float(np.abs(paths[1] - paths[0]).max() / case.bearings[0].clearance)  # type: ignore[union-attr]
+
+    coarse, fine = apart(32), apart(64)
+    assert 0.0 < fine < 1e-3
+    assert fine < 0.6 * coarse
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"), [("jeffcott", []), ("axial-groove", ["film.cavitation=penalty"])], ids=["table", "grooves"]
+)
+def test_grid_that_cannot_turn(name: str, settings: list[str]) -> None:
+    with pytest.raises(InputError, match=r"film\.grid"):
+        make_plan(load_case(name, [*settings, "film.grid=half-speed"]))

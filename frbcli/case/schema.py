@@ -136,6 +136,9 @@ class FilmModel(Model):
         default="all", description="on floating rings: both terms of (3.17), the first one, or formula (4.6)"
     )
     coupling: Coupling = Field(default="auto", description="how rotor and films are advanced together")
+    grid: Literal["fixed", "half-speed"] = Field(
+        default="fixed", description="cells stand still, or turn with the mean speed of journal and shell (plain gaps)"
+    )
     penalty: Penalty = Penalty()
     peeken: Peeken = Peeken()
     elrod: Elrod = Elrod()

@@ -76,9 +76,14 @@ def turning_rings(case: Case) -> tuple[FloatingRingBearing, ...]:
     return tuple(bearing for bearing in rings(case) if bearing.ring.spin == "free")
 
 
-def turning(places: tuple[FilmPlace, ...], ring_count: int) -> Array:
+def is_plain(film: FilmGeometry) -> bool:
+    """Whether a gap looks the same from every angle: its cells may turn as they like."""
+    return film.lobes is None and film.supply.kind in ("none", "circumferential-groove")
+
+
+def turning(places: tuple[FilmPlace, ...], ring_count: int, half_speed: bool = False) -> Array:
     """(films, 3, 1 + rings) shares of the speeds of rotor and rings in omega_J + omega_S, in omega_J - omega_S, and in
-    the speed of the grid; see RotorData."""
+    the speed of the grid; see RotorData. half_speed: grids turn with the mean of journal and shell."""
     shares = np.zeros((len(places), 3, 1 + ring_count))
     for share, place in zip(shares, places, strict=True):
         for body, signs in ((place.inside, (1.0, 1.0)), (place.outside, (1.0, -1.0))):
@@ -87,6 +92,8 @@ def turning(places: tuple[FilmPlace, ...], ring_count: int) -> Array:
                 share[1, 1 + body] += signs[1]
         if place.grid_body != HOUSING:
             share[2, 1 + place.grid_body] = 1.0
+        if half_speed:
+            share[2] = 0.5 * share[0]
     return shares
 
 

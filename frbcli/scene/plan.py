@@ -15,7 +15,7 @@ from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import section_faults, starves
 from frbcli.film.table import Mesh
 from frbcli.scene.coupling import REMEMBERING, coupling_fault, plan_coupling
-from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.films import film_places, is_plain, turning_rings
 from frbcli.scene.section import film_section
 
 THEORIES = ("short", "finite")
@@ -110,6 +110,8 @@ def make_plan(case: Case) -> Plan:
             "set in the case" if case.accuracy.mesh is not None else "parabolas over the width need few along the axis"
         )
         decide("film", f"{cells[0]} x {cells[1]} cells", f"finite volumes, around x along; {why}")
+        if case.film.grid != "fixed":
+            decide("grid", case.film.grid, "set in the case; the cells go with the oil between journal and shell")
         for place in places:
             section = film_section(case, place.geometry)
             if cavitation in ("elrod", "two-phase") and starves(section):
@@ -229,6 +231,8 @@ def _refuse_what_is_not_modelled(case: Case) -> None:
         faults.append(fault)
     if case.film.cavitation == "two-phase" and case.film.two_phase.form == "published":
         missing("film.two-phase.form", "published", ("conservative in run-ups",))
+    if case.film.grid != "fixed" and not (needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))):
+        missing("film.grid", case.film.grid, ("fixed where a film has openings or lobes, or no cells",))
     for place in film_places(case):
         supply = place.geometry.supply
         if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):

@@ -95,7 +95,7 @@ def make_system(case: Case, plan: Plan) -> System:
         names=tuple(place.name for place in places),
         clearances=tuple(place.geometry.clearance for place in places),
         bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64),
-        turning=turning(places, len(ringed)),
+        turning=turning(places, len(ringed), case.film.grid == "half-speed"),
         drags=tuple(film_drag(case, place.geometry) for place in places),
         ring_count=len(ringed),
         torque=case.film.torque,
