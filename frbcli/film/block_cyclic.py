@@ -11,12 +11,15 @@ import numpy as np
 from numba import njit
 
 CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
+# The usual lengths of columns and the usual number of right-hand sides, as tuples: the compiler knows how long they are
+# and unrolls the loops, which takes about half the time.
+FIVE, SIX, USUAL_RIGHTS = (0,) * 5, (0,) * 6, (0,) * 3
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _invert(a):  # type: ignore[no-untyped-def]
+def _invert(a, columns):  # type: ignore[no-untyped-def]
     """a (k, k) <- its inverse, by Gauss and Jordan's elimination in place."""
-    k = a.shape[0]
+    k = len(columns)
     for p in range(k):
         pivot = 1.0 / a[p, p]
         a[p, p] = 1.0
@@ -31,9 +34,9 @@ def _invert(a):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _product(a, b, to):  # type: ignore[no-untyped-def]
+def _product(a, b, to, columns, row):  # type: ignore[no-untyped-def]
     """to (k, n) <- a (k, k) b (k, n)."""
-    k, n = b.shape
+    k, n = len(columns), len(row)
     for i in range(k):
         for c in range(n):
             to[i, c] = 0.0
@@ -44,9 +47,9 @@ def _product(a, b, to):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _subtract_product(a, diagonal, b, to):  # type: ignore[no-untyped-def]
+def _subtract_product(a, diagonal, b, to, columns, row):  # type: ignore[no-untyped-def]
     """to (k, n) -= a (k, k) diag(diagonal) b (k, n)."""
-    k, n = b.shape
+    k, n = len(columns), len(row)
     for i in range(k):
         for j in range(k):
             factor = a[i, j] * diagonal[j]
@@ -56,9 +59,9 @@ def _subtract_product(a, diagonal, b, to):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _fill(stencil, i, block):  # type: ignore[no-untyped-def]
+def _fill(stencil, i, block, columns):  # type: ignore[no-untyped-def]
     """block (k, k) <- the equations of column i by its own unknowns."""
-    k = block.shape[0]
+    k = len(columns)
     for a in range(k):
         for b in range(k):
             block[a, b] = 0.0
@@ -70,19 +73,14 @@ def _fill(stencil, i, block):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
-
-    stencil: (ENTRIES, m, k) entries of the cell itself, of the cells before and behind it around the ring, of those
-    below and above it in its column. blocks: (m, k, k) scratch, as are the first k layers of fields: what a column
-    takes from the last one, so that both are one product. m >= 3. Not finite where the matrix is singular.
-    """
-    m, k, n = fields.shape
+def _solve(stencil, blocks, fields, column, row):  # type: ignore[no-untyped-def]
+    """As solve_ring; column, row: anything as long as a column and a row of fields."""
+    m, k, n = len(blocks), len(column), len(row)
     last, held = m - 1, np.empty((k, n))
     # x_i = right_i - blocks_i behind_i x_i+1 - border_i x_last, border and right beside each other
     for i in range(last):
         block = blocks[i]
-        _fill(stencil, i, block)
+        _fill(stencil, i, block, column)
         for a in range(k):
             low = stencil[BEFORE, i, a]
             if i == 0:
@@ -98,10 +96,10 @@ def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
                     held[a, c] = -low * fields[i - 1, a, c]
                 for c in range(k, n):
                     held[a, c] = fields[i, a, c] - low * fields[i - 1, a, c]
-        _invert(block)
-        _product(block, held, fields[i])
+        _invert(block, column)
+        _product(block, held, fields[i], column, row)
     block = blocks[last]
-    _fill(stencil, last, block)
+    _fill(stencil, last, block, column)
     closes = False
     for a in range(k):
         low = stencil[BEFORE, last, a]
@@ -113,15 +111,15 @@ def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
             fields[last, a, c] -= low * fields[last - 1, a, c]
     if closes:  # where the last column is cavitated, it does not feel the first
         for i in range(last - 2, -1, -1):
-            _subtract_product(blocks[i], stencil[BEHIND, i], fields[i + 1], fields[i])
+            _subtract_product(blocks[i], stencil[BEHIND, i], fields[i + 1], fields[i], column, row)
         for a in range(k):
             high = stencil[BEHIND, last, a]
             for b in range(k):
                 block[a, b] -= high * fields[0, a, b]
             for c in range(k, n):
                 fields[last, a, c] -= high * fields[0, a, c]
-    _invert(block)
-    _product(block, fields[last], held)
+    _invert(block, column)
+    _product(block, fields[last], held, column, row)
     for a in range(k):
         for c in range(k, n):
             fields[last, a, c] = held[a, c]
@@ -137,3 +135,19 @@ def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
         for a in range(k):
             for c in range(k, n):
                 fields[i, a, c] = held[a, c]
+
+@njit(cache=True, error_model="numpy")
+def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
+
+    stencil: (ENTRIES, m, k) entries of the cell itself, of the cells before and behind it around the ring, of those
+    below and above it in its column. blocks: (m, k, k) scratch, as are the first k layers of fields: what a column
+    takes from the last one, so that both are one product. m >= 3. Not finite where the matrix is singular.
+    """
+    k, n = fields.shape[1:]
+    if n == k + len(USUAL_RIGHTS) and k == len(FIVE):
+        _solve(stencil, blocks, fields, FIVE, FIVE + USUAL_RIGHTS)
+    elif n == k + len(USUAL_RIGHTS) and k == len(SIX):
+        _solve(stencil, blocks, fields, SIX, SIX + USUAL_RIGHTS)
+    else:
+        _solve(stencil, blocks, fields, stencil[0, 0], fields[0, 0])
