@@ -40,7 +40,7 @@ TABLES = {
     '[bearing] kind = "single-film"': "SingleFilmBearing",
     '[bearing] kind = "floating-ring"': "FloatingRingBearing",
     "[bearing.ring]": "Ring",
-    "[bearing.inner], [bearing.outer]": "FilmGeometry",
+    "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",
     "lobes = { ... }": "Lobes",
     'supply = { kind = "none" }': "NoSupply",

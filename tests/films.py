@@ -12,8 +12,8 @@ from frbcli.film.bearing import RectangularBearing, evaluate, make_film
 from frbcli.film.kernel import FilmData
 from frbcli.film.table import Mesh
 from frbcli.rotor.linear import LinearRotor
+from frbcli.scene.film_choice import DEFAULT_MESH
 from frbcli.scene.films import HOUSING, ROTOR
-from frbcli.scene.plan import DEFAULT_MESH
 from frbcli.scene.system import System
 
 CLEARANCE, RADIUS, VISCOSITY, AMBIENT = 40e-6, 12.5e-3, 10e-3, 1e5

@@ -153,6 +153,21 @@ def test_short_bearing_run_up(tmp_path: Path) -> None:
     assert pace >= 20
 
 
+@pytest.mark.parametrize("reading", ["absolute", "dimensionless"])
+def test_penalty_run_up(reading: str, tmp_path: Path) -> None:
+    """With the time that its table takes."""
+    case = load_case("jeffcott", ("film.cavitation=penalty", f"film.penalty.pressure={reading}"))
+    run = best(lambda: runup(case, tmp_path / "run.h5"))
+    plan, tables = make_plan(case), []
+    for _ in range(REPEATS):
+        began = time.process_time()
+        make_system(case, plan)
+        tables.append(time.process_time() - began)
+    pace = run.t_end_s / (run.cost["cpu_s"] + min(tables))
+    report(f"\npenalty, {reading}: table {min(tables):.2f} CPU s, with it {pace:.1f} simulated s per CPU s")
+    assert pace >= 3
+
+
 def test_film_evaluations_against_the_naive_way() -> None:
     """One force with all derivatives against five naive forces: one and four for a finite-difference Jacobian."""
     from numba import njit

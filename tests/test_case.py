@@ -348,7 +348,7 @@ mesh = [1, 2.5]
         ("[rotor]", 'title = "a\\u0000b"\n[rotor]', "title", "printable"),
         ("[rotor]", "source_text = ''\n[rotor]", "source_text", "not known"),
         ("[rotor]", "bearings = []\n[rotor]", "bearings", "not known"),
-        ('from = "0 Hz"', 'from = "-1 Hz"', "speed.from", "at least"),
+        ('to = "300 Hz"', 'to = "-1 Hz"', "speed.to", "at least"),
         ('duration = "10 s"', 'duration = "0 s"', "speed.duration", "greater than"),
         ('duration = "10 s"', "duration = 2000-01-01", "speed.duration", "not a quantity"),
     ],

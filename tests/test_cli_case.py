@@ -6,7 +6,7 @@ import json
 import math
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -21,30 +21,18 @@ from frbcli.cli import main as cli
 from frbcli.cli.common import Terminal
 from frbcli.cli.main import COMMANDS, run
 from frbcli.errors import FrbError, NotConverged
-
-
-@dataclass(frozen=True)
-class Decision:
-    choice: str
-    value: str
-    reason: str
-
-
-@dataclass(frozen=True)
-class Plan:
-    decisions: tuple[Decision, ...]
+from frbcli.scene import plan
 
 
 @pytest.fixture
 def _planned(monkeypatch: pytest.MonkeyPatch) -> None:
     """A plan of one known decision, so that only the command is tested."""
-    module = ModuleType("frbcli.scene.plan")
 
-    def make_plan(case: Case) -> Plan:
-        return Plan((Decision("theory", "finite", f"[width] of {case.name}"),))
+    def make(case: Case) -> plan.Plan:
+        return replace(planned(case), decisions=(plan.Decision("theory", "finite", f"[width] of {case.name}"),))
 
-    module.make_plan = make_plan  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "frbcli.scene.plan", module)
+    planned = plan.make_plan
+    monkeypatch.setattr(plan, "make_plan", make)
 
 
 def document(capsys: pytest.CaptureFixture[str]) -> Any:
@@ -65,7 +53,7 @@ def test_check_shows_values_and_plan_to_people(capsys: pytest.CaptureFixture[str
     assert run(["check", "jeffcott", "--set", "bearing.clearance=40 um"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""
-    for expected in ("bearing.clearance", "4e-05 m", "40 um", "[width] of jeffcott"):
+    for expected in ("bearing.clearance", "4e-05 m", "40 um", "[width] of jeffcott", "expected error", "of CPU time"):
         assert expected in captured.err
 
 
@@ -79,6 +67,9 @@ def test_check_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     values = {value["key"]: (value["value"], value["unit"]) for value in found["values"]}
     assert values["oil.viscosity"] == (0.012, "Pa*s")
     assert found["plan"] == [{"choice": "theory", "value": "finite", "reason": "[width] of jeffcott"}]
+    assert 0.0 < found["expected"]["film_force_error_relative"] < found["expected"]["eccentricity_error"] * 10.0 < 0.1
+    assert found["expected"]["steps"] > 1500 * 40  # revolutions by steps of each at least
+    assert 0.05 < found["expected"]["cpu_s"] < 5.0
 
 
 def test_wrong_case_is_exit_code_2_with_every_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

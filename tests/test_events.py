@@ -282,3 +282,27 @@ def test_the_film_that_touches_is_the_one_that_ends_a_run() -> None:
     columns["eccentricity_outer"] = np.linspace(0.1, 0.99, len(run))
     events = find_events(replace(as_run(columns, "contact"), references=run.references))
     assert kinds(events) == [("contact", "outer")]
+
+
+def test_a_bump_without_a_change_of_phase_is_no_critical_speed() -> None:
+    """A film that runs dry lets the unbalance move the journal more for a while; nothing resonates."""
+    quiet = Rotor(critical_Hz=None, whirl_s=None)
+    columns = signals(quiet)
+    turn = 2 * np.pi * np.cumsum(columns["speed_Hz"]) * quiet.step_s
+    size = 0.01 * (1.0 + 2.0 * np.exp(-(((columns["time_s"] - 4.0) / 0.5) ** 2)))
+    for name in ("journal", "disk"):
+        columns[f"{name}_x_m"] = columns[f"{name}_x_m"] + size * CLEARANCE * np.cos(turn)
+        columns[f"{name}_y_m"] = columns[f"{name}_y_m"] + size * CLEARANCE * np.sin(turn)
+    assert find_events(as_run(columns)) == ()
+
+
+def test_a_rotor_that_turns_the_other_way_round_has_the_same_events() -> None:
+    columns = signals(Rotor())
+    mirrored = {name: -values if name.endswith("_y_m") or name == "speed_Hz" else values
+                for name, values in columns.items()}  # fmt: skip
+    expected, found_here = find_events(as_run(columns)), find_events(as_run(mirrored))
+    assert [event.kind for event in found_here] == [event.kind for event in expected] == ["critical-speed", "onset"]
+    for event, one in zip(found_here, expected, strict=True):
+        assert event.t_s == one.t_s
+        assert event.speed_Hz == -one.speed_Hz
+        assert event.frequency_ratio == pytest.approx(one.frequency_ratio)

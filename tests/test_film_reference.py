@@ -13,7 +13,7 @@ from films import GROOVED, PLAIN, film_of, polar
 
 from frbcli.film.bearing import RectangularBearing, evaluate
 from frbcli.film.direct import direct_force, largest_pressure
-from frbcli.scene.plan import DEFAULT_MESH
+from frbcli.scene.film_choice import DEFAULT_MESH
 
 FORCES = Path(__file__).parent / "data" / "film-forces.csv"
 Motion = tuple[np.ndarray, np.ndarray, float]

@@ -13,10 +13,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from frbcli.analysis.compare import compare
 from frbcli.analysis.ring_speed import concentric_ratios
 from frbcli.analysis.stability import stability
+from frbcli.case.listing import values
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
+from frbcli.errors import InputError
 from frbcli.results.store import Run
 from frbcli.scene.films import channel_pulls
 from frbcli.scene.plan import make_plan
@@ -274,3 +277,52 @@ def test_channels_throw_oil_outwards_unless_told_not_to() -> None:
     assert outer == 0.0
     assert channel_pulls(level, system.volumes) == (0.0, 0.0)
     assert channel_pulls(ringed('bearing.ring.spin="blocked"'), system.volumes) == (0.0, 0.0)
+
+
+# --------------------------------------------------------------------------------------- a cavitation model per film
+
+
+MIXED = (*COARSE, "bearing.inner.cavitation=two-phase", "film.two-phase.steepness=0.9", *constant(60.0, 0.02))
+
+
+def test_each_film_has_its_own_cavitation_model(tmp_path: Path) -> None:
+    """A film keeps its oil beside one that knows none."""
+    case = ringed(*MIXED, "film.cavitation=half-sommerfeld")
+    assert case.cavitations == ("two-phase", "half-sommerfeld")
+    told = [decision.value for decision in make_plan(case).decisions if decision.choice == "cavitation"]
+    assert told == ["inner: two-phase", "outer: half-sommerfeld"]
+    run = finished(case, tmp_path)
+    assert "oil_fraction_inner" in run.signals
+    assert "oil_fraction_outer" not in run.signals
+    defect = run.error["oil_balance_relative"]
+    assert defect is not None
+    assert defect < 1e-5
+    assert run.cost["oil_in_m3"] > 0.0
+    assert "film.two-phase.steepness" in {value.key for value in values(case)}
+
+
+def test_the_model_of_all_films_named_twice_changes_nothing(tmp_path: Path) -> None:
+    one = finished(ringed(*MIXED, "film.cavitation=two-phase"), tmp_path, "one")
+    two = finished(ringed(*MIXED, "bearing.outer.cavitation=two-phase"), tmp_path, "two")
+    np.testing.assert_array_equal(one["journal_y_m"], two["journal_y_m"])
+
+
+def test_a_model_of_one_film_is_felt_in_that_film(tmp_path: Path) -> None:
+    """The outer film of a heavy ring does not see what the inner one is made of."""
+    heavy = (*GROOVES, "bearing.ring.mass=1e6 kg", 'bearing.ring.spin="blocked"', "rotor.gravity=0",
+             "rotor.unbalance=50 g*mm", *constant(60.0, 0.05))  # fmt: skip
+    plain, inner, outer = (
+        finished(ringed(*heavy, *setting), tmp_path, name)
+        for name, setting in (
+            ("plain", ()),
+            ("inner", ("bearing.inner.cavitation=sommerfeld",)),
+            ("outer", ("bearing.outer.cavitation=sommerfeld",)),
+        )
+    )
+    np.testing.assert_allclose(outer["journal_x_m"], plain["journal_x_m"], atol=1e-10)
+    assert np.abs(inner["journal_x_m"] - plain["journal_x_m"]).max() > 1e-3 * 40e-6
+
+
+def test_models_cannot_be_compared_where_films_have_their_own() -> None:
+    with pytest.raises(InputError, match="some name a model of their own"):
+        compare(ringed(*MIXED), ("penalty", "half-sommerfeld"))

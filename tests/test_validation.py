@@ -11,7 +11,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from validation import chapter6, chapter6_rows, measures, validate
+from validation import chapter6, chapter6_rows, chapter_7, chapter_7_page, measures, validate
 
 from frbcli.case.load import load_case
 from frbcli.case.shipped import shipped_names
@@ -138,6 +138,13 @@ def test_every_row_is_measured_or_says_what_it_waits_for() -> None:
     for row in PRINTED.values():
         assert f"| {row['quantity']} | {row['where']} |" in text
         assert "printed" not in row or "tolerance" in row
+
+
+def test_every_number_of_chapter_7_is_on_the_page() -> None:
+    text = validate.PAGE.read_text(encoding="utf-8")
+    for row in chapter_7_page.printed():
+        assert f"| {row['text']} | {row['where']} | {row['model']} |" in text
+        assert row["study"] in chapter_7.STUDIES
 
 
 @pytest.mark.parametrize("name", shipped_names())

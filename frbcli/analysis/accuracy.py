@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from frbcli.analysis.compare import deviation
+from frbcli.analysis.differences import difference, onset_speed
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run
+from frbcli.scene.cost import solve_us
 from frbcli.scene.coupling import COUPLINGS
-from frbcli.scene.plan import DEFAULT_MESH, THEORIES, Plan, make_plan
+from frbcli.scene.film_choice import DEFAULT_MESH
+from frbcli.scene.plan import THEORIES, Plan, make_plan
 from frbcli.scene.system import make_system
 from frbcli.solve.run import Progress, runup
 
@@ -50,9 +52,10 @@ class Rung:
 
 @dataclass(frozen=True)
 class RungError:
-    """Against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s, where
-    either run begins to whirl, touches its shell, or ends; onset_Hz: difference of the rotor speeds at which the whirl
-    begins, NaN if either has none; force_relative: of the film forces at states of the run, against a finer mesh."""
+    """Against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s, where a
+    whirl begins to grow in either run, or it touches its shell or ends; onset_Hz: difference of the rotor speeds at
+    which the whirl begins, NaN if either has none; force_relative: of the film forces at states of the run, against a
+    finer mesh."""
 
     eccentricity_largest: float
     eccentricity_rms: float
@@ -64,13 +67,18 @@ class RungError:
 @dataclass(frozen=True)
 class RungResult:
     """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: what the program
-    chooses on its own."""
+    chooses on its own; signals: largest error of each signal, see Difference; stated: what the run itself says of its
+    error; work_s: CPU time by the count of its film solves and the table of scene/cost.py, whatever else the machine
+    does."""
 
     rung: Rung
     status: str
     cpu_s: float
     error: RungError
     planned: bool = False
+    signals: Mapping[str, float] = field(default_factory=dict)
+    stated: Mapping[str, float | None] = field(default_factory=dict)
+    work_s: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -95,12 +103,22 @@ class AccuracyLadder:
                 found.append(result)
         return tuple(found)
 
+    def above_front(self, quiet: bool = False) -> float:
+        """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
+        quiet: by the counted work in place of the measured CPU time."""
+        planned = next(item for item in self.ladder if item.planned)
+        error = planned.error.eccentricity_largest
+        costs = {item.rung: item.work_s if quiet else item.cpu_s for item in self.ladder}
+        as_close = [item.rung for item in self.ladder if item.error.eccentricity_largest <= error]
+        return costs[planned.rung] / min(costs[rung] for rung in as_close)
+
     def to_pandas(self) -> pd.DataFrame:
         """One row per rung."""
         import pandas as pd
 
         return pd.DataFrame([
             {**vars(item.rung), "status": item.status, "cpu_s": item.cpu_s, **vars(item.error),
+             "stated": item.stated.get("eccentricity"), "work_s": item.work_s,
              "planned": item.planned, "on_front": item in self.front}
             for item in self.ladder
         ])
@@ -180,11 +198,13 @@ def _mesh(own: Rung, factor: float) -> tuple[int, int]:
 def _result(
     rung: Rung, run: Run, reference: Run, cpu_s: float, planned: bool = False, forces_of: Run | None = None
 ) -> RungResult:
-    apart = deviation(run, reference)
+    apart = difference(run, reference)
     force = (forces_of or run).error["film_force_relative"]
-    onset = _onset(run) - _onset(reference)
+    onset = onset_speed(run) - onset_speed(reference)
     error = RungError(apart.largest, apart.rms, apart.until_s, onset, math.nan if force is None else float(force))
-    return RungResult(rung, run.status, cpu_s + float(run.cost["cpu_s"]), error, planned)
+    work = 1e-6 * float(run.cost["film_solves"]) * solve_us(make_plan(load_case_text(run.case_text)))
+    march = float(run.cost["cpu_s"])
+    return RungResult(rung, run.status, cpu_s + march, error, planned, apart.signals, run.error, work)
 
 
 def _tabulating(case: Case, rung: Rung) -> float:
@@ -194,11 +214,6 @@ def _tabulating(case: Case, rung: Rung) -> float:
     began = time.process_time()
     make_system(rung_case, plan)
     return time.process_time() - began
-
-
-def _onset(run: Run) -> float:
-    speeds = [float(event["speed_Hz"]) for event in run.events if event["kind"] == "onset"]
-    return speeds[0] if speeds else math.nan
 
 
 def _until(case: Case, until: float | None) -> Case:

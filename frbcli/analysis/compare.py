@@ -17,9 +17,10 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.film_choice import CLOSED
 from frbcli.scene.kinematic import MODELS
 from frbcli.scene.kinematic import TESTS as KINEMATIC_TESTS
-from frbcli.scene.plan import CLOSED, THEORIES, make_plan
+from frbcli.scene.plan import THEORIES, make_plan
 from frbcli.solve.run import Progress, runup
 
 if TYPE_CHECKING:
@@ -119,8 +120,9 @@ def compare(
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings)
     cases = [_with_models(case, variant) for variant in variants]
-    for its_case in cases:
+    for variant, its_case in zip(variants, cases, strict=True):
         make_plan(its_case)
+        _check_own_models(case, variant, its_case)
     runs: list[Run] = []
     with _directory(keep) as folder:
         for variant, its_case in zip(variants, cases, strict=True):
@@ -202,10 +204,20 @@ def _with_models(case: Case, variant: Variant) -> Case:
 def _fits(case: Case, variant: Variant) -> bool:
     """Whether a run-up of the case can be made with the model: no short bearing with openings, for instance."""
     try:
-        make_plan(_with_models(case, variant))
+        its_case = _with_models(case, variant)
+        make_plan(its_case)
+        _check_own_models(case, variant, its_case)
     except InputError:
         return False
     return True
+
+
+def _check_own_models(case: Case, variant: Variant, its_case: Case) -> None:
+    """Raise InputError for a variant whose model some film does not take, having one of its own."""
+    if variant.cavitation != case.film.cavitation and set(its_case.cavitations) != {variant.cavitation}:
+        problem = "is not what all films are computed with: some name a model of their own."
+        remedy = "Remove `cavitation` from the films of the bearing, or compare couplings only."
+        raise InputError(case.name or "case", (Fault("--cavitation", variant.cavitation, None, problem, remedy),))
 
 
 @contextmanager

@@ -1,10 +1,9 @@
 """Events of a run, found from its signals alone: critical speed, onset, offset and lock-in of whirl, contact.
 
-The motion x + iy is read at even steps of the rotor's angle, where the synchronous motion turns once per revolution
-whatever the speed does. A Hann window of R revolutions that turns with order q (times the rotor speed) then gives the
-amplitude of that order, and is blind to the orders q + j/R for |j| >= 2. With R = 4 the window for half the rotor
-speed sees 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance (order 1). Floating rings whirl at
-lower orders, and with several frequencies at once: see subsynchronous.py.
+The motion x + iy is read at even steps of the rotor's angle (revolutions.py). With a window of 4 revolutions the
+amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
+(order 1). Floating rings whirl at lower orders, and with several frequencies at once: see subsynchronous.py. The
+critical speed is in resonance.py.
 """
 
 from __future__ import annotations
@@ -15,16 +14,16 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import find_peaks, oaconvolve
 from scipy.signal.windows import hann
 
 from frbcli.analysis import signals
+from frbcli.analysis.resonance import critical_sample
+from frbcli.analysis.revolutions import SAMPLES_PER_REVOLUTION, Revolutions, by_angle, order_amplitude, revolutions
 from frbcli.analysis.signals import Motion, RunLike, Values, joined, points
 from frbcli.analysis.subsynchronous import find_whirls
 
 Kind = Literal["critical-speed", "onset", "offset", "lock-in", "contact"]
 
-SAMPLES_PER_REVOLUTION = 32  # a rotor's natural frequency then lies below the limit of sampling from some 10 Hz upwards
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
 WHIRL_BAND = (0.2, 0.8)  # orders in which the dominating frequency is sought
@@ -33,15 +32,6 @@ FREQUENCY_PADDING = 16  # interpolation between these lines
 WHIRL_BEGINS = 0.05  # amplitude relative to the clearance; unbalance and noise of a quiet run stay below in that order
 WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one whirl
 SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies sooner is a transient
-
-START_s = 0.3  # the rotor falls from its starting position to its place in the first tenths of a second
-START_REVOLUTIONS = 5.0
-
-CRITICAL_REVOLUTIONS = 8  # a resonance is passed in many more; twice the whirl's window halves the noise
-ORDER_WITHOUT_MOTION = 1.5  # neither whirl nor unbalance nor its harmonics: what is seen there is the background
-CRITICAL_PROMINENCE = 0.25  # share of its height by which a peak stands out of the higher of its two sides
-CRITICAL_OVER_BACKGROUND = 5.0
-CRITICAL_FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a rotor without unbalance
 
 CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact begins
 CONTACT_PAUSE_s = 0.1  # a journal that bounces touches many times in one contact
@@ -63,15 +53,6 @@ class Event:
     frequency_ratio: float | None
 
 
-@dataclass(frozen=True)
-class Revolutions:
-    """Even steps of the rotor's angle: revolution (m,), the time (m,) when each is reached and the speed (m,) there."""
-
-    revolution: Values
-    time_s: Values
-    speed_Hz: Values
-
-
 def find_events(run: RunLike) -> tuple[Event, ...]:
     """The events of a run, in the order of time.
 
@@ -83,16 +64,19 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     if len(time_s) < 2:
         return ()
     events: list[Event] = []
-    turns = _revolutions(time_s, speed)
+    turns = revolutions(time_s, speed)
     bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
     for name in bearings:
         room = signals.bearing_clearance(run, name)
         if room is not None and name in rings:
             events += _ring_whirls(run, name, room, turns)
         elif room is not None:
-            motion = _by_angle(run, "journal", name, turns) / room
+            motion = by_angle(run, "journal", name, turns) / room
             events += _whirl(motion, turns, name or None, run.status == "contact")
-    events += _critical_speed(run, turns, bearings, min((e.t_s for e in events), default=np.inf))
+    critical = critical_sample(run, turns, bearings, min((e.t_s for e in events), default=np.inf))
+    if critical is not None:
+        its_speed = float(turns.speed_Hz[critical])
+        events.append(Event("critical-speed", None, float(turns.time_s[critical]), its_speed, its_speed, 1.0))
     named = list(signals.films(run.signals))
     touching = max(named, key=lambda film: float(run[joined("eccentricity", film)][-1]), default="")
     for film in named:
@@ -102,42 +86,10 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     return tuple(sorted(events, key=lambda event: event.t_s))
 
 
-def order_amplitude(motion: Motion, order: float, revolutions: int) -> Values:
-    """Amplitude of the forward motion of an order: `motion` (n,) at even angles -> (n - w + 1,), w samples per window.
-
-    Value i belongs to the middle of the window, sample i + w // 2; empty if the motion is shorter than a window.
-    """
-    width = revolutions * SAMPLES_PER_REVOLUTION
-    if len(motion) < width:
-        return np.empty(0)
-    window = hann(width, sym=False)
-    turning = window / window.sum() * np.exp(2j * np.pi * order * np.arange(width) / SAMPLES_PER_REVOLUTION)
-    return np.asarray(np.abs(oaconvolve(motion, turning, mode="valid")), dtype=np.float64)
-
-
-def _revolutions(time_s: Values, speed: Values) -> Revolutions:
-    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time_s)
-    revolution = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 0.0))])
-    even = np.arange(0.0, revolution[-1], 1.0 / SAMPLES_PER_REVOLUTION)
-    time_even = np.interp(even, revolution, time_s)
-    return Revolutions(even, time_even, np.interp(time_even, time_s, speed))
-
-
-def _by_angle(run: RunLike, kind: str, name: str, turns: Revolutions) -> Motion:
-    return np.asarray(np.interp(turns.time_s, run["time_s"], signals.motion_of(run, kind, name)))
-
-
-def _settled(turns: Revolutions) -> int:
-    """The first sample after the start of the run."""
-    by_angle = np.searchsorted(turns.revolution, START_REVOLUTIONS)
-    by_time = np.searchsorted(turns.time_s, (turns.time_s[0] if len(turns.time_s) else 0.0) + START_s)
-    return int(max(by_angle, by_time))
-
-
 def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> Iterator[Event]:
     """Onset, lock-in and offset of each whirl of a floating ring bearing; room in m: C_i + C_o."""
     time_s, speed_Hz = run["time_s"], run["speed_Hz"]
-    settled_s = float(turns.time_s[min(_settled(turns), len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
+    settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
     motion = signals.motion_of(run, "journal", name) / room
     whirls = find_whirls(time_s, motion, speed_Hz, signals.ring_speed(run, name), settled_s, run.status == "contact")
     for whirl in whirls:
@@ -156,7 +108,7 @@ def _whirl(motion: Motion, turns: Revolutions, film: str | None, ends_in_contact
     """Onsets and offsets; motion (m,): of the journal, relative to the clearance."""
     amplitude = order_amplitude(motion, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)
     middle = WHIRL_REVOLUTIONS * SAMPLES_PER_REVOLUTION // 2
-    settled = _settled(turns) - middle
+    settled = turns.settled - middle
     sustained = round(SUSTAINED_REVOLUTIONS * SAMPLES_PER_REVOLUTION)
     for first, last in _stretches(amplitude, WHIRL_BEGINS, WHIRL_ENDS, sustained):
         lasts = last == len(amplitude)
@@ -199,33 +151,6 @@ def _whirl_event(kind: Kind, motion: Motion, turns: Revolutions, sample: int, fi
     ratio = float(orders[band][np.argmax(lines[band])])
     speed = float(turns.speed_Hz[sample])
     return Event(kind, film, float(turns.time_s[sample]), speed, ratio * speed, ratio)
-
-
-def _critical_speed(run: RunLike, turns: Revolutions, bearings: list[str], before_s: float) -> Iterator[Event]:
-    """The resonance with the unbalance, if the run passes one before the time of its first whirl."""
-    nodes = [("disk", name) for name in points(run.signals, "disk")] or [("journal", name) for name in bearings]
-    middle = CRITICAL_REVOLUTIONS * SAMPLES_PER_REVOLUTION // 2
-    settled = _settled(turns) + middle
-    until = int(np.searchsorted(turns.time_s, before_s)) - middle
-    clearances = [length for name, length in run.references.items() if name.startswith("clearance_m")]
-    floor = CRITICAL_FLOOR * min(clearances, default=0.0)
-    best: tuple[float, int] | None = None
-    for kind, name in nodes:
-        motion = _by_angle(run, kind, name, turns)[settled - middle : until + middle]
-        if len(motion) <= 2 * middle:
-            continue
-        amplitude = order_amplitude(motion, 1.0, CRITICAL_REVOLUTIONS)
-        whirling = order_amplitude(motion, SUBSYNCHRONOUS, CRITICAL_REVOLUTIONS) > amplitude
-        background = float(np.median(order_amplitude(motion, ORDER_WITHOUT_MOTION, CRITICAL_REVOLUTIONS)))
-        peaks, found = find_peaks(amplitude, prominence=max(floor, CRITICAL_OVER_BACKGROUND * background))
-        # Whirl that is about to break out spills over into all orders.
-        clear = (found["prominences"] >= CRITICAL_PROMINENCE * amplitude[peaks]) & ~whirling[peaks]
-        for peak, prominence in zip(peaks[clear], found["prominences"][clear], strict=True):
-            if best is None or prominence > best[0]:
-                best = (float(prominence), settled + int(peak))
-    if best is not None:
-        speed = float(turns.speed_Hz[best[1]])
-        yield Event("critical-speed", None, float(turns.time_s[best[1]]), speed, speed, 1.0)
 
 
 def _contacts(

@@ -22,6 +22,8 @@ from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing import FilmForce
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
+from frbcli.scene.channels import coupled
+from frbcli.scene.films import rings
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
 from frbcli.solve.resting import held_rotor, resting_position, ring_speeds
@@ -138,6 +140,10 @@ def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability
     """
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
+    if any(coupled(bearing) for bearing in rings(case)):
+        problem = "ties the two films of a ring together: neither has coefficients of its own."
+        fault = Fault("bearing.channels", "coupled", None, problem, 'Take channels = "pressure" here.')
+        raise InputError(case.name or "case", (fault,))
     system = make_system(case, make_plan(case))
     if system.remembers:
         problem = "keeps oil of its own: eight coefficients per speed do not say whether the rotor is stable."

@@ -33,6 +33,8 @@ from frbcli.case.quantities import (
 
 ROOM_TEMPERATURE = 293.15
 
+Cavitation = Literal["sommerfeld", "half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase"]
+
 
 Ramp = Annotated[
     RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
@@ -159,6 +161,12 @@ class SingleFilmBearing(FilmGeometry):
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
 
 
+class RingFilm(FilmGeometry):
+    """A film inside or outside of a floating ring."""
+
+    cavitation: Cavitation | None = Field(default=None, description="of this film, if not film.cavitation")
+
+
 class Ring(Model):
     """The floating ring itself."""
 
@@ -176,10 +184,15 @@ class FloatingRingBearing(Model):
     name: Identifier = ""
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
     ring: Ring
-    inner: FilmGeometry
-    outer: FilmGeometry
+    inner: RingFilm
+    outer: RingFilm
     centrifugal_pressure: bool = Field(
         default=True, description="whether oil in the channels of the ring is thrown outwards, (4.27) to (4.29)"
+    )
+    channels: Literal["pressure", "coupled"] = Field(
+        default="pressure",
+        description="the inner film's bores in the ring: held at their pressure, or coupled to the outer film, so that "
+        "oil that leaves one film enters the other one",
     )
 
 

@@ -71,4 +71,4 @@ def _is_idle(key: str, case: Case) -> bool:
     """Whether a key belongs to a cavitation model that the case does not use."""
     section, _, rest = key.partition(".")
     model = rest.partition(".")[0]
-    return section == "film" and model in _MODEL_SECTIONS and model != case.film.cavitation
+    return section == "film" and model in _MODEL_SECTIONS and model not in case.cavitations

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from frbcli.case.bearing import Bearings, FilmGeometry
+from frbcli.case.bearing import Bearings, Cavitation, FilmGeometry, FloatingRingBearing, RingFilm
 from frbcli.case.model import Model, with_default
 from frbcli.case.quantities import (
     Angle,
@@ -52,7 +52,6 @@ MACRO_STEP = 1e-6  # table 6.2
 
 Theory = Literal["auto", "short", "finite"]
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
-Cavitation = Literal["sommerfeld", "half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase"]
 
 
 class Vogel(Model):
@@ -138,6 +137,9 @@ class FilmModel(Model):
     coupling: Coupling = Field(default="auto", description="how rotor and films are advanced together")
     grid: Literal["fixed", "half-speed"] = Field(
         default="fixed", description="cells stand still, or turn with the mean speed of journal and shell (plain gaps)"
+    )
+    solution: Literal["auto", "table", "cells"] = Field(
+        default="auto", description="in runs: tabulated before them where that is possible, or solved on cells"
     )
     penalty: Penalty = Penalty()
     peeken: Peeken = Peeken()
@@ -270,6 +272,21 @@ class Case(Model):
         if film.temperature is not None and self.oil.vogel is not None:
             return self.oil.vogel.at(film.temperature)
         return self.oil.viscosity
+
+    def cavitation(self, film: FilmGeometry) -> Cavitation:
+        """The cavitation model of `film`: its own, or that of all films."""
+        own = film.cavitation if isinstance(film, RingFilm) else None
+        return self.film.cavitation if own is None else own
+
+    @property
+    def cavitations(self) -> tuple[Cavitation, ...]:
+        """The cavitation models of all films: of the bearings in their order, the inner before the outer film."""
+        films = (
+            film
+            for bearing in self.bearings
+            for film in ((bearing.inner, bearing.outer) if isinstance(bearing, FloatingRingBearing) else (bearing,))
+        )
+        return tuple(self.cavitation(film) for film in films)
 
 
 def json_schema() -> dict[str, Any]:

@@ -25,7 +25,7 @@ def find_shipped(name: str) -> str:
 
 def shipped_names() -> tuple[str, ...]:
     """The names of the shipped cases, sorted."""
-    files_there = (entry.name for entry in _home().iterdir())
+    files_there = (entry.name for entry in shipped_folder().iterdir())
     return tuple(sorted(name.removesuffix(".toml") for name in files_there if name.endswith(".toml")))
 
 
@@ -36,11 +36,11 @@ def nearest(name: str) -> str:
 
 
 def _text(name: str) -> str:
-    return _home().joinpath(f"{name}.toml").read_text(encoding="utf-8")
+    return shipped_folder().joinpath(f"{name}.toml").read_text(encoding="utf-8")
 
 
-def _home() -> Traversable:
-    """Inside of an installed package; beside the package in a checkout or an editable installation."""
+def shipped_folder() -> Traversable:
+    """Where they are: inside of an installed package; beside the package in a checkout or an editable installation."""
     package = files("frbcli")
     installed = package.joinpath("shipped_cases")
     return installed if installed.is_dir() else Path(str(package)).parent / "cases"

@@ -11,19 +11,39 @@ from frbcli.errors import Fault, InputError
 
 
 @click.command()
-@click.argument("name", required=False)
+@click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Copy the case to this file.")
+@click.option("--hard", is_flag=True, help="The hard cases in place of the others.")
+@click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and say how each ended.")
 @output_options
-def command(name: str | None, output: Path | None, terminal: Terminal) -> None:
+def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool, terminal: Terminal) -> int | None:
     """List the shipped cases; with NAME print that case's text, or copy it with -o FILE."""
-    if name is None:
-        if output is not None:
-            raise click.UsageError("-o needs the NAME of a case.")
-        _list(terminal)
-        return
-    from frbcli.case.shipped import find_shipped
+    if run_hard:
+        from frbcli.cli.hard import run_hard as run_them
 
-    text = find_shipped(name)
+        return run_them(names, terminal)
+    if not names and output is not None:
+        raise click.UsageError("-o needs the NAME of a case.")
+    if len(names) > 1:
+        raise click.UsageError("One NAME at a time.")
+    if names:
+        _show(names[0], output, hard, terminal)
+    elif hard:
+        from frbcli.cli.hard import list_hard
+
+        list_hard(terminal)
+    else:
+        _list(terminal)
+    return None
+
+
+def _show(name: str, output: Path | None, hard: bool, terminal: Terminal) -> None:
+    """Print a case or copy it."""
+    if hard:
+        from frbcli.cli.hard import hard_text as text_of
+    else:
+        from frbcli.case.shipped import find_shipped as text_of
+    text = text_of(name)
     if output is not None:
         _write(text, output)
         terminal.say(f"{output} written; `frb check {output}` checks it.")
@@ -37,7 +57,7 @@ def _list(terminal: Terminal) -> None:
 
     cases = shipped_cases()
     terminal.table("shipped cases", ("name", "title"), list(cases.items()))
-    terminal.say("`frb cases NAME` prints a case, `frb cases NAME -o FILE` copies it.")
+    terminal.say("`frb cases NAME` prints a case, `frb cases NAME -o FILE` copies it; --hard lists hard cases.")
     terminal.emit({"command": "cases", "cases": [{"name": name, "title": title} for name, title in cases.items()]})
 
 

@@ -11,7 +11,10 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
+    from frbcli.scene.cost import ExpectedCost
+    from frbcli.scene.expected_error import ExpectedError
     from frbcli.scene.operating import FilmOperation
+    from frbcli.scene.plan import Decision
 
 TURN = 2.0 * math.pi
 TURNING_TOLD = 0.02  # of the gap
@@ -23,9 +26,12 @@ TURNING_TOLD = 0.02  # of the gap
 def command(case: Case, terminal: Terminal) -> None:
     """Validate CASE; show its SI values and the plan: what will be modelled, what is left out, and why."""
     from frbcli.case.listing import values
+    from frbcli.scene.cost import expected_cost
+    from frbcli.scene.expected_error import expected_error
     from frbcli.scene.kinematic import kinematic_plan
     from frbcli.scene.operating import operating_points
     from frbcli.scene.plan import make_plan
+    from frbcli.scene.system import run_up_profile
 
     listed = values(case)
     rows = [(value.key, _in_si(value.value, value.unit), value.shown if value.unit else "") for value in listed]
@@ -35,8 +41,22 @@ def command(case: Case, terminal: Terminal) -> None:
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
     test = "squeeze" if case.motion is not None and case.motion.frequency else "rotation"
     # after the values, which help to see why a plan is refused
-    plan = kinematic_plan(case, test=test) if kinematic else make_plan(case)
-    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan.decisions])
+    expected: dict[str, float | int] | None = None
+    lines: tuple[Decision, ...] = ()
+    if kinematic:
+        decisions = kinematic_plan(case, test=test).decisions
+    else:
+        plan = make_plan(case)
+        cost, error = expected_cost(case, plan, run_up_profile(case)), expected_error(plan)
+        decisions, lines = plan.decisions, _expectations(cost, error)
+        expected = {
+            "eccentricity_error": error.eccentricity,
+            "film_force_error_relative": error.film_force,
+            "cpu_s": cost.cpu_s,
+            "steps": cost.steps,
+            "film_solves": cost.film_solves,
+        }
+    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in (*decisions, *lines)])
     terminal.emit(
         {
             "command": "check",
@@ -57,8 +77,21 @@ def command(case: Case, terminal: Terminal) -> None:
                 }
                 for film in films
             ],
-            "plan": [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in plan.decisions],
+            "plan": [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in decisions],
+            "expected": expected,
         }
+    )
+
+
+def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, ...]:
+    """What the plan will cost and leave, as its last lines."""
+    from frbcli.scene.plan import Decision
+
+    solves = f"{cost.steps} steps, {cost.film_solves} film solves, on the machine of docs/accuracy.md"
+    parts = f"of the eccentricities before a whirl grows; film forces {error.film_force:.1g}, relative"
+    return (
+        Decision("expected error", f"{error.eccentricity:.1g}", parts),
+        Decision("expected cost", f"{cost.cpu_s:.2g} s of CPU time", solves),
     )
 
 

@@ -37,17 +37,27 @@ REASONS = {
 
 
 def run_options(function: Function) -> Function:
-    """Give a command --output, --resume and --no-picture."""
+    """Give a command --output, --resume, --no-picture and --verify."""
     output = click.option(
         "--output", "-o", type=OUTPUT, default=None, metavar="RUN.h5", help="Run file. Default: CASE.h5 here."
     )
     resume = click.option("--resume", is_flag=True, help="Go on with an interrupted run in the run file.")
     picture = click.option("--picture/--no-picture", default=True, help="A summary picture beside the run.")
-    return output(resume(picture(function)))
+    verify = click.option(
+        "--verify", is_flag=True, help="Run again with half the tolerance and half the step, and say what changes."
+    )
+    return output(resume(picture(verify(function))))
 
 
 def transient(
-    command: str, run_case: Transient, case: Case, output: Path | None, resume: bool, picture: bool, terminal: Terminal
+    command: str,
+    run_case: Transient,
+    case: Case,
+    output: Path | None,
+    resume: bool,
+    picture: bool,
+    verify: bool,
+    terminal: Terminal,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     path = output or here(case.name, ".h5")
@@ -63,6 +73,7 @@ def transient(
         save_figure(summary_figure(run), target)
         terminal.say(f"picture: {target}")
     terminal.say(f"run: {path}")
+    verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
     terminal.emit(
         {
             "command": command,
@@ -71,10 +82,32 @@ def transient(
             "t_end_s": run.t_end_s,
             "events": run.events,
             "cost": run.cost,
-            "error": run.error,
+            "error": run.error if verified is None else {**run.error, "verified": verified},
         }
     )
     return exit_code(run.status)
+
+
+def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
+    """What a finer run says, told and as part of the JSON document."""
+    from frbcli.analysis.verify import verify
+
+    with live_lines(terminal) as show:
+        found = verify(case, run, None if show is None else lambda progress: show(f"again\n{progress_line(progress)}"))
+    onset = "" if math.isnan(found.onset_Hz) else f", and the whirl begins {abs(found.onset_Hz):.2g} Hz away"
+    terminal.say(
+        f"verified: with half the tolerance and half the step the eccentricity changes by {found.eccentricity:.1e}\n"
+        f"until {found.until_s:.3g} s{onset} ({found.status}, {found.cpu_s:.3g} s of CPU time)."
+    )
+    if found.coupling is not None:
+        terminal.say(f"with rotor and films solved together it changes by {found.coupling:.1e}.")
+    return {
+        "eccentricity": found.eccentricity,
+        "quiet_until_s": found.until_s,
+        "onset_speed_Hz": found.onset_Hz,
+        "coupling": found.coupling,
+        "cpu_s": found.cpu_s,
+    }
 
 
 def exit_code(status: str) -> int:
@@ -134,6 +167,9 @@ def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
     came, left = (1e9 * run.cost[name] for name in ("oil_in_m3", "oil_out_m3"))
     off = run.error.get("oil_balance_relative")
     defect = "" if off is None else f", unaccounted for {off:.0e}"
+    if "oil_created_m3" in run.cost:
+        made = 1e9 * run.cost["oil_created_m3"]
+        defect = f", {made:.3g} mm^3 created" if made >= 0.0 else f", {-made:.3g} mm^3 destroyed"
     return [("oil", f"{came:.3g} mm^3 in", f"{left:.3g} mm^3 out{defect}")]
 
 
@@ -154,8 +190,9 @@ def _event_row(event: dict[str, Any]) -> tuple[str, ...]:
 def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
     cost, error = run.cost, run.error
     film = error.get("film_force_relative")
+    against = "against a finer mesh" if error.get("model_relative") is None else "of the short bearing itself"
     return [
-        ("CPU time", f"{cost['cpu_s']:.3g} s", f"{cost['simulated_ms_per_hour']:.3g} simulated ms per hour"),
+        ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.3g} ms per hour"),
         (
             "steps",
             f"{cost['steps']}",
@@ -164,5 +201,22 @@ def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
         ("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each"),
         *_oil_rows(run),
         ("error, time integration", f"{error['time_integration']:.1e}", "of the eccentricity"),
-        ("error, film forces", "-" if film is None else f"{film:.1e}", "relative, against a finer mesh"),
+        ("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}"),
+        *_error_rows(error),
     ]
+
+
+def _predicted(cost: dict[str, Any]) -> str:
+    """What the plan had said; runs of an earlier version do not know."""
+    return f"predicted {cost['predicted_cpu_s']:.2g} s, " if "predicted_cpu_s" in cost else ""
+
+
+def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
+    """The parts of the error that not every run has."""
+    rows = []
+    if error.get("modal_reduction") is not None:
+        rows.append(("error, modal reduction", f"{error['modal_reduction']:.1e}", "of the natural frequencies"))
+    if error.get("eccentricity") is not None:
+        until = f"all together, until {error['quiet_until_s']:.3g} s"
+        rows.append(("error of the eccentricity", f"{error['eccentricity']:.1e}", until))
+    return rows

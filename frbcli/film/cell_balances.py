@@ -41,8 +41,8 @@ from frbcli.film.volume_data import (
 )
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
-# supply by given cells.
-INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, FLOWS = range(5)
+# supply by given cells; what channels of a ring bring net.
+INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, FLOWS = range(6)
 BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 

@@ -39,37 +39,10 @@ def film_loads(numbers, ring, width, states, delta):  # type: ignore[no-untyped-
 
 
 @njit(cache=True, error_model="numpy")
-def evaluate_cells(  # type: ignore[no-untyped-def]
-    numbers,
-    ring,
-    width,
-    cells,
-    first,
-    second,
-    w,
-    d_x,
-    d_y,
-    omega,
-    rate,
-    past,
-    g,
-    v_x,
-    v_y,
-    spin,
-    states,
-    stencil,
-    fields,
-    flows,
-):
-    """The balances of a film with the unknowns w (m, k) and these parameters of its law, see balances.
-
-    Returns what does not balance as a rate of the gap in 1/s: the mean over the cells, and the largest.
-    """
-    m, k = w.shape
-    cell_states(numbers, cells, first, second, numbers[PULL] * spin * spin, w, states)
-    balances(
-        numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
-    )
+def imbalance(cells, fields):  # type: ignore[no-untyped-def]
+    """What does not balance in fields (m, k, k + SIDES), see balances, as a rate of the gap in 1/s: the mean over the
+    cells, and the largest."""
+    m, k = fields.shape[0], fields.shape[1]
     total, area, largest = 0.0, 0.0, 0.0
     for i in range(m):
         for j in range(k):
@@ -116,27 +89,9 @@ def film_newton(  # type: ignore[no-untyped-def]
     See balances for the arguments; returns film_loads.
     """
     first, second = law_parameters(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin)
-    evaluate_cells(
-        numbers,
-        ring,
-        width,
-        cells,
-        first,
-        second,
-        w,
-        d_x,
-        d_y,
-        omega,
-        rate,
-        past,
-        g,
-        v_x,
-        v_y,
-        spin,
-        states,
-        stencil,
-        fields,
-        flows,
+    cell_states(numbers, cells, first, second, numbers[PULL] * spin * spin, w, states)
+    balances(
+        numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
     )
     solve_ring(stencil, blocks, fields)
     return film_loads(numbers, ring, width, states, fields)

@@ -14,19 +14,21 @@ from frbcli.film.chain import chain_force
 from frbcli.film.fields import fields_force
 from frbcli.film.grid import Array
 from frbcli.film.short import short_closed, short_general
+from frbcli.film.source_table import source_force
 from frbcli.film.table import LARGEST_ECCENTRICITY, table_force
 
-SHORT, SHORT_GENERAL, TABLE, FIELDS, CHAIN = range(5)
+SHORT, SHORT_GENERAL, TABLE, FIELDS, CHAIN, SOURCE = range(6)
 NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
 
 
 class FilmData(NamedTuple):
     """One film, ready to be evaluated. Arrays that a kind does not use are empty.
 
-    kind: SHORT | SHORT_GENERAL | TABLE | FIELDS | CHAIN; clipped: half-Sommerfeld (1) or Sommerfeld (0);
+    kind: SHORT | SHORT_GENERAL | TABLE | FIELDS | CHAIN | SOURCE; clipped: half-Sommerfeld (1) or Sommerfeld (0);
     force_scale: N s, turns the integral of P over one section into the force of the whole bearing;
     slenderness: (b/R)^2; sigma, level: scaled gauge pressures of supply and cavity, 1/s;
-    table: of force_table (TABLE), field_table (FIELDS) or chain_table (CHAIN); grid: of field_grid or chain_grid.
+    table: of force_table (TABLE), field_table (FIELDS), chain_table (CHAIN) or source_table (SOURCE); grid: of
+    field_grid, chain_grid or table_numbers.
     """
 
     kind: int
@@ -67,6 +69,10 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
         )
     elif film.kind == TABLE:
         f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = table_force(film.table, eccentricity, w_r, w_t)
+    elif film.kind == SOURCE:
+        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = source_force(
+            film.table, film.grid, eccentricity, w_r, w_t, omega
+        )
     else:
         f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = fields_force(
             film.table, film.grid, eccentricity, w_r, w_t, film.sigma, film.level

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.film.axial import axial_weights, end_slopes
 from frbcli.film.balance import NO_DISTANCE
@@ -49,35 +50,52 @@ STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL = range(4)
 # length of the cell; what a unit of pressure on it pushes the journal by.
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
 # Layers of cells: area; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where
-# the pressure is an unknown.
-AREA, AROUND, ALONG, GIVEN_PRESSURE, UNKNOWN, CELL_LAYERS = range(6)
+# the pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that mouth in
+# its film, 0: none.
+AREA, AROUND, ALONG, GIVEN_PRESSURE, UNKNOWN, EXCHANGE, MOUTH, CELL_LAYERS = range(8)
+# Numbers of a mouth: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s, and a
+# pressure of 1 in Pa; the sum of its cells' conductances.
+FILM, SLOT, FLOW_SCALE, PRESSURE_SCALE, CONDUCTANCE, MOUTH_NUMBERS = range(6)
+# Numbers of a channel: its mouths in the inner and in the outer film, the latter -1 in a groove; its resistance in
+# Pa s / m^3; gauge pressure of the groove in Pa; by what the pressure rises from the inner to the outer end with the
+# square of the ring's speed, in Pa s^2 (4.27).
+INNER, OUTER, RESISTANCE, GROOVE_PRESSURE, THROWN, CHANNEL_NUMBERS = range(6)
 
 
 class VolumeFilms(NamedTuple):
     """Films of equal numbers of cells m x k. numbers: (films, FILM_NUMBERS); ring: (films, RING_ROWS, m); width:
-    (films, 2, k) cells along the axis and weights of the integral; cells: (films, CELL_LAYERS, m, k)."""
+    (films, 2, k) cells along the axis and weights of the integral; cells: (films, CELL_LAYERS, m, k). Of coupled
+    channels: channels (channels, CHANNEL_NUMBERS), mouths (mouths, MOUTH_NUMBERS) and their cells, mouth_cells (mouths,
+    n, 2), filled up with -1."""
 
     numbers: Array
     ring: Array
     width: Array
     cells: Array
+    channels: Array
+    mouths: Array
+    mouth_cells: NDArray[np.int64]
 
 
 def volume_films(
-    films: Sequence[VolumeFilm], follows: int = STANDS, pulls: Sequence[float] = (), whirling: float = 0.0
+    films: Sequence[VolumeFilm], follows: Sequence[int] = (), pulls: Sequence[float] = (), whirling: float = 0.0
 ) -> VolumeFilms:
-    """The films as arrays; all have grids of the same shape. follows: what the parameters of the laws do; pulls: of the
-    films in s; whirling: what the laws' first parameter becomes in a whirl, if it follows that."""
+    """The films as arrays; all have grids of the same shape. follows: what the parameters of their laws do; pulls: in
+    s; whirling: what the laws' first parameter becomes in a whirl, if it follows that."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
         np.zeros((len(films), RING_ROWS, m)),
         np.zeros((len(films), 2, k)),
         np.zeros((len(films), CELL_LAYERS, m, k)),
+        np.zeros((0, CHANNEL_NUMBERS)),
+        np.zeros((0, MOUTH_NUMBERS)),
+        np.zeros((0, 0, 2), dtype=np.int64),
     )
     for index, film in enumerate(films):
         _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
-        data.numbers[index, FOLLOWS], data.numbers[index, PULL] = follows, pulls[index] if pulls else 0.0
+        data.numbers[index, FOLLOWS] = follows[index] if follows else STANDS
+        data.numbers[index, PULL] = pulls[index] if pulls else 0.0
         data.numbers[index, WHIRLING] = whirling
     return data
 

@@ -28,6 +28,11 @@ class SpeedProfile:
         """Rotor speed in rad/s at the times t (n,)."""
         return np.interp(t, self.times, self.speeds)
 
+    def angle(self, t: float) -> float:
+        """Angle of the rotor in rad at the time t."""
+        piece = min(max(int(np.searchsorted(self.times, t, side="right")) - 1, 0), len(self.times) - 2)
+        return float(rotation(self.times, self.speeds, self.angles, piece, t)[2])
+
 
 def speed_profile(times: list[float], speeds: list[float]) -> SpeedProfile:
     """Profile through the given speeds (rad/s) at the given times (s), linear in between."""

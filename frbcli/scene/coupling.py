@@ -25,13 +25,13 @@ def chosen_coupling(coupling: str, cavitation: str) -> str:
 
 def plan_coupling(case: Case) -> tuple[str, str]:
     """(one of COUPLINGS, why)."""
-    coupling = chosen_coupling(case.film.coupling, case.film.cavitation)
+    coupling = chosen_coupling(case.film.coupling, _deciding(case))
     return coupling, REASONS[coupling] if case.film.coupling == "auto" else f"set in the case; {REASONS[coupling]}"
 
 
 def coupling_fault(case: Case, with_cells: bool) -> Fault | None:
     """What is wrong with the coupling that a case asks for."""
-    coupling, cavitation = case.film.coupling, case.film.cavitation
+    coupling, cavitation = case.film.coupling, _deciding(case)
     if coupling in (FULL, SEMI) and cavitation in REMEMBERING:
         problem = f"needs a film without a state of its own; {cavitation} keeps its oil from step to step."
         return Fault("film.coupling", coupling, None, problem, f"Choose {MONOLITHIC}, {APART} or auto.")
@@ -39,3 +39,8 @@ def coupling_fault(case: Case, with_cells: bool) -> Fault | None:
         problem = "needs a film that is solved in one go; this one has cells, which take iterations."
         return Fault("film.coupling", coupling, None, problem, f"Choose {FULL}, {APART} or auto.")
     return None
+
+
+def _deciding(case: Case) -> str:
+    """The cavitation model that decides how a case is advanced: one that keeps its oil, if any film has such a one."""
+    return next((model for model in case.cavitations if model in REMEMBERING), case.film.cavitation)

@@ -19,9 +19,12 @@ from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.gap import Section, ends_at_ambient, graded_ring
 from frbcli.film.grid import Array
+from frbcli.film.source_film import SourceFilm
+from frbcli.film.table import Mesh
 from frbcli.film.volume_data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL, STANDS
 from frbcli.film.volume_grid import VolumeGrid, volume_grid
 from frbcli.film.volumes import VolumeFilm
+from frbcli.scene.channels import coupled, mouths_in_outer_film, pull
 from frbcli.scene.section import film_section
 
 ROTOR, HOUSING = -1, -2  # what a film lies against, if it is not a ring
@@ -32,13 +35,15 @@ PUMPED = 0.3  # share of the pressure that the largest speed could build up: a g
 @dataclass(frozen=True)
 class FilmPlace:
     """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING,
-    which a blocked ring counts as; the body that its openings turn with; the name that results carry."""
+    which a blocked ring counts as; the body that its openings turn with; the name that results carry; the mouths of
+    coupled channels that it has beside its own supply."""
 
     geometry: FilmGeometry
     inside: int
     outside: int
     grid_body: int
     name: str
+    mouths: Bores | None = None
 
 
 def film_places(case: Case) -> tuple[FilmPlace, ...]:
@@ -52,8 +57,9 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
             inner, outer = next(names), next(names)
             between = ring if bearing.ring.spin == "free" else HOUSING
             places.append(FilmPlace(bearing.inner, ROTOR, between, _opening_body(bearing.inner, ROTOR, between), inner))
-            body = _opening_body(bearing.outer, between, HOUSING)
-            places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer))
+            mouths = mouths_in_outer_film(bearing)
+            body = _opening_body(bearing.outer, between, HOUSING) if mouths is None else between
+            places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer, mouths))
             ring += between == ring
     return tuple(places)
 
@@ -97,53 +103,57 @@ def turning(places: tuple[FilmPlace, ...], ring_count: int, half_speed: bool = F
     return shares
 
 
-def make_law(case: Case, section: Section) -> tuple[Law, int]:
+def make_law(case: Case, cavitation: str, section: Section) -> tuple[Law, int]:
     """The law of a film in a run, and what its parameters follow; those of a penalty are of the centred journal."""
     film = case.film
-    if film.cavitation == "reynolds":
+    if cavitation == "reynolds":
         return Reynolds(), STANDS
-    if film.cavitation == "penalty":
+    if cavitation == "penalty":
         exponent = steepness_exponent(0.0)
         if film.penalty.pressure == "absolute":
             return Penalty(PREFACTOR, exponent * section.pressure_scale / section.ambient_pressure), BY_ECCENTRICITY
         return Penalty(0.5 * PREFACTOR, 2.0 * exponent), BY_ECCENTRICITY_AND_SPEED
-    if film.cavitation == "peeken":
+    if cavitation == "peeken":
         return Peeken(film.peeken.bunsen), STANDS
-    if film.cavitation == "elrod":
+    if cavitation == "elrod":
         modulus = film.elrod.bulk_modulus
         return (Elrod() if modulus is None else Elrod(modulus / section.pressure_scale)), STANDS
-    if film.cavitation == "two-phase":
+    if cavitation == "two-phase":
         return TwoPhase(film.two_phase.steepness), STANDS if film.two_phase.whirl_steepness is None else BY_WHIRL
-    return Sommerfeld(clips=film.cavitation == "half-sommerfeld"), STANDS
+    return Sommerfeld(clips=cavitation == "half-sommerfeld"), STANDS
 
 
 def channel_pulls(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:
-    """By what the pressure in the channels of each film falls with the square of its ring's speed, (4.27), scaled.
+    """By what the pressure given in each film's channels falls with the square of its ring's speed, (4.27), scaled.
 
     Half of the difference between the two ends of a channel acts on the inner film (4.29); the pressure at the outer
     end is that of the groove which they open to.
     """
-    pulls = []
-    outer = {place.inside: place.geometry for place in film_places(case) if place.inside >= 0}
-    thrown = [bearing.centrifugal_pressure for bearing in turning_rings(case)]
+    pulls, ringed = [], turning_rings(case)
     for place, film in zip(film_places(case), volumes, strict=True):
-        pull = 0.0
-        if place.outside >= 0 and place.grid_body == place.outside and thrown[place.outside]:
-            inside, outside = 0.5 * place.geometry.diameter, 0.5 * outer[place.outside].diameter
-            pull = 0.25 * case.oil.density * (outside**2 - inside**2) / film.section.pressure_scale
-        pulls.append(pull)
+        has_channels = place.outside >= 0 and place.grid_body == place.outside and not coupled(ringed[place.outside])
+        pulls.append(0.5 * pull(case, ringed[place.outside]) / film.section.pressure_scale if has_channels else 0.0)
     return tuple(pulls)
 
 
-def volume_film(case: Case, geometry: FilmGeometry, cells: tuple[int, int]) -> tuple[VolumeFilm, int]:
+def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int]) -> tuple[VolumeFilm, int]:
     """A film on volumes for a run, equal cells (around, along), and what its law follows."""
-    section = film_section(case, geometry)
-    if case.film.cavitation in CLOSED_ENDS and geometry.ends == "free-to-air":
+    geometry, cavitation = place.geometry, case.cavitation(place.geometry)
+    section = film_section(case, geometry, place.mouths)
+    if cavitation in CLOSED_ENDS and geometry.ends == "free-to-air":
         section = ends_at_ambient(section)
-    law, follows = make_law(case, section)
+    law, follows = make_law(case, cavitation, section)
     speed = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect
     return VolumeFilm(section, run_grid(section, cells), law, reference), follows
+
+
+def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
+    """A penalty film without openings, as it is tabulated for a run."""
+    section = film_section(case, geometry)
+    law, follows = make_law(case, "penalty", section)
+    assert isinstance(law, Penalty)
+    return SourceFilm(section, law, follows, mesh)
 
 
 def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:

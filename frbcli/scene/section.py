@@ -12,8 +12,11 @@ from frbcli.film.gap import AxialGroove, Hole, Lobes, Section
 TWO_PI = 2.0 * math.pi
 
 
-def film_section(case: Case, bearing: FilmGeometry) -> Section:
-    """The part of the film that has to be solved: half of it where it is symmetric about the middle."""
+def film_section(case: Case, bearing: FilmGeometry, mouths: Bores | None = None) -> Section:
+    """The part of the film that has to be solved: half of it where it is symmetric about the middle.
+
+    mouths: of the channels of a ring, which the film has beside its own supply; they are the last of its holes.
+    """
     supply, ends, width = bearing.supply, bearing.ends, bearing.width
     radius, ambient = 0.5 * bearing.diameter, case.oil.ambient_pressure
     copies, far, far_pressure = 2, "symmetry", 0.0
@@ -31,9 +34,12 @@ def film_section(case: Case, bearing: FilmGeometry) -> Section:
     elif isinstance(supply, Bores):
         if supply.axial_position != 0.5:
             copies, far = 1, ends
-        size, axial = 0.5 * supply.diameter, supply.axial_position * width
-        places = (supply.position + i * TWO_PI / supply.count for i in range(supply.count))
-        holes = tuple(Hole(p, axial, size / radius, size, supply.pressure - ambient, round=True) for p in places)
+        holes = _bores(supply, bearing, ambient)
+    if mouths is not None:
+        if far == "symmetry" and mouths.axial_position != 0.5:
+            copies, far = 1, ends
+        mirrored = far == "groove" and getattr(supply, "axial_position", 1.0) < 0.5  # the groove lies at z = 1
+        holes += _bores(mouths, bearing, ambient, mirrored)
     return Section(
         radius=radius,
         width=width / copies,
@@ -50,6 +56,13 @@ def film_section(case: Case, bearing: FilmGeometry) -> Section:
         holes=holes,
         lobes=_lobes(bearing),
     )
+
+
+def _bores(supply: Bores, bearing: FilmGeometry, ambient: float, mirrored: bool = False) -> tuple[Hole, ...]:
+    size, radius = 0.5 * supply.diameter, 0.5 * bearing.diameter
+    axial = (1.0 - supply.axial_position if mirrored else supply.axial_position) * bearing.width
+    places = (supply.position + i * TWO_PI / supply.count for i in range(supply.count))
+    return tuple(Hole(p, axial, size / radius, size, supply.pressure - ambient, round=True) for p in places)
 
 
 def _lobes(bearing: FilmGeometry) -> Lobes | None:

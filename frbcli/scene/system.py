@@ -12,20 +12,26 @@ from frbcli.case.bearing import AxialGrooves, FilmGeometry, SingleFilmBearing
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
 from frbcli.film.bearing import FilmForce, RectangularBearing, evaluate, make_film
+from frbcli.film.channels import with_channels
 from frbcli.film.gap import AxialGroove
 from frbcli.film.grid import Array
 from frbcli.film.kernel import FilmData
+from frbcli.film.published.film import PublishedFilm, published_force
+from frbcli.film.source_film import SourceFilm
 from frbcli.film.steady_force import steady_force
 from frbcli.film.table import Mesh
-from frbcli.film.volume_data import AREA, REMEMBERS, STANDS, UNKNOWN, VolumeFilms, volume_films
+from frbcli.film.volume_data import AREA, MOUTH, REMEMBERS, UNKNOWN, VolumeFilms, volume_films
 from frbcli.film.volumes import VolumeFilm
 from frbcli.rotor.excitation import SpeedProfile, speed_profile
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.ring import with_rings, with_spins
-from frbcli.scene.films import channel_pulls, film_places, rings, turning, turning_rings, volume_film
+from frbcli.scene.channels import coupled_channels
+from frbcli.scene.films import channel_pulls, film_places, rings, source_film, turning, turning_rings, volume_film
 from frbcli.scene.plan import Plan
+from frbcli.scene.published import PUBLISHED, run_film
+from frbcli.scene.tabulated import SOLUTIONS
 from frbcli.scene.turbocharger import make_turbocharger
 
 
@@ -34,14 +40,15 @@ class System:
     """A machine as the time loop takes it.
 
     rotor: the linear system; films: ready for the time loop, with their names and clearances in m; bearings or volumes:
-    their dimensions and oil, of films without or with cells, the other one being empty. bodies: (films, 2) what lies
+    their dimensions and oil, of films without or with cells, the other one being empty.
+    solved: what the tables of penalty films are made of. bodies: (films, 2) what lies
     inside and outside of each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing
-    in N m s, the Couette torque per slip and drag_integral; ring_count: of rings that turn; follows: what the films'
-    law follows; torque, cavitation_factor: see FilmModel.
+    in N m s, the Couette torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the
+    films' cavitation models; follows: what their parameters follow; torque, cavitation_factor: see FilmModel.
     """
 
     rotor: LinearRotor
-    films: tuple[FilmData, ...] | VolumeFilms
+    films: tuple[FilmData, ...] | VolumeFilms | PublishedFilm
     names: tuple[str, ...]
     clearances: tuple[float, ...]
     bodies: NDArray[np.int64]
@@ -49,15 +56,26 @@ class System:
     drags: tuple[float, ...]
     bearings: tuple[RectangularBearing, ...] = ()
     volumes: tuple[VolumeFilm, ...] = ()
+    solved: tuple[SourceFilm, ...] = ()
     ring_count: int = 0
-    follows: int = STANDS
+    laws: tuple[str, ...] = ()
+    follows: tuple[int, ...] = ()
     torque: str = "all"
     cavitation_factor: str = "none"
 
     @property
+    def remembering(self) -> tuple[bool, ...]:
+        """Which films keep oil of their own."""
+        if isinstance(self.films, PublishedFilm):
+            return (True,)
+        if not isinstance(self.films, VolumeFilms):
+            return (False,) * len(self.names)
+        return tuple(bool(number != 0.0) for number in self.films.numbers[:, REMEMBERS])
+
+    @property
     def remembers(self) -> bool:
-        """Whether the films keep oil of their own."""
-        return isinstance(self.films, VolumeFilms) and bool(np.all(self.films.numbers[:, REMEMBERS] != 0.0))
+        """Whether any film keeps oil of its own."""
+        return any(self.remembering)
 
     @property
     def spins(self) -> tuple[int, ...]:
@@ -70,7 +88,8 @@ class System:
         if not isinstance(self.films, VolumeFilms):
             return np.ones(len(self.names))
         cells = self.films.cells
-        return np.asarray((cells[:, AREA] * (cells[:, UNKNOWN] != 0.0)).sum(axis=(1, 2)) / (2.0 * math.pi))
+        film = (cells[:, UNKNOWN] != 0.0) & (cells[:, MOUTH] == 0.0)
+        return np.asarray((cells[:, AREA] * film).sum(axis=(1, 2)) / (2.0 * math.pi))
 
     def omegas(self, omega: float, ring_speeds: Array) -> Array:
         """(films,) omega_J + omega_S of each film, rad/s."""
@@ -79,7 +98,9 @@ class System:
     def film_force(self, index: int, displacement: Array, velocity: Array, omega: float) -> FilmForce:
         """As film.bearing.evaluate; a film with oil of its own is taken as settled. Raises NotConverged."""
         if isinstance(self.films, VolumeFilms):
-            return steady_force(self.volumes[index], self.follows, displacement, velocity, omega)
+            return steady_force(self.volumes[index], self.follows[index], displacement, velocity, omega)
+        if isinstance(self.films, PublishedFilm):
+            return published_force(self.films, displacement, velocity, omega)
         return evaluate(self.films[index], self.clearances[index], displacement, velocity, omega)
 
 
@@ -98,18 +119,27 @@ def make_system(case: Case, plan: Plan) -> System:
         turning=turning(places, len(ringed), case.film.grid == "half-speed"),
         drags=tuple(film_drag(case, place.geometry) for place in places),
         ring_count=len(ringed),
+        laws=case.cavitations,
         torque=case.film.torque,
     )
+    if plan.cells is not None and plan.form == PUBLISHED:
+        return replace(system, films=run_film(case, plan.cells))
     if plan.cells is not None:
-        made = [volume_film(case, place.geometry, plan.cells) for place in places]
-        volumes, follows = tuple(film for film, _ in made), made[0][1]
+        made = [volume_film(case, place, plan.cells) for place in places]
+        volumes, follows = tuple(film for film, _ in made), tuple(which for _, which in made)
         whirling = case.film.two_phase.whirl_steepness or 0.0
         data = volume_films(volumes, follows, channel_pulls(case, volumes), whirling)
+        data = with_channels(data, volumes, coupled_channels(case, volumes))
         factor = case.film.cavitation_factor
         return replace(system, films=data, volumes=volumes, follows=follows, cavitation_factor=factor)
     bearings = tuple(_bearing(case, place.geometry) for place in places)
+    if plan.form == SOLUTIONS:
+        solved = tuple(source_film(case, place.geometry, plan.mesh) for place in places)
+        return replace(system, bearings=bearings, solved=solved, films=tuple(film.film() for film in solved))
     return replace(
-        system, bearings=bearings, films=tuple(planned_film(plan, bearing, plan.mesh) for bearing in bearings)
+        system,
+        bearings=bearings,
+        films=tuple(planned_film(plan, *each, plan.mesh) for each in zip(bearings, system.laws, strict=True)),
     )
 
 
@@ -118,9 +148,9 @@ def film_drag(case: Case, film: FilmGeometry) -> float:
     return case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance
 
 
-def planned_film(plan: Plan, bearing: RectangularBearing, mesh: Mesh) -> FilmData:
+def planned_film(plan: Plan, bearing: RectangularBearing, cavitation: str, mesh: Mesh) -> FilmData:
     """The film that the plan has chosen for a bearing, on a mesh of its own."""
-    return make_film(bearing, plan.theory, plan.cavitation, mesh)
+    return make_film(bearing, plan.theory, cavitation, mesh)
 
 
 def make_rotor(case: Case) -> LinearRotor:

@@ -11,19 +11,49 @@ import math
 from numba import njit
 
 from frbcli.film.block_cyclic import solve_ring
-from frbcli.film.cell_balances import BY_ITSELF, BY_X, BY_Y
-from frbcli.film.cell_newton import damp, evaluate_cells, film_loads, store_rates
-from frbcli.film.cell_states import FRACTION, law_parameters
-from frbcli.film.volume_data import AREA, COS, GAP, REMEMBERS, SIN, UNKNOWN
+from frbcli.film.cell_balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
+from frbcli.film.cell_newton import damp, film_loads, imbalance, store_rates
+from frbcli.film.cell_states import FRACTION, cell_states, law_parameters
+from frbcli.film.channel_flow import ask_of_channels, exchange
+from frbcli.film.table import LARGEST_ECCENTRICITY
+from frbcli.film.volume_data import AREA, COS, GAP, MOUTH, PULL, REMEMBERS, SIN, UNKNOWN
 
 # How a film's grid stands, where the journal is in it, and the parameters of its law.
-GRID_TURN, GRID_SPEED, GRID_X, GRID_Y, UNSETTLED, LAW_FIRST, LAW_SECOND, GRIDS = range(8)
+# FOLLOWS_X, FOLLOWS_Y, FOLLOWS_XY: the symmetric matrix by which the gap follows the journal.
+(
+    GRID_TURN,
+    GRID_SPEED,
+    GRID_X,
+    GRID_Y,
+    UNSETTLED,
+    LAW_FIRST,
+    LAW_SECOND,
+    FOLLOWS_X,
+    FOLLOWS_Y,
+    FOLLOWS_XY,
+    GRIDS,
+) = range(11)
 SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
 SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
+
+
+@njit(cache=True, error_model="numpy")
+def _keep_a_gap(grid, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
+    """Displacement and velocity as the film feels them: a journal that has sunk into the shell, as far as an elastic
+    contact lets it, leaves the gap that it had just before; it only moves along it."""
+    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
+    grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY] = 1.0, 1.0, 0.0
+    if eccentricity <= LARGEST_ECCENTRICITY:
+        return d_x, d_y, v_x, v_y
+    share, n_x, n_y = LARGEST_ECCENTRICITY / eccentricity, d_x / eccentricity, d_y / eccentricity
+    grid[FOLLOWS_X], grid[FOLLOWS_Y] = share * n_y * n_y, share * n_x * n_x
+    grid[FOLLOWS_XY] = -share * n_x * n_y
+    along = share * (n_x * v_y - n_y * v_x)
+    return share * d_x, share * d_y, -along * n_y, along * n_x
 
 
 @njit(cache=True, error_model="numpy")
@@ -54,6 +84,7 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     flows,
     grid,
     slopes,
+    channel,
     d_x,
     d_y,
     v_x,
@@ -62,8 +93,10 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     g,
     iteration,
 ):
-    """film_numbers of passengers.py for a film with cells; grid (GRIDS,) says how its grid stands."""
+    """film_numbers of passengers.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
+    pressures of the channels over its cells, see cell_channels.py."""
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
+    d_x, d_y, v_x, v_y = _keep_a_gap(grid, d_x, d_y, v_x, v_y)
     c, s = math.cos(turn), math.sin(turn)
     x, y = c * d_x + s * d_y, c * d_y - s * d_x
     grid[GRID_X], grid[GRID_Y] = x, y
@@ -72,28 +105,16 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     remembers = numbers[REMEMBERS] != 0.0
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, d_x, d_y, v_x, v_y, omega)
-    mean, largest = evaluate_cells(
-        numbers,
-        ring,
-        width,
-        cells,
-        grid[LAW_FIRST],
-        grid[LAW_SECOND],
-        w,
-        x,
-        y,
-        omega - 2.0 * spin,
-        1.0 / g if remembers else 0.0,
-        past,
-        g,
-        v_f,
-        v_g,
-        spin,
-        states,
-        stencil,
-        fields,
+    drop, rate = numbers[PULL] * spin * spin, 1.0 / g if remembers else 0.0
+    cell_states(numbers, cells, grid[LAW_FIRST], grid[LAW_SECOND], drop, w, states)
+    balances(
+        numbers, ring, width, cells, states, x, y, omega - 2.0 * spin, rate, past, g, v_f, v_g, spin, stencil, fields,
         flows,
-    )
+    )  # fmt: skip
+    slots = fields.shape[2] - fields.shape[1] - SIDES
+    if slots > 0:
+        exchange(cells, states, channel, stencil, fields, flows)
+    mean, largest = imbalance(cells, fields)
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
     left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest)
     if left < SETTLED * pace and iteration > 0:
@@ -110,6 +131,8 @@ def cell_numbers(  # type: ignore[no-untyped-def]
         grid[UNSETTLED] = 1.0
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
+        if slots > 0:
+            ask_of_channels(cells, fields)
         solve_ring(stencil, blocks, fields)
         f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, width, states, fields)
         m, k = w.shape
@@ -119,6 +142,8 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
     # back from the grid's directions: Q^T B Q
     a, b, p, q = c * xx - s * yx, c * xy - s * yy, s * xx + c * yx, s * xy + c * yy
+    xx, xy, yx, yy = a * c - b * s, a * s + b * c, p * c - q * s, p * s + q * c
+    follows_x, follows_y, follows_xy = grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY]
     return (
         c * f_x - s * f_y,
         s * f_x + c * f_y,
@@ -126,24 +151,31 @@ def cell_numbers(  # type: ignore[no-untyped-def]
         0.0,
         0.0,
         0.0,
-        a * c - b * s,
-        a * s + b * c,
-        p * c - q * s,
-        p * s + q * c,
+        xx * follows_x + xy * follows_xy,
+        xx * follows_xy + xy * follows_y,
+        yx * follows_x + yy * follows_xy,
+        yx * follows_xy + yy * follows_y,
     )
 
 
 @njit(cache=True, error_model="numpy")
-def move_cells(w, fields, grid, u_x, u_y, g):  # type: ignore[no-untyped-def]
-    """The unknowns w (m, k) follow a correction u of the journal's velocity; 1 if the film had not settled."""
+def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untyped-def]
+    """The unknowns w (m, k) follow a correction u of the journal's velocity and those of its channels' pressures,
+    changes (slots,); 1 if the film had not settled."""
     m, k = w.shape
     c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
+    u_x, u_y = (
+        grid[FOLLOWS_X] * u_x + grid[FOLLOWS_XY] * u_y,
+        grid[FOLLOWS_XY] * u_x + grid[FOLLOWS_Y] * u_y,
+    )
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
     grid[GRID_X] += g * x
     grid[GRID_Y] += g * y
     for i in range(m):
         for j in range(k):
             w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
+            for slot in range(changes.shape[0]):
+                w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
     return 1 if grid[UNSETTLED] != 0.0 else 0
 
 
@@ -154,7 +186,7 @@ def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
     area, oil = 0.0, 0.0
     for i in range(m):
         for j in range(k):
-            if cells[UNKNOWN, i, j] != 0.0:
+            if cells[UNKNOWN, i, j] != 0.0 and cells[MOUTH, i, j] == 0.0:
                 area += cells[AREA, i, j]
                 oil += cells[AREA, i, j] * states[FRACTION, i, j]
     return oil / area
@@ -170,7 +202,7 @@ def sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-d
     for i in range(m):
         h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
         for j in range(k):
-            if cells[UNKNOWN, i, j] != 0.0:
+            if cells[UNKNOWN, i, j] != 0.0 and cells[MOUTH, i, j] == 0.0:
                 whole += cells[AREA, i, j] / h
                 weighed += cells[AREA, i, j] * states[FRACTION, i, j] / h
     if factor == LOCAL_FACTOR:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,31 +14,61 @@ from frbcli.film.balance import Motion
 from frbcli.film.bearing import evaluate
 from frbcli.film.direct import direct_force
 from frbcli.film.loads import force
+from frbcli.film.published.film import PublishedFilm, published_force
 from frbcli.film.steady_force import steady_solution
 from frbcli.film.table import LARGEST_ECCENTRICITY, Mesh
 from frbcli.film.volumes import VolumeFilm
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.plan import Plan
+from frbcli.scene.published import run_film
 from frbcli.scene.system import System, planned_film
 from frbcli.solve.state import Array
 
 SAMPLES = 48  # states of a run
+PUBLISHED_SAMPLES = 6  # in the published form, where settling takes hundreds of assemblies
+RICHARDSON = 3.0  # an error of second order on twice the elements, from the difference to it
 CELL_SAMPLES = 16  # of them for films with cells, which have to settle at each
 FINER = 2  # elements more in each direction
 SMALL_FORCE = 0.1  # of the median one
 QUANTILE = 0.9  # of the errors: what nearly all states stay below
 
 
-def film_force_error(plan: Plan, system: System, case: Case, samples: Array) -> float | None:
-    """Relative error of the film forces at the sampled states, against the finite-length film on a finer mesh.
+@dataclass(frozen=True)
+class FilmErrors:
+    """Of the forces of all films at sampled states of a run. times: (m,) s; errors, sizes: (m,) N."""
 
-    samples: (m, 2 n + 1) displacements, velocities and rotor speed in rad/s. The largest of the lower QUANTILE is
-    returned; None without samples. For the short-bearing theory this is the error of the theory itself. Films with oil
-    of their own are compared in states in which it has settled.
+    times: Array
+    errors: Array
+    sizes: Array
+
+    def relative(self, until: float = math.inf) -> float | None:
+        """What all but a few of the relative errors stay below, of states until a time in s; None without any."""
+        kept = self.times <= until
+        errors, sizes = self.errors[kept], self.sizes[kept]
+        if not len(errors) or sizes.max() == 0.0:
+            return None
+        # A film that carries next to nothing for a moment, as at the start, is held to what it carries otherwise.
+        scales = np.maximum(sizes, SMALL_FORCE * float(np.median(sizes)))
+        return float(np.quantile(errors[scales > 0.0] / scales[scales > 0.0], QUANTILE))
+
+
+def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samples: Array) -> FilmErrors:
+    """Errors of the film forces at sampled states, against the finite-length film on a finer mesh.
+
+    times: (m,) s; samples: (m, 2 n + 1) displacements, velocities and rotor speed in rad/s. For the short-bearing
+    theory this is the error of the theory itself. Films with oil of their own are compared in states in which it has
+    settled; where it does not settle, they are left out.
     """
-    forces = _cell_forces(plan, system, case) if plan.cells is not None else _closed_forces(plan, system)
-    n, errors, sizes = system.rotor.size, [], []
-    for sample in samples if plan.cells is None else samples[:: max(1, len(samples) // CELL_SAMPLES)]:
+    if isinstance(system.films, PublishedFilm):
+        forces = _published_forces(system.films, case)
+    elif plan.cells is not None:
+        forces = _cell_forces(plan, system, case)
+    else:
+        forces = _source_forces(plan, system) if system.solved else _closed_forces(plan, system)
+    n, found = system.rotor.size, []
+    most = PUBLISHED_SAMPLES if isinstance(system.films, PublishedFilm) else CELL_SAMPLES
+    every = 1 if plan.cells is None else max(1, len(samples) // most)
+    for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
         omegas = system.omegas(omega, v[list(system.spins)])
         for i, pick in enumerate(system.rotor.journals):
@@ -47,14 +79,9 @@ def film_force_error(plan: Plan, system: System, case: Case, samples: Array) -> 
                 exact, force = forces(i, at, rate, float(omegas[i]))
             except NotConverged:
                 continue
-            errors.append(float(np.hypot(*(force - exact))))
-            sizes.append(float(np.hypot(*exact)))
-    if not errors or max(sizes) == 0.0:
-        return None
-    # A film that carries next to nothing for a moment, as at the start, is held to what it carries otherwise.
-    least = SMALL_FORCE * float(np.median(sizes))
-    relative = [error / max(size, least) for error, size in zip(errors, sizes, strict=True) if max(size, least) > 0.0]
-    return float(np.quantile(relative, QUANTILE))
+            found.append((float(t), float(np.hypot(*(force - exact))), float(np.hypot(*exact))))
+    table = np.array(found).reshape(-1, 3)
+    return FilmErrors(table[:, 0], table[:, 1], table[:, 2])
 
 
 Forces = Callable[[int, Array, Array, float], tuple[Array, Array]]
@@ -64,15 +91,41 @@ def _closed_forces(plan: Plan, system: System) -> Forces:
     """Exact and own force of a film without cells."""
     finer = Mesh(FINER * plan.mesh.axial, FINER * plan.mesh.circumferential)
     # Between axial grooves nothing is tabulated: the same film on the finer mesh is the direct solution.
-    fine = [planned_film(plan, bearing, finer) if bearing.grooves else None for bearing in system.bearings]
+    fine = [
+        planned_film(plan, bearing, law, finer) if bearing.grooves else None
+        for bearing, law in zip(system.bearings, system.laws, strict=True)
+    ]
 
     def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
         bearing, better = system.bearings[i], fine[i]
         if better is None:
-            exact = direct_force(bearing, plan.cavitation, finer, at, rate, omega)
+            exact = direct_force(bearing, system.laws[i], finer, at, rate, omega)
         else:
             exact = evaluate(better, bearing.clearance, at, rate, omega).force
         return exact, system.film_force(i, at, rate, omega).force
+
+    return forces
+
+
+def _source_forces(plan: Plan, system: System) -> Forces:
+    """Solved force on a finer mesh and tabulated one of a film whose law makes oil."""
+    finer = Mesh(FINER * plan.mesh.axial, FINER * plan.mesh.circumferential)
+    fine = [replace(film, mesh=finer) for film in system.solved]
+
+    def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
+        return fine[i].force(at, rate, omega), system.film_force(i, at, rate, omega).force
+
+    return forces
+
+
+def _published_forces(own: PublishedFilm, case: Case) -> Forces:
+    """Own force of a film in the published form, and as far from it as half as many elements each way tell."""
+    coarse = run_film(case, (max(3, own.mesh.around // 2), max(1, own.mesh.along // 2)))
+
+    def forces(_: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
+        fine = published_force(own, at, rate, omega).force
+        difference = published_force(coarse, at, rate, omega).force - fine
+        return fine, fine + difference / RICHARDSON
 
     return forces
 
@@ -81,14 +134,15 @@ def _cell_forces(plan: Plan, system: System, case: Case) -> Forces:
     """Fine and own force of a film with cells that has settled."""
     assert plan.cells is not None
     cells = FINER * plan.cells[0], FINER * plan.cells[1]
-    fine = [volume_film(case, place.geometry, cells)[0] for place in film_places(case)]
+    fine = [volume_film(case, place, cells)[0] for place in film_places(case)]
 
-    def settled(film: VolumeFilm, at: Array, rate: Array, omega: float) -> Array:
+    def settled(film: VolumeFilm, follows: int, at: Array, rate: Array, omega: float) -> Array:
         d, v = at / film.section.clearance, rate / film.section.clearance
         motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
-        return np.array(force(film, film.pressure(steady_solution(film, system.follows, motion).state)))
+        return np.array(force(film, film.pressure(steady_solution(film, follows, motion).state)))
 
     def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
-        return settled(fine[i], at, rate, omega), settled(system.volumes[i], at, rate, omega)
+        follows = system.follows[i]
+        return settled(fine[i], follows, at, rate, omega), settled(system.volumes[i], follows, at, rate, omega)
 
     return forces

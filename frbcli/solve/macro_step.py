@@ -85,7 +85,7 @@ def advance_in_turn(rotor, films, tableau, control, state, budget, out_q, out_v,
     torques.
     """
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
-    wet, flows, work = state.wet, state.flows, make_work(state.wet, tableau.times.shape[0])
+    wet, flows, work = state.wet, state.flows, make_work(films, state.wet, tableau.times.shape[0])
     spins, times, speeds, angles = rotor.spins, rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
     weights, moments, defect = tableau.stage, tableau.times, tableau.defect

@@ -89,7 +89,7 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil
     """
     # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
     numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past
-    wet, flows, work = state.wet, state.flows, make_work(state.wet, tableau.times.shape[0])
+    wet, flows, work = state.wet, state.flows, make_work(films, state.wet, tableau.times.shape[0])
     spins, turning, grids = rotor.spins, rotor.turning, work.grids
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic

@@ -2,27 +2,38 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from frbcli.film.balance import Motion
-from frbcli.film.cell_balances import ENDS_NET, INFLOW, OUTFLOW, SUPPLY_NET
+from frbcli.film.cell_balances import CHANNELS_NET, ENDS_NET, INFLOW, OUTFLOW, SUPPLY_NET
+from frbcli.film.published.film import PublishedFilm
 from frbcli.film.section_faults import starves
 from frbcli.scene.system import System
 from frbcli.solve.passengers import OIL, PASSED, W
-from frbcli.solve.state import State
+from frbcli.solve.published_state import created_share, published_oil
+from frbcli.solve.state import GRID, State
 
 
-def oil_defect(system: System, state: State) -> float | None:
-    """Oil in the cells that their unknowns do not account for, over what has passed through; the largest of all films.
+def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None:
+    """Oil in the cells that their unknowns do not account for, over what has passed through; the largest of all films
+    that keep theirs. angle: of the rotor in rad, with which films with bores in the journal turn.
 
     The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with the
-    pressures and oil fractions. None for films that do not keep their oil.
+    pressures and oil fractions. None if none does.
     """
+    if isinstance(system.films, PublishedFilm):
+        return created_share(system.films, state)
     if not system.remembers:
         return None
-    worst = 0.0
+    worst, turned = 0.0, np.concatenate([[angle], state.q[list(system.spins)]])
     for i, (film, pick) in enumerate(zip(system.volumes, system.rotor.journals, strict=True)):
-        d = pick @ state.q / system.clearances[i]
+        if not system.remembering[i]:
+            continue
+        turn = float(system.turning[i, GRID] @ turned)
+        cosine, sine = math.cos(turn), math.sin(turn)
+        d = np.array([[cosine, sine], [-sine, cosine]]) @ pick @ state.q / system.clearances[i]
         now = film.content(Motion((float(d[0]), float(d[1])), (0.0, 0.0), 0.0), state.wet[W, i])
         free = ~film.grid.fixed
         passed = max(state.flows[PASSED, i, INFLOW], state.flows[PASSED, i, OUTFLOW])
@@ -34,17 +45,20 @@ def oil_defect(system: System, state: State) -> float | None:
 
 
 def net_flow(state: State, film: int) -> float:
-    """Oil that came in through openings and ends less what left, in units of R b C."""
-    return float(state.flows[PASSED, film, SUPPLY_NET] - state.flows[PASSED, film, ENDS_NET])
+    """Oil that came in through openings, ends and coupled channels less what left, in units of R b C."""
+    passed = state.flows[PASSED, film]
+    return float(passed[SUPPLY_NET] - passed[ENDS_NET] + passed[CHANNELS_NET])
 
 
 def oil_passed(system: System, state: State) -> dict[str, float]:
-    """Oil in m^3 that came into all films and that left them so far; empty for films that keep none."""
+    """Oil in m^3 that came into all films that keep theirs and that left them so far; empty if there are none."""
+    if isinstance(system.films, PublishedFilm):
+        return published_oil(state)
     if not system.remembers:
         return {}
     size = [
-        film.section.copies * film.section.radius * film.section.width * film.section.clearance
-        for film in system.volumes
+        keeps * film.section.copies * film.section.radius * film.section.width * film.section.clearance
+        for film, keeps in zip(system.volumes, system.remembering, strict=True)
     ]
     came, left = (np.asarray(size) @ state.flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
     return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
@@ -52,4 +66,5 @@ def oil_passed(system: System, state: State) -> dict[str, float]:
 
 def no_oil_comes_in(system: System) -> bool:
     """Whether a film that keeps its oil has no inflow, so that what it carries falls to nothing."""
-    return system.remembers and any(starves(film.section) for film in system.volumes)
+    films = zip(system.volumes, system.remembering, strict=True) if system.volumes else ()
+    return any(keeps and starves(film.section) for film, keeps in films)

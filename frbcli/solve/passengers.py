@@ -21,7 +21,8 @@ from frbcli.film.block_cyclic import ENTRIES
 from frbcli.film.cell_balances import FLOWS, SIDES
 from frbcli.film.cell_states import STATES
 from frbcli.film.kernel import film_force
-from frbcli.film.volume_data import REMEMBERS, VolumeFilms
+from frbcli.film.volume_data import REMEMBERS, SLOT, VolumeFilms
+from frbcli.solve.cell_channels import follow_journals, join, set_law, set_pressures
 from frbcli.solve.cell_passengers import (
     GRID_X,
     GRID_Y,
@@ -41,8 +42,10 @@ PASSED, NOW = range(2)
 
 class Work(NamedTuple):
     """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k,
-    k + SIDES); w, past (F, m, k) of the stage; stage_oil (stages, F, m, k) rates of the stages; stage_flows
-    (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4); all without rows for films without cells."""
+    k + SIDES + S); w, past (F, m, k) of the stage; stage_oil (stages, F, m, k) rates of the stages; stage_flows
+    (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4); all without rows for films without cells. Of coupled channels
+    with Q mouths, S of a film at most: channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F), see
+    cell_channels.py; all but changes without rows if there are none."""
 
     states: Array
     stencil: Array
@@ -54,27 +57,56 @@ class Work(NamedTuple):
     stage_flows: Array
     grids: Array
     slopes: Array
+    channel: Array
+    answers: Array
+    changes: Array
+    cross: Array
 
 
 def _volumes(films: Any) -> bool:
     return getattr(films, "instance_class", None) is VolumeFilms
 
 
+def mouth_counts(films: Any) -> tuple[int, int]:
+    """How many mouths coupled channels have, and how many of them in one film at most."""
+    raise NotImplementedError
+
+
+@overload(mouth_counts)
+def _mouth_counts(films):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films: (0, 0)
+
+    def volumes(films):  # type: ignore[no-untyped-def]
+        slots = 0
+        for q in range(films.mouths.shape[0]):
+            slots = max(slots, 1 + int(films.mouths[q, SLOT]))
+        return films.mouths.shape[0], slots
+
+    return volumes
+
+
 @njit(cache=True, error_model="numpy")
-def make_work(wet, stages):  # type: ignore[no-untyped-def]
-    """Scratch for the films' state wet (WET, F, m, k)."""
+def make_work(films, wet, stages):  # type: ignore[no-untyped-def]
+    """Scratch for films and their state wet (WET, F, m, k)."""
     count, m, k = wet.shape[1], wet.shape[2], wet.shape[3]
+    mouths, slots = mouth_counts(films)
+    coupled = count if mouths > 0 else 0
     return Work(
         np.zeros((count, STATES, m, k)),
         np.zeros((ENTRIES, m, k)),
         np.zeros((m, k, k)),
-        np.zeros((count, m, k, k + SIDES)),
+        np.zeros((count, m, k, k + SIDES + slots)),
         np.zeros((count, m, k)),
         np.zeros((count, m, k)),
         np.zeros((stages, count, m, k)),
         np.zeros((stages, count, FLOWS)),
         np.zeros((GRIDS, count)),
         np.zeros((count, 4)),
+        np.zeros((coupled, m, k)),
+        np.zeros((mouths, 1 + 2 * coupled)),
+        np.zeros((count, slots)),
+        np.zeros((2 * coupled, 2 * coupled)),
     )
 
 
@@ -113,6 +145,25 @@ def film_numbers(
     A film whose balances hold already, but not in the first iteration of stage s, is settled: its rates are kept, and
     it only follows the journal. One that does not settle goes on with shorter steps.
     """
+    raise NotImplementedError
+
+
+def meet_channels(
+    films: Any, work: Work, x_0: Array, u: Array, omega: Array, clearances: Array, g: float, iteration: int
+) -> None:
+    """Before the films are asked in an iteration: the pressures of the coupled channels, by the films as they are.
+
+    x_0, u, omega: (2 films,), see the rows of stage.py."""
+    raise NotImplementedError
+
+
+def join_films(films: Any, work: Work, clearances: Array, force: Array) -> None:
+    """After all films have been asked: what coupled channels make of their forces (2 films,), and work.cross."""
+    raise NotImplementedError
+
+
+def follow_channels(films: Any, work: Work, correction: Array, share: float) -> None:
+    """Before the films are moved: the coupled channels follow a share of the correction of the journals' velocities."""
     raise NotImplementedError
 
 
@@ -187,6 +238,7 @@ def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  
             work.stage_flows[s, f],
             work.grids[:, f],
             work.slopes[f],
+            work.channel[f] if work.channel.shape[0] > 0 else work.w[f],
             d_x,
             d_y,
             v_x,
@@ -199,13 +251,53 @@ def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  
     return volumes
 
 
+@overload(meet_channels)
+def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, x_0, u, omega, clearances, g, iteration: None
+
+    def volumes(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
+        if films.mouths.shape[0] > 0:
+            if iteration == 0:
+                set_law(films, work.grids, x_0, u, omega, clearances, g)
+            set_pressures(films, work.grids, work.w, work.channel)
+
+    return volumes
+
+
+@overload(join_films)
+def _join_films(films, work, clearances, force):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, clearances, force: None
+
+    def volumes(films, work, clearances, force):  # type: ignore[no-untyped-def]
+        if films.mouths.shape[0] > 0:
+            join(
+                films, work.grids, work.states, work.fields, clearances, force, work.cross, work.answers, work.changes
+            )
+
+    return volumes
+
+
+@overload(follow_channels)
+def _follow_channels(films, work, correction, share):  # type: ignore[no-untyped-def]
+    if not _volumes(films):
+        return lambda films, work, correction, share: None
+
+    def volumes(films, work, correction, share):  # type: ignore[no-untyped-def]
+        if films.mouths.shape[0] > 0:
+            follow_journals(films, work.answers, correction, share, work.changes)
+
+    return volumes
+
+
 @overload(move_film, inline="always")
 def _move_film(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
     if not _volumes(films):
         return lambda films, work, f, u_x, u_y, g: 0
 
     def volumes(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
-        return move_cells(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g)
+        return move_cells(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g, work.changes[f])
 
     return volumes
 

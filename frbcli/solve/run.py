@@ -5,29 +5,34 @@ from __future__ import annotations
 import math
 import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.film.published.film import PublishedFilm
 from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
+from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_down_profile, run_up_profile
 from frbcli.solve.cosimulation import in_turn, micro_cost
-from frbcli.solve.film_error import SAMPLES, film_force_error
+from frbcli.solve.error_budget import FIRST, error_budget, quick_budget
+from frbcli.solve.film_error import SAMPLES
 from frbcli.solve.interrupt import held_back
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.march import advance
-from frbcli.solve.oil import no_oil_comes_in, oil_defect, oil_passed
+from frbcli.solve.oil import no_oil_comes_in, oil_passed
+from frbcli.solve.published_march import advance_published
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import (
     CONTACT,
-    ERROR_LARGEST,
+    ERROR_NOW,
     FINISHED,
     OUTPUTS,
     REJECTED,
@@ -43,7 +48,7 @@ from frbcli.solve.state import (
 from frbcli.solve.tableau import METHODS
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
-BUDGET, CELL_BUDGET = 4000, 100  # steps between two looks at the clock: some 20 ms
+BUDGET, CELL_BUDGET = 500, 50  # steps between two looks at the clock: some milliseconds
 LONGEST_STEP = 1e-3  # s; a slow rotor still falls, and its shaft still vibrates
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
@@ -107,8 +112,8 @@ def _run(
 def _go(march: _March, writer: RunWriter, observe: Observer | None) -> Run:
     """March to the end or to Ctrl-C; checkpoints are spaced so that writing takes a small share of the time."""
 
-    def checkpoint() -> None:
-        writer.checkpoint(march.snapshot(), march.cost(), march.error(), march.time)
+    def checkpoint(error: dict[str, float | None]) -> None:
+        writer.checkpoint(march.snapshot(), march.cost(), error, march.time)
 
     status, saved, pause = RUNNING, time.monotonic(), CHECKPOINT_EVERY_s
     # An interruption between a step and its samples would tear them apart.
@@ -120,11 +125,11 @@ def _go(march: _March, writer: RunWriter, observe: Observer | None) -> Run:
                 observe(march.progress())
             if status == RUNNING and time.monotonic() - saved > pause:
                 began = time.monotonic()
-                checkpoint()
+                checkpoint(march.error_so_far())
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
         # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
-        checkpoint()
+        checkpoint(march.error() if status == RUNNING else march.error_so_far())
     if status == RUNNING:
         return writer.so_far()
     from frbcli.analysis.events import find_events  # scipy.signal takes longer to import than a short run
@@ -133,7 +138,8 @@ def _go(march: _March, writer: RunWriter, observe: Observer | None) -> Run:
     if status != FINISHED and march.starves:
         ended = STARVED
     so_far = writer.so_far(ended)
-    return writer.finish(ended, so_far.cost, so_far.error, [asdict(event) for event in find_events(so_far)], march.time)
+    events = [asdict(event) for event in find_events(so_far)]
+    return writer.finish(ended, so_far.cost, march.error(events), events, march.time)
 
 
 class _March:
@@ -148,13 +154,17 @@ class _March:
         self._apart = plan.coupling == "co-simulation"
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))
-        self._advance = advance_in_turn if self._apart else advance
+        self._advance: Callable[..., Any] = advance_in_turn if self._apart else advance
+        if isinstance(system.films, PublishedFilm):
+            self._advance = advance_published
         rows = max(BUFFER, 4 * (int(LONGEST_STEP / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
-        self._oil = np.empty((rows, len(system.volumes)))
+        self._oil = np.empty((rows, len(system.remembering)))
         # States at a few fixed output times, at which the films are solved again on a finer mesh.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // SAMPLES)
         self._samples = np.empty((0, 2 * system.rotor.size + 1))
+        self._error_history = FIRST
+        self._predicted_cpu_s = expected_cost(case, plan, profile).cpu_s
         self._cpu_s = self._wall_s = 0.0
         self._budget = BUDGET if plan.cells is None else CELL_BUDGET
 
@@ -196,6 +206,7 @@ class _March:
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept]])
         self._samples = np.concatenate([self._samples, fresh])
+        self._error_history = np.vstack([self._error_history, self._state.numbers[[TIME, ERROR_NOW]]])
         return status, self._signals(times, speeds, self._q[:rows], self._v[:rows])
 
     def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
@@ -207,8 +218,8 @@ class _March:
         for name, pick in system.rotor.points:
             point = q @ pick.T
             signals[f"{name}_x_m"], signals[f"{name}_y_m"] = point[:, 0], point[:, 1]
-        if system.remembers:
-            for i, name in enumerate(system.names):
+        for i, name in enumerate(system.names):
+            if system.remembering[i]:
                 signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
@@ -216,12 +227,15 @@ class _March:
 
     def snapshot(self) -> dict[str, Array]:
         """All that is needed to go on as if the run had not stopped."""
-        return {**self._state._asdict(), "film_samples": self._samples, "clock": np.array([self._cpu_s, self._wall_s])}
+        clock = np.array([self._cpu_s, self._wall_s])
+        history = {"film_samples": self._samples, "error_history": self._error_history}
+        return {**self._state._asdict(), **history, "clock": clock}
 
     def restore(self, checkpoint: dict[str, Array]) -> None:
         """Take up the state of a checkpoint."""
         self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
         self._samples = checkpoint["film_samples"].reshape(-1, 2 * self._system.rotor.size + 1)
+        self._error_history = checkpoint["error_history"].reshape(-1, 2)
         self._cpu_s, self._wall_s = (float(value) for value in checkpoint["clock"])
 
     def cost(self) -> dict[str, float]:
@@ -230,6 +244,7 @@ class _March:
         wall = max(self._wall_s, 1e-9)
         return {
             "cpu_s": self._cpu_s,
+            "predicted_cpu_s": self._predicted_cpu_s,
             "wall_s": self._wall_s,
             "steps": int(numbers[STEPS]),
             "rejected_steps": int(numbers[REJECTED]),
@@ -241,12 +256,18 @@ class _March:
             **(micro_cost(self._state, self._cpu_s) if self._apart else {}),
         }
 
-    def error(self) -> dict[str, float | None]:
-        """The error of the run as far as it is known."""
+    def error_so_far(self) -> dict[str, float | None]:
+        """The error of a run that goes on, as far as it costs nothing to know."""
+        return quick_budget(self._system, self._state, self._profile.angle(self.time))
+
+    def error(self, events: Iterable[Mapping[str, Any]] = ()) -> dict[str, float | None]:
+        """The error of the run."""
+        times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
         return {
-            "time_integration": float(self._state.numbers[ERROR_LARGEST]),
-            "film_force_relative": film_force_error(self._plan, self._system, self._case, self._samples),
-            "oil_balance_relative": oil_defect(self._system, self._state),
+            **self.error_so_far(),
+            **error_budget(
+                self._case, self._plan, self._system, self.time, self._error_history, times, self._samples, events
+            ),
         }
 
     def progress(self) -> Progress:
@@ -297,8 +318,8 @@ def _header(command: str, case: Case, system: System) -> Header:
     lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
     eccentricities = [named("eccentricity", name) for name in system.names]
     units = {"time_s": "s", "speed_Hz": "Hz", **dict.fromkeys(eccentricities, ""), **dict.fromkeys(lengths, "m")}
-    if system.remembers:
-        units |= dict.fromkeys((named("oil_fraction", name) for name in system.names), "")
+    remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
+    units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
     return Header(
         title=case.title or case.name,

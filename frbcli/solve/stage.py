@@ -18,7 +18,7 @@ from numba import njit
 
 from frbcli.solve.cell_passengers import GRID_SPEED, GRID_TURN
 from frbcli.solve.dense import solve_dense
-from frbcli.solve.passengers import drag_integral, film_numbers, move_film
+from frbcli.solve.passengers import drag_integral, film_numbers, follow_channels, join_films, meet_channels, move_film
 from frbcli.solve.state import GRID, SLIP, SUM
 
 CLOSEST = 0.5  # share of the remaining gap that one Newton correction may close
@@ -75,7 +75,7 @@ def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def _reach(d_x, d_y, c_x, c_y, limit):  # type: ignore[no-untyped-def]
+def reach(d_x, d_y, c_x, c_y, limit):  # type: ignore[no-untyped-def]
     """Largest factor <= 1 by which the correction c may be applied: the gap to `limit` keeps a share of itself."""
     here = norm(d_x, d_y)
     there = norm(d_x + c_x, d_y + c_y)
@@ -183,7 +183,8 @@ def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ig
 
 @njit(cache=True, error_model="numpy", inline="always")
 def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film):  # type: ignore[no-untyped-def]
-    """Fill FORCE, BY_X, BY_Y at the velocities U."""
+    """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
+    meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _bearing(
@@ -205,6 +206,7 @@ def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iterati
         film[FORCE, x], film[FORCE, y] = f_x, f_y
         film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
         film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
+    join_films(films, work, clearances, film[FORCE])
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -215,7 +217,7 @@ def correct(films, work, compliance, clearances, g, limit, film, newton):  # typ
     over their clearances, films whose cells had not settled). What may be left is infinite for a correction that is
     not finite.
     """
-    m = compliance.shape[0]
+    m, crossed = compliance.shape[0], work.cross.shape[0]
     for i in range(m):
         total = film[U_0, i] - film[U, i]
         for j in range(m):
@@ -223,6 +225,8 @@ def correct(films, work, compliance, clearances, g, limit, film, newton):  # typ
             x = j - j % 2
             slope = BY_X + j % 2
             newton[i, j] = -(compliance[i, x] * film[slope, x] + compliance[i, x + 1] * film[slope, x + 1])
+            for a in range(crossed):
+                newton[i, j] -= compliance[i, a] * work.cross[a, j]
         newton[i, i] += 1.0
         film[CORRECTION, i] = total
     _solve_small(newton, film)
@@ -235,7 +239,7 @@ def correct(films, work, compliance, clearances, g, limit, film, newton):  # typ
         if not math.isfinite(move):
             return 0.0, math.inf, math.inf, 0
         moved = max(moved, move)
-        share = min(share, _reach(at_x, at_y, c_x, c_y, limit))
+        share = min(share, reach(at_x, at_y, c_x, c_y, limit))
         # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
         # |w|, over the size of w.
         half = 0.5 * film[OMEGA, x]
@@ -246,6 +250,9 @@ def correct(films, work, compliance, clearances, g, limit, film, newton):  # typ
     for i in range(m):  # the forces at the corrected velocities, to first order: what Newton's equations have used
         x = i - i % 2
         film[FORCE, i] += share * (film[BY_X, i] * film[CORRECTION, x] + film[BY_Y, i] * film[CORRECTION, x + 1])
+        for j in range(crossed):
+            film[FORCE, i] += share * work.cross[i, j] * film[CORRECTION, j]
+    follow_channels(films, work, film[CORRECTION], share)
     for f in range(clearances.shape[0]):
         c = clearances[f]
         unsettled += move_film(
@@ -276,11 +283,13 @@ def spin_up(  # type: ignore[no-untyped-def]
     of a ring was off.
 
     Couette's term pulls at the surfaces against each other, Poiseuille's, half the moment of the film's force about the
-    middle between them, at both in the same sense.
+    middle between them, at both in the same sense. How Couette's term of a ring falls with its own speed is taken in by
+    Newton's method: a ring of little inertia follows it at once, and plain iterations would go to and fro.
     """
     rings = rotor.spins.shape[0]
     if rings == 0:
         return 0.0
+    held = np.zeros(rings)  # what Couette's terms fall by per speed of the ring
     for r in range(rings):
         torque[r] = 0.0
     for f in range(clearances.shape[0]):
@@ -289,17 +298,21 @@ def spin_up(  # type: ignore[no-untyped-def]
         slip = 0.0
         for b in range(bodies.shape[0]):
             slip += rotor.turning[f, SLIP, b] * bodies[b]
-        couette = -rotor.drag[f] * slip * drag_integral(films, work, f, e_x / c, e_y / c, rotor.torque_terms[1])
+        resistance = rotor.drag[f] * drag_integral(films, work, f, e_x / c, e_y / c, rotor.torque_terms[1])
+        couette = -resistance * slip
         poiseuille = -0.5 * (e_x * film[FORCE, y] - e_y * film[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
         inside, outside = rotor.ring_of[f, 0], rotor.ring_of[f, 1]
         if inside >= 0:
             torque[inside] += couette + poiseuille
+            held[inside] += resistance
         if outside >= 0:
             torque[outside] += poiseuille - couette
+            held[outside] += resistance
     off = 0.0
     for r in range(rings):
         i = rotor.spins[r]
-        stage_a[i, s] = torque[r] / rotor.mass[i, i]
+        pulled = torque[r] + held[r] * (bodies[1 + r] - at[V, i])
+        stage_a[i, s] = pulled / (rotor.mass[i, i] + g * held[r])
         speed = at[V, i] + g * stage_a[i, s]
         off = max(off, abs(g * (speed - bodies[1 + r])))
         stage_v[i, s] = bodies[1 + r] = speed

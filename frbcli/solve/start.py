@@ -10,12 +10,14 @@ from frbcli.case.schema import Start
 from frbcli.errors import NotConverged
 from frbcli.film.balance import Motion
 from frbcli.film.cell_balances import FLOWS
+from frbcli.film.published.film import PublishedFilm
 from frbcli.film.steady_force import steady_solution
 from frbcli.film.volume_data import VolumeFilms
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.system import System
 from frbcli.solve.cell_passengers import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.passengers import OIL, W_BEFORE, WET, W
+from frbcli.solve.published_state import first_film
 from frbcli.solve.resting import held_rotor, resting_position, ring_speeds
 from frbcli.solve.state import HISTORY, NUMBERS, STEP, STEP_DONE, Array, RotorData, State
 
@@ -92,6 +94,9 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
 def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tuple[Array, Array]:
     """The films' own state: settled where that is possible, else full at the ambient pressure. Its oil does not change
     at first: the journals stand still."""
+    if isinstance(system.films, PublishedFilm):
+        omega = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
+        return first_film(system.films, system.rotor.journals[0] @ q, float(omega[0]))
     if not isinstance(system.films, VolumeFilms):
         return np.zeros((WET, 0, 0, 0)), np.zeros((2, 0, FLOWS))
     m, k = system.volumes[0].grid.shape
@@ -103,7 +108,7 @@ def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tupl
         w = film.full()
         if np.any(at != 0.0) and omegas[i] != 0.0:
             with contextlib.suppress(NotConverged):
-                w = steady_solution(film, system.follows, motion).w
+                w = steady_solution(film, system.follows[i], motion).w
         wet[W, i] = wet[W_BEFORE, i] = w
         wet[OIL, i] = film.content(motion, w)
     return wet, np.zeros((2, len(system.volumes), FLOWS))

@@ -42,9 +42,10 @@ def gap(clearance: str) -> tuple[str, ...]:
 
 
 BOTH = ("bearing.0", "bearing.1")
-TO_900_Hz = ("speed.to=900 Hz", "speed.duration=3 s")
 SLOWLY = ("speed.to=700 Hz", "speed.duration=10 s", "speed.hold=0.5 s", "output.step=1e-4")
-PLAIN = ('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath", "bearing.outer.supply.pressure=1 bar")
+PLAIN = ('bearing.inner.supply={kind="none"}', "bearing.outer.supply.pressure=1 bar")
+COUPLED = ("bearing.channels=coupled",)
+GROOVE_AT_END = ('bearing.outer.supply={kind="circumferential-groove", axial_position=1, pressure="2 bar"}',)
 STUDIES: dict[str, tuple[str, tuple[str, ...]]] = {
     "hs": ("floating-ring", HALF),
     "pen": ("floating-ring", PENALTY),
@@ -66,9 +67,12 @@ STUDIES: dict[str, tuple[str, tuple[str, ...]]] = {
     "tp90level": ("floating-ring", (*TWO_PHASE, "bearing.centrifugal_pressure=false")),
     "tc": ("turbocharger-heavy", HALF),
     "tc-pen": ("turbocharger-heavy", PENALTY),
-    "tc-tp": ("turbocharger-heavy", (*TWO_PHASE, *TO_900_Hz)),
+    "tp90coupled": ("floating-ring", (*TWO_PHASE, *COUPLED)),
+    "tp90end": ("floating-ring", (*TWO_PHASE, *GROOVE_AT_END)),
+    "tp90endcoupled": ("floating-ring", (*TWO_PHASE, *GROOVE_AT_END, *COUPLED)),
+    "tc-tp": ("turbocharger-heavy", TWO_PHASE),
     "tc-pen12": ("turbocharger-heavy", (*PENALTY, *supply("1.2 bar", *BOTH))),
-    "tc-tp12": ("turbocharger-heavy", (*TWO_PHASE, *supply("1.2 bar", *BOTH), *TO_900_Hz)),
+    "tc-tp12": ("turbocharger-heavy", (*TWO_PHASE, *supply("1.2 bar", *BOTH))),
 }
 
 

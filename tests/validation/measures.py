@@ -165,7 +165,7 @@ def worst_film_force(supply: str) -> float:
     rows = [row for row in _rows("film-forces.csv") if row["supply"] == supply]
     pressures = {row["supply_pressure_bar"] for row in rows}
     bearings = {bar: replace(like, supply_pressure=float(bar) * 1e5 if sections == 2 else None) for bar in pressures}
-    films = {bar: planned_film(plan, bearing, plan.mesh) for bar, bearing in bearings.items()}
+    films = {bar: planned_film(plan, bearing, plan.cavitation, plan.mesh) for bar, bearing in bearings.items()}
     return max(_force_error(films[row["supply_pressure_bar"]], like.clearance, row) for row in rows)
 
 

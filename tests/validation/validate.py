@@ -13,7 +13,7 @@ from typing import Any
 
 from frbcli.case.load import load_case
 from frbcli.scene.plan import make_plan
-from validation import chapter6_rows, convergence, forms, measures
+from validation import chapter6_rows, chapter_7_page, convergence, forms, measures
 from validation.measured import Measured, number, speeds
 from validation.measured import rises as rising
 from validation.measures import DATA, REFERENCE, RIGID
@@ -121,8 +121,9 @@ def compared(rows: list[dict[str, Any]], measured: dict[str, Measured]) -> list[
         if not agrees:
             reasons.append(f"- *{row['quantity']}*: {row.get('note', 'no reason known')}.")
     lines += ["", "Why rows differ:", "", *reasons] if reasons else []
-    lines += ["", "## Not yet reached", "", "| quantity | where | waits for |", "|" + " --- |" * 3]
-    lines += [f"| {row['quantity']} | {row['where']} | {row['missing']} |" for row in rows if "missing" in row]
+    missing = [f"| {row['quantity']} | {row['where']} | {row['missing']} |" for row in rows if "missing" in row]
+    if missing:
+        lines += ["", "## Not yet reached", "", "| quantity | where | waits for |", "|" + " --- |" * 3, *missing]
     return lines
 
 
@@ -176,6 +177,7 @@ def main(folder: Path) -> None:
         "",
         *compared(printed_rows(), measure(folder)),
         "",
+        chapter_7_page.section(folder, PAGE.read_text(encoding="utf-8")),
         *forms.table(),
         "",
         *convergence.table(folder),

@@ -9,6 +9,7 @@ import numpy as np
 
 from frbcli.errors import NotConverged
 from frbcli.film.balance import Motion
+from frbcli.film.bearing import FilmForce
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.gap import Section, gap_height, gap_rate
 from frbcli.film.grid import Array
@@ -45,8 +46,11 @@ class PublishedFilm:
         self.cavitation = (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale
         self.cavity = self.cavitation + self.ambient  # the same, absolute
         self.elements = make_elements(self.mesh, diffusion)
-        self._weights = force_weights(self.mesh)
-        self._newton = Newton(self.mesh, self.elements, self._step(law.steepness))
+        # (2 a, 2 k + 1, 2) force on the journal by the whole bearing per scaled pressure of a node, N s
+        scale = section.copies * section.radius * section.width * section.pressure_scale
+        self.weights = scale * force_weights(self.mesh)
+        self.step_law = self._step(law.steepness)
+        self._newton = Newton(self.mesh, self.elements, self.step_law)
 
     def full(self) -> FilmState:
         """A full film at the ambient pressure, or p_cav if that is higher."""
@@ -118,7 +122,7 @@ class PublishedFilm:
 
         pressure: (2 a, 2 k + 1) scaled gauge pressures to begin from. Raises NotConverged.
         """
-        equations = Equations(self.gap(motion), self._step(self.law.steepness), rate, past)
+        equations = Equations(self.gap(motion), self.step_law, rate, past)
         point = self._newton.solve(equations, pressure.ravel())
         return self._solution(motion, equations, point, point.cost)
 
@@ -133,10 +137,8 @@ class PublishedFilm:
             )
         pressure = point.pressure.reshape(self.mesh.phi.shape)
         change = self._newton.changes(equations, point).reshape(*pressure.shape, -1)
-        section = self.section
-        scale = section.copies * section.radius * section.width * section.pressure_scale
-        force = scale * np.einsum("ijx,ij->x", self._weights, pressure)
-        by = scale * np.einsum("ijx,ijs->xs", self._weights, change)
+        force = np.einsum("ijx,ij->x", self.weights, pressure)
+        by = np.einsum("ijx,ijs->xs", self.weights, change)
         unsettled = float(np.hypot(*by[:, 0]) / max(np.hypot(*force), np.finfo(float).tiny))
         return PublishedSolution(
             FilmState(pressure, self.fraction(pressure)),
@@ -148,3 +150,11 @@ class PublishedFilm:
             unsettled,
             iterations,
         )
+
+
+def published_force(film: PublishedFilm, displacement: Array, velocity: Array, omega: float) -> FilmForce:
+    """As film.bearing.evaluate, for a film that has settled: SI units. Raises NotConverged."""
+    c = film.section.clearance
+    d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
+    found = film.steady(Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)).response
+    return FilmForce(found.force, found.by_d / c, found.by_v / c)

@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.film.balance import Motion
 from frbcli.film.grid import Array
 from frbcli.film.loads import CavitationFactor, Loads, OilBalance, Torque
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.plain import AROUND_DIRECTION, terms
 from frbcli.film.published.solution import PublishedSolution
+
+
+@dataclass(frozen=True)
+class OilFlows:
+    """Of the whole bearing in m^3/s: in and out at ends, grooves and holes, summed node by node; supply, fed net by
+    grooves and holes; ends, leaving net there; stored, by which the oil in the film grows."""
+
+    inflow: float
+    outflow: float
+    supply: float
+    ends: float
+    stored: float
 
 
 def published_loads(
@@ -34,7 +49,7 @@ def published_loads(
 
 def oil_fraction(film: PublishedFilm, solution: PublishedSolution) -> float:
     """The factor (4.46): mean of theta over the film without grooves and holes."""
-    area = _open_area(film)
+    area = open_area(film)
     return float((area * solution.state.fraction).sum() / area.sum())
 
 
@@ -42,7 +57,7 @@ def torque(
     film: PublishedFilm, solution: PublishedSolution, slip: float, factor: CavitationFactor = "none"
 ) -> Torque:
     """Torque (3.17) of the film; grooves and holes have none."""
-    section, gap, area = film.section, film.gap(solution.motion), _open_area(film)
+    section, gap, area = film.section, film.gap(solution.motion), open_area(film)
     theta = solution.state.fraction if factor == "local" else 1.0
     rise = film.mesh.slopes[..., AROUND_DIRECTION]
     around = np.einsum("eqa,ea->eq", rise, solution.state.pressure.ravel()[film.mesh.nodes])
@@ -55,17 +70,25 @@ def torque(
 
 
 def oil_balance(film: PublishedFilm, solution: PublishedSolution) -> OilBalance:
-    """The flows of a solution in m^3/s, by the whole bearing; the defect is less than zero where oil is created.
+    """The flows of a solution in m^3/s, by the whole bearing; the defect is less than zero where oil is created."""
+    flows = oil_flows(film, solution.motion, solution.state.pressure, solution.rate, solution.past)
+    size = max(flows.inflow, flows.outflow, abs(flows.stored))
+    missing = flows.inflow - flows.outflow - flows.stored
+    return OilBalance(
+        flows.inflow, flows.outflow, flows.supply, flows.ends, defect_relative=missing / size if size > 0.0 else 0.0
+    )
+
+
+def oil_flows(film: PublishedFilm, motion: Motion, pressure: Array, rate: float, past: Array) -> OilFlows:
+    """The flows at scaled gauge pressures (2 a, 2 k + 1) of the nodes with theta_t = rate theta - past, past (e, 9).
 
     What enters at given pressures is what the weak form leaves over at their nodes. Artificial diffusion is no flow:
     the oil that it brings from there into the film counts as created.
     """
-    elements, mesh, pressure = film.elements, film.mesh, solution.state.pressure
+    elements, mesh = film.elements, film.mesh
     scale = film.section.copies * film.section.radius * film.section.width * film.section.clearance
-    y = film.over_cavitation(film.at_points(pressure))
-    theta, slope = film.law.fraction(y)
-    change = solution.rate * theta - solution.past
-    parts = terms(elements, film.gap(solution.motion), pressure.ravel(), theta, slope / film.cavity, change)
+    theta, slope = film.law.fraction(film.over_cavitation(film.at_points(pressure)))
+    parts = terms(elements, film.gap(motion), pressure.ravel(), theta, slope / film.cavity, rate * theta - past)
     through = float(parts.carried[elements.solid].sum())  # from grooves and holes by the surfaces, net
     residual = parts.residual - parts.spread
     residual[elements.solid] = 0.0
@@ -74,16 +97,21 @@ def oil_balance(film: PublishedFilm, solution: PublishedSolution) -> OilBalance:
     fed = np.append(entering[~_at_ends(film)], through)
     free = float(parts.near.sum() + parts.far.sum())
     flows = np.append(entering, [through, -free])
-    inflow, outflow = float(flows[flows > 0.0].sum()), -float(flows[flows < 0.0].sum())
-    stored = float(parts.stored.sum())
-    size = max(inflow, outflow, abs(stored))
-    return OilBalance(
-        in_m3_s=scale * inflow,
-        out_m3_s=scale * outflow,
-        supply_m3_s=scale * float(fed.sum()),
-        ends_m3_s=scale * (free - float(entering[_at_ends(film)].sum())),
-        defect_relative=(inflow - outflow - stored) / size if size > 0.0 else 0.0,
+    return OilFlows(
+        inflow=scale * float(flows[flows > 0.0].sum()),
+        outflow=-scale * float(flows[flows < 0.0].sum()),
+        supply=scale * float(fed.sum()),
+        ends=scale * (free - float(entering[_at_ends(film)].sum())),
+        stored=scale * float(parts.stored.sum()),
     )
+
+
+def oil_content(film: PublishedFilm, d: tuple[float, float], fraction: Array) -> float:
+    """Oil in m^3 in the film, without grooves and holes, at a displacement over the clearance and oil fractions (e, 9)
+    of the points."""
+    scale = film.section.copies * film.section.radius * film.section.width * film.section.clearance
+    height = film.gap(Motion(d, (0.0, 0.0), 0.0)).height
+    return scale * float((open_area(film) * height * fraction).sum())
 
 
 def _at_ends(film: PublishedFilm) -> NDArray[np.bool_]:
@@ -96,6 +124,6 @@ def _at_ends(film: PublishedFilm) -> NDArray[np.bool_]:
     return ends.ravel()
 
 
-def _open_area(film: PublishedFilm) -> Array:
+def open_area(film: PublishedFilm) -> Array:
     """(e, 9) area of the points outside of grooves and holes."""
     return np.where(film.mesh.covered[:, None], 0.0, film.mesh.area)

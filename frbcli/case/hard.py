@@ -1,0 +1,99 @@
+"""The list of hard cases that comes along: shipped cases with settings that bring a program to its limits."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import shlex
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from importlib.resources.abc import Traversable
+from typing import Any
+
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.case.shipped import shipped_folder
+from frbcli.errors import Fault, InputError
+
+LIST, REFERENCES = "hard-cases.toml", "references.json"
+WITHIN_s = 600.0  # compilation included, where nothing is compiled yet
+
+
+@dataclass(frozen=True)
+class HardCase:
+    """One hard case and how it ends.
+
+    topic: the group that it belongs to; hard: what is hard about it; command: "runup", "rundown", "rotation", "squeeze"
+    or "whirl"; base: a shipped case; settings: KEY=VALUE each. end: status that it has to end with, "input-error" for a
+    case that is refused; why: the cause, where the end is an early one; says: words that its message must have;
+    events: the kinds of all events in their order, with the film's name if there are several, None if they do not
+    matter; fine: settings that make it the reference, () for none; quick: whether it takes a moment only; within_s:
+    wall time after which it counts as hanging.
+    """
+
+    name: str
+    topic: str
+    hard: str
+    base: str
+    end: str
+    command: str = "runup"
+    settings: tuple[str, ...] = ()
+    why: str = ""
+    says: str = ""
+    events: tuple[str, ...] | None = None
+    fine: tuple[str, ...] = ()
+    quick: bool = False
+    within_s: float = WITHIN_s
+
+    @property
+    def words(self) -> str:
+        """The command line that does the same."""
+        return shlex.join(["frb", self.command, self.base, *(w for text in self.settings for w in ("--set", text))])
+
+    def case(self, fine: bool = False) -> Case:
+        """Its case, or that of its reference. Raises InputError if it is refused."""
+        return load_case(self.base, (*self.settings, *(self.fine if fine else ())))
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the fine case gave. values: by name, at times_s of a run, and one number each of a kinematic test; until_s:
+    how far a run can be compared; cpu_s: what it cost."""
+
+    status: str
+    values: dict[str, list[float]]
+    times_s: list[float] = field(default_factory=list)
+    until_s: float = 0.0
+    cpu_s: float = 0.0
+
+
+def hard_cases(names: Sequence[str] = ()) -> tuple[HardCase, ...]:
+    """The hard cases of these names, all of them for (). Raises InputError for names that there are not."""
+    entries = tomllib.loads(_folder().joinpath(LIST).read_text(encoding="utf-8"))["case"]
+    found = {entry["name"]: _hard_case(entry) for entry in entries}
+    unknown = [name for name in names if name not in found]
+    if unknown:
+        faults = (Fault("NAME", name, None, "is no hard case.", _nearest(name, found)) for name in unknown)
+        raise InputError("hard cases", tuple(faults))
+    return tuple(found[name] for name in names) if names else tuple(found.values())
+
+
+def references() -> dict[str, Reference]:
+    """The references of the hard cases that have one, by name."""
+    text = _folder().joinpath(REFERENCES).read_text(encoding="utf-8")
+    return {name: Reference(**entry) for name, entry in json.loads(text).items()}
+
+
+def _hard_case(entry: dict[str, Any]) -> HardCase:
+    lists = {key: tuple(value) for key, value in entry.items() if isinstance(value, list)}
+    return HardCase(**(entry | lists))
+
+
+def _nearest(name: str, found: dict[str, HardCase]) -> str:
+    close = difflib.get_close_matches(name, found, n=1, cutoff=0.5)
+    return f'Did you mean "{close[0]}"?' if close else "`frb cases --hard` lists them."
+
+
+def _folder() -> Traversable:
+    return shipped_folder().joinpath("hard")

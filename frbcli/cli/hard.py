@@ -1,0 +1,123 @@
+"""The hard cases on the terminal: the list of them, and how they ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+from frbcli.analysis.hard_cases import HardResult, HardResults, run_hard_cases
+from frbcli.case.hard import HardCase, hard_cases
+from frbcli.cli.common import Terminal
+from frbcli.cli.transient import live_lines
+
+NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
+COLUMNS = ("case", "what is hard", "end", "error", "stated", "CPU s")
+WIDTH = 80
+EXPLANATION = """\
+error: largest deviation of the eccentricities from a fine reference until a
+whirl begins or the run ends, of a force the relative one; stated: what the
+program itself says that it may be off by. `frb cases --hard NAME` prints a
+case."""
+
+
+def list_hard(terminal: Terminal) -> None:
+    """The table of all hard cases."""
+    found = hard_cases()
+    terminal.table("hard cases", ("case", "what is hard", "ends"), [(h.name, h.hard, h.end) for h in found])
+    terminal.say("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
+    terminal.emit({"command": "cases", "hard": [_entry(hard) for hard in found]})
+
+
+def hard_text(name: str) -> str:
+    """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
+    a case that has to be refused is given as its base, and its settings are told."""
+    (hard,) = hard_cases([name])
+    settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
+    head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
+    return head + (hard.case().source_text if hard.end != "input-error" else "# which has to be refused.\n")
+
+
+def run_hard(names: Sequence[str], terminal: Terminal) -> int:
+    """Run hard cases, all of them for no name, and report; returns the exit code."""
+    with live_lines(terminal) as show:
+        found = run_hard_cases(names, _progress(terminal, show))
+    terminal.table("hard cases", COLUMNS, map(_cells, found.results))
+    terminal.say(EXPLANATION)
+    for result in found.results:
+        if result.message:
+            terminal.say(fill(f"{result.hard.name}: {_cause(result)}", WIDTH))
+    wrong = [result for result in found.results if not result.ok]
+    for result in wrong:
+        terminal.say(fill(f"NOT AS LISTED: {result.hard.name}: {'; '.join(result.problems)}", WIDTH))
+    cpu_s = sum(result.cpu_s for result in found.results)
+    terminal.say(f"{len(found.results) - len(wrong)} of {len(found.results)} end as listed; {cpu_s:.0f} s of CPU time.")
+    terminal.emit({"command": "cases", "hard": [_document(result) for result in found.results], "ok": found.ok})
+    return 0 if found.ok else NOT_AS_LISTED
+
+
+def write_page(found: HardResults, page: Path, introduction: str) -> None:
+    """The results as a page of the documentation."""
+    rows = "".join(f"| {' | '.join(cells)} |\n" for cells in map(_page_cells, found.results))
+    head = "| case | what is hard | has to end | ended | error | stated | CPU s | cause |\n" + "| --- " * 8 + "|\n"
+    page.write_text(f"{introduction}\n{head}{rows}", encoding="utf-8")
+
+
+def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[HardResult, int, int], None]:
+    def tell(result: HardResult, done: int, whole: int) -> None:
+        line = f"{done}/{whole}  {result.hard.name}: {result.status}{'' if result.ok else ', NOT AS LISTED'}"
+        if show is None:
+            terminal.say(line)
+        else:
+            show(line)
+
+    return tell
+
+
+def _cause(result: HardResult) -> str:
+    """Why a case ended early: its message, and what the list knows of it."""
+    return "; ".join(text.rstrip(".") for text in (result.message, result.hard.why) if text)
+
+
+def _cells(result: HardResult) -> tuple[str, ...]:
+    hard = result.hard
+    end = result.status if result.status == hard.end else f"{result.status}, not {hard.end}"
+    return hard.name, hard.hard, end, _short(result.error), _short(result.reported), f"{result.cpu_s:.1f}"
+
+
+def _page_cells(result: HardResult) -> tuple[str, ...]:
+    hard = result.hard
+    name, what, _, error, stated, cpu_s = _cells(result)
+    notes = "; ".join(filter(None, (_cause(result), *result.problems))).replace("|", "\\|")
+    return f"`{name}`", what, hard.end, result.status, error, stated, cpu_s, notes
+
+
+def _short(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
+
+
+def _entry(hard: HardCase) -> dict[str, object]:
+    return {"name": hard.name, "topic": hard.topic, "hard": hard.hard, "command": hard.words, "expected": hard.end,
+            "why": hard.why}  # fmt: skip
+
+
+def _document(result: HardResult) -> dict[str, Any]:
+    """A result in JSON."""
+    hard = result.hard
+    return {
+        "name": hard.name,
+        "topic": hard.topic,
+        "hard": hard.hard,
+        "command": hard.words,
+        "expected": hard.end,
+        "status": result.status,
+        "message": result.message,
+        "events": result.events,
+        "error": result.error,
+        "reported": result.reported,
+        "until_s": result.until_s,
+        "cpu_s": result.cpu_s,
+        "ok": result.ok,
+        "problems": result.problems,
+    }

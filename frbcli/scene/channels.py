@@ -1,0 +1,112 @@
+"""The channels of floating rings: what their mouths are held at, or how they couple the two films of a ring."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from frbcli.case.bearing import Bores, CircumferentialGroove, FloatingRingBearing, RingFilm
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.film.channels import Channel, Mouth, channel_resistance
+from frbcli.film.volumes import VolumeFilm
+
+MIDDLE = 0.5
+INLETS = "a groove around one end of the outer film, or an end in an oil bath"
+
+
+def coupled(bearing: FloatingRingBearing) -> bool:
+    """Whether the channels of a ring couple its films."""
+    return bearing.channels == "coupled"
+
+
+def opens_to_groove(bearing: FloatingRingBearing) -> bool:
+    """Whether the channels open to a groove around the middle of the outer film, which holds its pressure."""
+    return bearing.outer.supply.kind == "circumferential-groove" and _groove_position(bearing.outer) == MIDDLE
+
+
+def mouths_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
+    """The bores in the ring as the outer film sees them, None if it does not: they are not coupled, or in a groove."""
+    supply = bearing.inner.supply
+    if not coupled(bearing) or opens_to_groove(bearing) or not isinstance(supply, Bores):
+        return None
+    offset = (supply.axial_position - MIDDLE) * bearing.inner.width / bearing.outer.width
+    return supply.model_copy(update={"axial_position": MIDDLE + offset})
+
+
+def pull(case: Case, bearing: FloatingRingBearing) -> float:
+    """By what the pressure rises outwards in a channel with the square of the ring's speed, (4.27), Pa s^2."""
+    if not bearing.centrifugal_pressure:
+        return 0.0
+    inside, outside = 0.5 * bearing.inner.diameter, 0.5 * bearing.outer.diameter
+    return 0.5 * case.oil.density * (outside**2 - inside**2)
+
+
+def resistance(case: Case, bearing: FloatingRingBearing) -> float:
+    """Of one channel in Pa s / m^3: a bore through the ring, by its oil."""
+    supply = bearing.inner.supply
+    assert isinstance(supply, Bores)
+    length = 0.5 * (bearing.outer.diameter - bearing.inner.diameter)
+    return channel_resistance(supply.diameter, length, case.oil.viscosity)
+
+
+def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel, ...]:
+    """The coupled channels of all rings. volumes: of all films in their order, with the mouths as the last holes."""
+    channels: list[Channel] = []
+    film = 0
+    for bearing in case.bearings:
+        if not isinstance(bearing, FloatingRingBearing):
+            film += 1
+            continue
+        supply = bearing.inner.supply
+        if coupled(bearing) and isinstance(supply, Bores):
+            inner = volumes[film].section.holes[-supply.count :]
+            outer = volumes[film + 1].section.holes[-supply.count :]
+            for index in range(supply.count):
+                channels.append(
+                    Channel(
+                        inner=Mouth(film, inner[index]),
+                        outer=None if opens_to_groove(bearing) else Mouth(film + 1, outer[index]),
+                        resistance=resistance(case, bearing),
+                        groove_pressure=getattr(bearing.outer.supply, "pressure", 0.0) - case.oil.ambient_pressure,
+                        thrown=pull(case, bearing),
+                    )
+                )
+        film += 2
+    return tuple(channels)
+
+
+def channel_faults(case: Case) -> Iterator[Fault]:
+    """What keeps the channels of a case from being coupled."""
+    for bearing in case.bearings:
+        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
+            problem, remedy = _problem(bearing)
+            if problem:
+                yield Fault("bearing.channels", "coupled", None, problem, remedy)
+
+
+def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:
+    supply, outer = bearing.inner.supply, bearing.outer
+    if not isinstance(supply, Bores):
+        return "needs channels: the inner film has no bores.", 'Write inner.supply.kind = "bores".'
+    if supply.on == "journal":
+        return "needs channels through the ring: the bores are in the journal.", 'Write inner.supply.on = "shell".'
+    if outer.supply.kind == "none" and not {"oil-bath"} & {bearing.inner.ends, outer.ends}:
+        return "leaves the bearing without oil: its channels bring none from outside.", f"Give it {INLETS}."
+    if outer.supply.kind == "circumferential-groove":
+        middle = _groove_position(outer) == MIDDLE
+        if middle and supply.axial_position != MIDDLE:
+            problem = "asks for bores beside a groove in the middle, which parts the outer film in two unlike ones."
+            return problem, "Put the bores in the middle, or the groove at an end of the outer film."
+        if middle:
+            return "", ""
+    elif bearing.ring.spin == "free" and outer.supply.kind != "none":
+        problem = f"asks for {outer.supply.kind} in the housing, which the bores of a turning ring pass."
+        return problem, f"Give it {INLETS}, or a ring that does not turn."
+    if bearing.ring.spin == "free" and outer.lobes is not None:
+        return "asks for lobes in the housing, which the bores of a turning ring pass.", "Remove outer.lobes."
+    return "", ""
+
+
+def _groove_position(film: RingFilm) -> float:
+    supply = film.supply
+    return supply.axial_position if isinstance(supply, CircumferentialGroove) else MIDDLE

@@ -1,0 +1,85 @@
+"""What a run will cost, told from its plan before it starts: time steps, film solves, CPU time.
+
+    CPU time = steps x stages x iterations x films x time of a film solve
+
+Steps follow from the revolutions of the run. Iterations and times of a film solve, the rotor's share included, were
+measured on the shipped cases on one machine and stand in one table here; docs/accuracy.md says which, and holds
+predicted beside real cost. No machine is timed before a run: on a busy one such a probe is wrong by more than the
+machines of today differ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.rotor.excitation import SpeedProfile
+from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
+from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.plan import Plan
+from frbcli.scene.published import PUBLISHED
+from frbcli.scene.tabulated import SOLUTIONS
+
+STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
+# By form of the film. SOLVE_us: of a solve; ITERATIONS: solves of a stage; CROWDED: steps over the fewest allowed, as a
+# film whose whirl is hard takes more.
+SOLVE_us = {CLOSED_FORM: 0.5, CLIPPED: 14.0, TABLE: 0.5, FIELDS: 14.0, CHAINS: 20.0, CELLS: 36.0, SOLUTIONS: 0.8,
+            PUBLISHED: 1300.0}  # fmt: skip
+ITERATIONS = {CLOSED_FORM: 1.6, CLIPPED: 2.4, TABLE: 1.6, FIELDS: 2.4, CHAINS: 2.2, CELLS: 2.6, SOLUTIONS: 1.3,
+              PUBLISHED: 4.0}  # fmt: skip
+RING_ITERATIONS = 3.6  # of a film with cells between a ring and something else
+CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.15, CELLS: 2.0, SOLUTIONS: 1.05,
+           PUBLISHED: 1.5}  # fmt: skip
+CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
+CELL_COUNT, CELL_POWER = 288, 1.4  # 48 x 6
+# Of the time of a solve on cells; others: 1.
+LAW_FACTORS = {"sommerfeld": 0.7, "half-sommerfeld": 0.7, "reynolds": 0.8, "two-phase": 1.2, "peeken": 1.2}
+LONGEST_STEP_s = 1e-3  # of a run, see solve/run.py
+MICRO_STEPS = 2.0  # of a film in a macro step of a co-simulation
+TABLE_POINTS = 400  # of the speed profile
+
+
+@dataclass(frozen=True)
+class ExpectedCost:
+    """steps, film_solves: of the whole run; cpu_s: of its time loop, on the reference machine."""
+
+    steps: int
+    film_solves: int
+    cpu_s: float
+
+
+def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost:
+    """What a run along a speed profile will cost."""
+    steps = _steps(plan, profile)
+    films = len(film_places(case))
+    iterations = RING_ITERATIONS if turning_rings(case) else ITERATIONS[plan.form]
+    if plan.coupling == SEMI:
+        iterations = 1.0
+    solves = steps * STAGES[plan.method] * iterations * films
+    if plan.coupling == APART:
+        solves *= MICRO_STEPS
+    return ExpectedCost(round(steps), round(solves), 1e-6 * solves * solve_us(plan))
+
+
+def solve_us(plan: Plan) -> float:
+    """Time of one film solve on the reference machine, us."""
+    us = SOLVE_us[plan.form]
+    if plan.form == CHAINS:
+        elements = plan.mesh.axial * plan.mesh.circumferential
+        us *= 1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS
+    if plan.cells is not None:
+        count = plan.cells[0] * plan.cells[1]
+        us *= LAW_FACTORS.get(plan.cavitation, 1.0) * (count / CELL_COUNT) ** CELL_POWER
+    return us
+
+
+def _steps(plan: Plan, profile: SpeedProfile) -> float:
+    """Steps of a run: some per revolution, and some per second where the rotor is slow."""
+    longest = LONGEST_STEP_s if plan.macro_step is None else min(LONGEST_STEP_s, plan.macro_step)
+    times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
+    turns = np.abs(profile.speed(times)) / (2.0 * np.pi)
+    rate = np.maximum(1.0 / longest, CROWDED[plan.form] * plan.steps_per_revolution * turns)
+    return float(np.trapezoid(rate, times))

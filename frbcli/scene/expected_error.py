@@ -1,0 +1,23 @@
+"""The error that a plan is expected to leave, before anything is run; the run itself says what came out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from frbcli.scene.plan import Plan
+
+SUMMED = 10.0  # local errors of a step that live on at a time: 1 to 13 where it was measured (docs/accuracy.md)
+REACH = 0.5  # eccentricity at which a rotor usually rests, and by which a wrong force moves it
+
+
+@dataclass(frozen=True)
+class ExpectedError:
+    """eccentricity: of the eccentricities until a whirl grows; film_force: relative."""
+
+    eccentricity: float
+    film_force: float
+
+
+def expected_error(plan: Plan) -> ExpectedError:
+    """From the tolerance of a step and the known error of the films of a plan."""
+    return ExpectedError(SUMMED * plan.tolerance + REACH * plan.film_error, plan.film_error)

@@ -1,0 +1,180 @@
+"""How the films of a case are computed: theory, form, mesh, and the error of their forces that this is known to have.
+
+The errors are relative to the force and measured (docs/accuracy.md): half-Sommerfeld films against a solution on
+14 x 256 elements, at states as in a whirl, for b/D = 0.1 to 0.8.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from frbcli.case.bearing import FilmGeometry
+from frbcli.case.schema import Case
+from frbcli.film.section_faults import starves
+from frbcli.film.table import Mesh
+from frbcli.scene.films import film_places
+from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
+from frbcli.scene.section import film_section
+from frbcli.scene.tabulated import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
+
+CLOSED = ("sommerfeld", "half-sommerfeld")  # models whose force in a rectangular gap can be tabulated
+MIDDLE = 0.5  # axial position of a circumferential groove that parts two equal films
+TABULATED = ("none", "circumferential-groove", "axial-grooves")  # supplies of gaps that are rectangles
+
+CLOSED_FORM, CLIPPED = "closed form", "clipped exactly along z, 96 points around"
+TABLE, FIELDS = "table over eccentricity and direction", "tabulated fields, clipped at every call"
+CHAINS, CELLS = "solved between the grooves at every call", "cells"
+
+# Eccentricity up to which films hold the target. A table costs little more if it is finer; where every element is paid
+# for at every call, the last bit next to the shell is not worth it.
+TABLE_HOLDS_TO, SOLVED_HOLDS_TO = 0.95, 0.9
+FILM_SHARE = 0.5  # of the target
+DEFAULT_MESH = Mesh(axial=6, circumferential=96)  # where no plan is made
+# The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.
+SHORT, SHORT_POWER = 0.45, 1.3
+# Errors at TABLE_HOLDS_TO: MESH_ERROR (b/D)^2, and what the interpolation leaves, whatever the mesh.
+MESH_ERROR = {Mesh(3, 48): 4.2e-3, Mesh(4, 64): 3e-3, Mesh(6, 96): 3e-4, Mesh(10, 192): 5e-5}
+TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
+# Errors at SOLVED_HOLDS_TO between axial grooves, for widths up to the diameter; wider bearings are the worse for it.
+CHAIN_ERROR = {Mesh(3, 48): 8.5e-4, Mesh(6, 48): 5e-4, Mesh(9, 72): 4e-4, Mesh(10, 192): 2e-4}
+CHAIN_FLOOR = 8.5e-4
+# Cells (around, along), by the target they are for; their error falls a little faster than the first order.
+COARSE_CELLS, DEFAULT_CELLS, FINE_CELLS = (40, 5), (48, 6), (96, 10)
+FEWEST_CELLS = (12, 3)
+CELL_ERROR, OPENING_ERROR, CELL_ORDER = 2e-3, 1.2e-2, 1.5  # on DEFAULT_CELLS; with bores, pockets or without oil
+LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4
+
+
+@dataclass(frozen=True)
+class FilmChoice:
+    """theory: "short" | "finite"; form: how a film is evaluated, in words, CELLS for cells; mesh: of films without
+    cells; cells: (around, along) or None; error: expected of the forces, relative, at the eccentricity up to which
+    the film holds the target; theory_why, mesh_why: reasons."""
+
+    theory: str
+    form: str
+    mesh: Mesh
+    cells: tuple[int, int] | None
+    error: float
+    theory_why: str
+    mesh_why: str
+
+
+def choose_films(case: Case) -> FilmChoice:
+    """The cheapest film that holds the target of the case, or what the case sets."""
+    target, given = case.accuracy.target, case.accuracy.mesh
+    if is_published(case):
+        cells, mesh_why = published_elements(case)
+        theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
+        return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
+    if needs_cells(case):
+        cells = _cells(case)
+        theory_why = "set in the case" if case.film.theory != "auto" else "the film has cells"
+        mesh_why = "set in the case" if given is not None else "parabolas over the width need few along the axis"
+        if case.film.solution == "cells":
+            mesh_why += "; film.solution is set in the case"
+        elif set(case.cavitations) == {"penalty"}:
+            mesh_why += f"; no table: {table_obstacle(case)}"
+        return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, _cell_error(case, cells), theory_why, mesh_why)
+    if not all_clipped(case):
+        mesh = SOLUTION_MESH if given is None else Mesh(*given)
+        mesh_why = "set in the case" if given is not None else f"wrong by {SOLUTION_ERROR:.1g}, as the splines are"
+        theory_why = "tabulated before the run"
+        return FilmChoice("finite", SOLUTIONS, mesh, None, SOLUTION_ERROR, theory_why, mesh_why)
+    film = film_places(case)[0].geometry
+    slenderness = _slenderness(film)
+    short = short_error(slenderness, SOLVED_HOLDS_TO)
+    theory, theory_why = case.film.theory, "set in the case"
+    if theory == "auto":
+        fits = short <= FILM_SHARE * target and film.supply.kind != "axial-grooves"
+        theory = "short" if fits else "finite"
+        theory_why = f"the short bearing of b/D = {slenderness:.2g} is wrong by {short:.1g} at {SOLVED_HOLDS_TO:g}"
+    form = film_form(case, film, theory)
+    mesh, error = _mesh(form, slenderness, FILM_SHARE * target)
+    holds_to = SOLVED_HOLDS_TO if form == CHAINS else TABLE_HOLDS_TO
+    mesh_why = f"wrong by {error:.1g} at an eccentricity of {holds_to:g}"
+    if given is not None:
+        mesh, mesh_why = Mesh(*given), "set in the case"
+        error = _mesh_error(form, mesh, slenderness)
+    return FilmChoice(theory, form, mesh, None, short if theory == "short" else error, theory_why, mesh_why)
+
+
+def short_error(slenderness: float, eccentricity: float) -> float:
+    """Relative error of the force of the short-bearing theory, for sections of b/D = slenderness."""
+    return float(SHORT * slenderness**2 * (1.0 - eccentricity) ** -SHORT_POWER)
+
+
+def all_clipped(case: Case) -> bool:
+    """Whether no film is more than the clipped solution of a linear equation."""
+    return set(case.cavitations) <= set(CLOSED)
+
+
+def needs_cells(case: Case) -> bool:
+    """Whether the films of a case are solved on volumes in a run."""
+    if case.film.solution == "cells":
+        return True
+    if not all_clipped(case):
+        return table_obstacle(case) != ""
+    places = film_places(case)
+    return any(not _rectangular(place.geometry, len(places) > 1) for place in places)
+
+
+def film_form(case: Case, film: FilmGeometry, theory: str) -> str:
+    """How a film without cells will be evaluated, in words."""
+    if film.supply.kind == "axial-grooves":
+        return CHAINS
+    supply = getattr(film.supply, "pressure", case.oil.ambient_pressure)
+    equal = supply == case.oil.ambient_pressure == case.oil.cavitation_pressure
+    equal = equal or case.cavitation(film) == "sommerfeld"
+    if theory == "short":
+        return CLOSED_FORM if equal else CLIPPED
+    return TABLE if equal else FIELDS
+
+
+def _rectangular(film: FilmGeometry, several: bool) -> bool:
+    """Whether the gap is made of rectangles whose pressure is known along their edges."""
+    supply = film.supply
+    if supply.kind not in TABULATED or film.lobes is not None or (several and supply.kind == "axial-grooves"):
+        return False
+    return getattr(supply, "axial_position", MIDDLE) in (0.0, MIDDLE, 1.0)
+
+
+def _slenderness(film: FilmGeometry) -> float:
+    """Width of a section over the diameter."""
+    halves = film.supply.kind == "circumferential-groove" and getattr(film.supply, "axial_position", MIDDLE) == MIDDLE
+    return film.width / film.diameter / (2 if halves else 1)
+
+
+def _mesh(form: str, slenderness: float, allowed: float) -> tuple[Mesh, float]:
+    """The coarsest mesh of a small enough error, and its error; no finer one than helps."""
+    meshes = list(CHAIN_ERROR if form == CHAINS else MESH_ERROR)
+    errors = [_mesh_error(form, mesh, slenderness) for mesh in meshes]
+    allowed = max(allowed, {CHAINS: CHAIN_FLOOR, FIELDS: FIELDS_FLOOR}.get(form, 0.0))
+    index = next((i for i, error in enumerate(errors) if error <= allowed), len(errors) - 1)
+    return meshes[index], errors[index]
+
+
+def _mesh_error(form: str, mesh: Mesh, slenderness: float) -> float:
+    """Of a mesh that need not be in the tables: as the next coarser one that is."""
+    table = CHAIN_ERROR if form == CHAINS else MESH_ERROR
+    coarser = [known for known in table if known.axial <= mesh.axial and known.circumferential <= mesh.circumferential]
+    coarsest = next(iter(table))
+    factor = table[coarser[-1]] if coarser else table[coarsest] * (coarsest.circumferential / mesh.circumferential) ** 3
+    if form == CHAINS:
+        return float(factor * max(1.0, slenderness))
+    return float(max(factor * slenderness**2, FIELDS_FLOOR if form == FIELDS else TABLE_FLOOR))
+
+
+def _cells(case: Case) -> tuple[int, int]:
+    if case.accuracy.mesh is not None:
+        along, around = case.accuracy.mesh
+        return max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])
+    if case.accuracy.target > LOOSE_TARGET:
+        return COARSE_CELLS
+    return DEFAULT_CELLS if case.accuracy.target > FINE_TARGET else FINE_CELLS
+
+
+def _cell_error(case: Case, cells: tuple[int, int]) -> float:
+    sections = [film_section(case, place.geometry, place.mouths) for place in film_places(case)]
+    hard = any(section.holes or starves(section) for section in sections)
+    return float((OPENING_ERROR if hard else CELL_ERROR) * (DEFAULT_CELLS[0] / cells[0]) ** CELL_ORDER)

@@ -1,0 +1,255 @@
+"""Channels that couple the films of a ring: oil, networks computed by hand, limits, derivatives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numba import njit
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from frbcli.analysis.stability import stability
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.errors import InputError
+from frbcli.film.balance import Motion
+from frbcli.film.cell_balances import CHANNELS_NET
+from frbcli.film.channels import Channel, channel_resistance, with_channels
+from frbcli.film.volume_data import FLOW_SCALE, volume_films
+from frbcli.film.volumes import VolumeFilm
+from frbcli.scene.channels import coupled_channels
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import System, make_system, run_up_profile
+from frbcli.solve.march import advance
+from frbcli.solve.micro_step import _solve_films
+from frbcli.solve.oil import net_flow, oil_defect
+from frbcli.solve.passengers import OIL, PASSED, W, begin_stage, make_work
+from frbcli.solve.run import control_of, runup
+from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
+from frbcli.solve.start import first_state, rotor_data
+from frbcli.solve.state import RUNNING, State
+from frbcli.solve.tableau import METHODS
+
+Array = NDArray[np.float64]
+COUPLED = ("bearing.channels=coupled", "accuracy.mesh=[5,32]", "output.step=1e-4")
+AT_END = ('bearing.outer.supply={kind="circumferential-groove", pressure="2 bar", axial_position=1}',)
+TWO_PHASE = ("film.cavitation=two-phase", "film.two-phase.steepness=0.9")
+SHORT = ("speed.from=20 Hz", "speed.to=40 Hz", "speed.duration=0.03 s")
+STILL = ("rotor.gravity=0", "rotor.unbalance=0", "film.cavitation=sommerfeld", "speed.from=1e-3 Hz", "speed.to=1e-3 Hz")
+BORES = 6
+
+
+def ringed(*settings: str) -> Case:
+    return load_case("floating-ring", (*COUPLED, *settings))
+
+
+def system_of(case: Case, change: Callable[[Channel], Channel] = lambda channel: channel) -> System:
+    """The system of a case, its channels changed."""
+    system = make_system(case, make_plan(case))
+    channels = [change(channel) for channel in coupled_channels(case, system.volumes)]
+    data = volume_films(system.volumes, system.follows)
+    return replace(system, films=with_channels(data, system.volumes, channels))
+
+
+def run(case: Case, system: System) -> tuple[State, State]:
+    """The first and the last state of a run-up."""
+    profile, plan = run_up_profile(case), make_plan(case)
+    first, state = first_state(case.start, system, profile), first_state(case.start, system, profile)
+    rows, n, written, status = 1000, system.rotor.size, 0, RUNNING
+    q, v, oil = np.empty((rows, n)), np.empty((rows, n)), np.empty((rows, 2))
+    parts = rotor_data(system, profile), system.films, METHODS[plan.method].tableau, control_of(case, plan)
+    while status == RUNNING:
+        status, fresh = advance(*parts, state, 10**6, q[written:], v[written:], oil[written:])
+        written += fresh
+    return first, state
+
+
+@njit
+def begin(films, work, wet, flows, weights, g):  # type: ignore[no-untyped-def]
+    begin_stage(films, work, wet, flows, weights, 1, g, g, 0.0, 1.0)
+
+
+def mouth_pressures(system: System, state: State) -> tuple[float, float]:
+    """Gauge pressures in Pa at the first mouths of the inner and of the outer film."""
+    means = []
+    for film, w in zip(system.volumes, state.wet[W], strict=True):
+        pressure = film.law.cells(w, film.scales).pressure * film.section.pressure_scale
+        first = np.argwhere(film.grid.fixed)[0]
+        means.append(float(pressure[tuple(first)]))
+    return means[0], means[1]
+
+
+# ------------------------------------------------------------------------------------------------------------- oil
+
+
+@pytest.mark.parametrize("supply", [AT_END, ()], ids=["end", "groove"])
+def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> None:
+    case = ringed(*AT_END[: len(supply)], *TWO_PHASE, *SHORT)
+    system = make_system(case, make_plan(case))
+    first, last = run(case, system)
+    mouths = system.films.mouths  # type: ignore[union-attr]
+    sizes = [film.section.copies * film.section.radius * film.section.width * film.section.clearance
+             for film in system.volumes]  # fmt: skip
+    assert mouths[0, FLOW_SCALE] == sizes[0]
+    brought = np.array(sizes) * last.flows[PASSED, :, CHANNELS_NET]
+    if supply:
+        assert brought[0] > 0.0
+        assert brought.sum() == pytest.approx(0.0, abs=1e-10 * brought[0])
+    for i, film in enumerate(system.volumes):
+        own = system.films.cells[i, 4] != 0.0  # type: ignore[union-attr]
+        gained = (film.grid.area * (last.wet[OIL, i] - first.wet[OIL, i]))[own].sum()
+        assert gained == pytest.approx(net_flow(last, i), abs=1e-10 * last.flows[PASSED, i].max())
+    defect = oil_defect(system, last)
+    assert defect is not None
+    assert defect < 1e-5
+
+
+# -------------------------------------------------------------------------------------------------------- networks
+
+
+def _fed(film: VolumeFilm, mouths: float, groove: float) -> float:
+    """Oil in m^3/s that six mouths of a gauge pressure feed into a film beside a groove of another, at rest."""
+    section, grid, scale = film.section, film.grid, film.section.pressure_scale
+    there = VolumeFilm(
+        replace(section, far_pressure=groove), replace(grid, fixed_pressure=np.where(grid.fixed, mouths / scale, 0.0)),
+        film.law, film.scales.reference,
+    )  # fmt: skip
+    flow = there.steady(Motion((0.0, 0.0), (0.0, 0.0), 0.0)).flows.supply
+    return flow * section.copies * section.radius * section.width * section.clearance
+
+
+@pytest.mark.parametrize("resistance", [0.0, 1e12, 1e13, 1e30], ids=lambda value: f"{value:g}")
+def test_films_at_rest_are_a_network(resistance: float) -> None:
+    """Oil from the groove leaks through the outer film, passes six channels and leaks through the inner film.
+
+    What the films let pass follows from plain ones with given pressures, one at a time.
+    """
+    case = ringed(*STILL, *AT_END, "speed.duration=1e-3 s", "accuracy.mesh=[5,36]")  # as many cells under all mouths
+    system = system_of(case, lambda channel: replace(channel, resistance=resistance))
+    inner, outer = system.volumes
+    supplied = 1e5
+    leak = _fed(inner, 1e5, 0.0) / 1e5
+    through = 1.0 / (resistance / BORES + 1.0 / leak)  # flow through channels and inner film per pressure outside
+
+    def left(p_o: float) -> float:
+        return -_fed(outer, p_o, supplied) - through * p_o
+
+    p_o = float(brentq(left, 0.0, supplied, xtol=1e-6 * supplied))
+    p_i = p_o * through / leak
+    found = mouth_pressures(system, run(case, system)[1])
+    assert found == pytest.approx((p_i, p_o), rel=2e-4, abs=1e-4 * supplied)
+    assert 0.3 * supplied < p_o < 0.6 * supplied
+
+
+def test_resistance_of_a_bore() -> None:
+    """128 eta L / (pi d^4); for 2.5 mm through 7.5 mm of ring, with 12 mPa s."""
+    assert channel_resistance(2.5e-3, 7.5e-3, 12e-3) == pytest.approx(9.387e7, rel=1e-4)
+    (first, *_) = coupled_channels(ringed(*AT_END), make_system(ringed(*AT_END), make_plan(ringed(*AT_END))).volumes)
+    assert first.resistance == channel_resistance(2.5e-3, 7.5e-3, 12e-3)
+    assert first.thrown == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2))
+
+
+def test_a_channel_without_resistance_has_one_pressure_less_what_is_thrown_outwards() -> None:
+    """(4.28), of a ring that turns with 100 Hz."""
+    inert = ("bearing.ring.inertia=1e6 kg*m^2", "speed.duration=1e-3 s")
+    case = ringed(*STILL, *AT_END, *inert)
+    system = system_of(case, lambda channel: replace(channel, resistance=0.0))
+    state = first_state(case.start, system, run_up_profile(case))
+    spin = 200.0 * math.pi
+    state.v[list(system.spins)] = spin
+    plan, n = make_plan(case), system.rotor.size
+    buffers = np.empty((100, n)), np.empty((100, n)), np.empty((100, 2))
+    parts = rotor_data(system, run_up_profile(case)), system.films, METHODS[plan.method].tableau, control_of(case, plan)
+    advance(*parts, state, 10**6, *buffers)
+    inner, outer = mouth_pressures(system, state)
+    assert outer - inner == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2) * spin**2, rel=1e-3)
+
+
+def test_bores_too_small_for_the_mesh_are_closed(tmp_path: Path) -> None:
+    """The films are then plain ones."""
+    few = ("speed.from=20 Hz", "speed.to=21 Hz", "speed.duration=5 ms", "film.cavitation=penalty", *AT_END)
+    shut = runup(ringed(*few, "bearing.inner.supply.diameter=0.05 mm"), tmp_path / "shut.h5")
+    plain = 'bearing.inner.supply={kind="none"}'
+    none = runup(load_case("floating-ring", (*COUPLED[1:], *few, plain)), tmp_path / "none.h5")
+    np.testing.assert_allclose(shut["journal_y_m"], none["journal_y_m"], atol=1e-6 * 40e-6)
+
+
+# ----------------------------------------------------------------------------------------------------- derivatives
+
+
+@pytest.mark.parametrize("model", [TWO_PHASE, ("film.cavitation=sommerfeld",)], ids=["two-phase", "sommerfeld"])
+def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> None:
+    """Against differences: of the force of one film by the journal of the other, too."""
+    case = ringed(*model, *AT_END, "speed.from=100 Hz", "start.displacement=[0.3,-0.4]")
+    system, g = make_system(case, make_plan(case)), 1e-5
+    state = first_state(case.start, system, run_up_profile(case))
+    clearances = np.array(system.clearances)
+    place = (system.rotor.journals @ state.q).ravel()
+    weights, turn = np.array([[0.0, 0.0], [0.0, 1.0]]), 0.0 if system.remembers else 0.3
+
+    def solved(u: Array) -> tuple[Array, Array]:
+        work = make_work(system.films, state.wet, 2)
+        work.grids[0], work.grids[1] = turn, 150.0  # turn and speed of the ring
+        begin(system.films, work, state.wet, state.flows, weights, g)
+        film = np.zeros((JOURNAL_ROWS, 4))
+        film[U], film[X_0] = u, place
+        film[OMEGA] = np.repeat([2 * math.pi * 100.0 + 150.0, 150.0], 2)
+        for _ in range(2):  # the derivatives are those of the second time, where all has settled
+            assert _solve_films(system.films, work, clearances, 1.0, 0.0, g, 1, film) > 0
+        own = np.zeros((4, 4))
+        for f in (0, 2):
+            own[f : f + 2, f], own[f : f + 2, f + 1] = film[BY_X, f : f + 2], film[BY_Y, f : f + 2]
+        return film[FORCE].copy(), own + work.cross
+
+    at = np.array([1e-3, -2e-3, 1.5e-3, 1e-3])
+    _, slopes = solved(at)
+    for j in range(4):
+        step = 1e-5 * np.eye(4)[j]
+        change = (solved(at + step)[0] - solved(at - step)[0]) / 2e-5
+        np.testing.assert_allclose(slopes[:, j], change, atol=2e-3 * np.abs(slopes).max())
+    assert np.abs(slopes[:2, 2:]).max() > 0.01 * np.abs(slopes).max()
+
+
+# ------------------------------------------------------------------------------------------------------- and so on
+
+
+def test_a_groove_around_the_mouths_holds_their_pressure(tmp_path: Path) -> None:
+    """The bore's resistance is small against the film's: what stays is the motion with given pressures."""
+    few = (*SHORT, *TWO_PHASE, "bearing.centrifugal_pressure=false", *COUPLED[1:])
+    given, coupled = (
+        runup(load_case("floating-ring", (*few, f"bearing.channels={word}")), tmp_path / f"{word}.h5")
+        for word in ("pressure", "coupled")
+    )
+    apart = np.abs(coupled["eccentricity_inner"] - given["eccentricity_inner"]).max()
+    assert apart < 2e-3
+    assert given["eccentricity_inner"].max() > 0.2
+
+
+@pytest.mark.parametrize(("settings", "words"), [
+    (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no bores"),
+    (("bearing.inner.supply.on=journal",), "in the journal"),
+    (('bearing.outer.supply={kind="none"}',), "without oil"),
+    (("bearing.inner.supply.axial_position=0.3",), "beside a groove"),
+    (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the bores"),
+    ((*AT_END, "bearing.outer.lobes={count=3, preload=0.5}"), "lobes in the housing"),
+    ((*AT_END, "bearing.inner.supply.axial_position=0.07", "bearing.outer.width=10 mm"), "out of the film"),
+])  # fmt: skip
+def test_what_cannot_be_coupled_is_said(settings: tuple[str, ...], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        make_plan(ringed(*settings))
+
+
+def test_coupled_films_have_no_coefficients_of_their_own() -> None:
+    with pytest.raises(InputError, match="neither has coefficients"):
+        stability(ringed(*AT_END, "film.cavitation=penalty"), [100.0])
+
+
+def test_the_plan_tells_of_coupled_channels() -> None:
+    (told,) = [decision for decision in make_plan(ringed(*AT_END)).decisions if decision.choice == "channels"]
+    assert told.value == "coupled"
+    assert "the outer film; 9.39e+07 Pa s/m^3" in told.reason

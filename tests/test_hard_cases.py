@@ -1,0 +1,157 @@
+"""The hard cases: the quick ones here, all of them as a benchmark; and what a case that goes wrong looks like."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli.analysis.hard_cases import HardResults, hard_case_result, run_hard_cases
+from frbcli.analysis.hard_worker import DIED, HUNG, Worker
+from frbcli.case.hard import HardCase, Reference, hard_cases, references
+from frbcli.case.load import load_case_text
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError
+
+ALL = hard_cases()
+QUICK = [hard for hard in ALL if hard.quick]
+ENDS = {"finished", "contact", "starved", "not-converged", "input-error"}
+TOPICS = {
+    "eccentricity 0.99", "x1 = 0.9999", "Elrod with bores", "supply 4 bar", "starving", "speed zero and reversed",
+    "start at rest in the centre", "unbalance 50 g mm", "journal mass to zero", "ring mass to zero",
+    "turbocharger of 100 g at 5000 Hz", "outer gap 40 um", "viscosities 1e4 apart",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("hard", QUICK, ids=lambda hard: hard.name)
+def test_quick_hard_cases_end_as_listed(hard: HardCase) -> None:
+    assert hard_case_result((hard, references().get(hard.name))).problems == ()
+
+
+@pytest.mark.benchmark
+def test_all_hard_cases_end_as_listed() -> None:
+    found = run_hard_cases()
+    assert {result.hard.name: result.problems for result in found.results if not result.ok} == {}
+    print(found.to_pandas().to_string())  # noqa: T201
+
+
+def test_the_list_covers_every_topic_and_says_why_a_case_ends_early() -> None:
+    assert {hard.topic for hard in ALL} == TOPICS
+    assert {hard.end for hard in ALL} <= ENDS
+    assert [hard.name for hard in ALL if hard.end != "finished" and not hard.why] == []
+    assert {hard.name for hard in ALL if hard.fine} == set(references())
+
+
+# --- a case that goes wrong is seen ---
+
+
+def quick(name: str) -> tuple[HardCase, Reference | None]:
+    (hard,) = hard_cases([name])
+    return hard, references().get(name)
+
+
+def test_a_wrong_number_is_seen() -> None:
+    hard, reference = quick("no-speed")
+    assert reference is not None
+    off = {name: [value + 0.01 for value in row] for name, row in reference.values.items()}
+    result = hard_case_result((hard, replace(reference, values=off)))
+    assert result.error == pytest.approx(0.01, abs=1e-4)
+    assert [problem.split(",")[0] for problem in result.problems] == ["off by 1.0e-02"]
+
+
+def test_another_end_and_other_events_are_seen() -> None:
+    hard, _ = quick("too-heavy-rotor")
+    result = hard_case_result((replace(hard, end="finished", events=("onset",)), None))
+    assert result.problems == ("contact instead of finished", "events: contact instead of onset")
+
+
+def test_a_message_without_the_cause_is_seen() -> None:
+    hard, _ = quick("no-journal")
+    (problem,) = hard_case_result((replace(hard, says="rotor is sad"), None)).problems
+    assert "rotor is sad" in problem
+
+
+def test_a_signal_that_is_no_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    import frbcli.analysis.hard_cases as module
+
+    def broken(case: object, path: Path) -> object:
+        run = real(case, path)
+        run.signals["eccentricity"].values[3] = np.nan
+        return run
+
+    real = module.RUNS["runup"]
+    monkeypatch.setitem(module.RUNS, "runup", broken)
+    hard, _ = quick("no-speed")
+    assert hard_case_result((hard, None)).problems == ("eccentricity is not finite",)
+
+
+def test_a_bug_is_a_result(monkeypatch: pytest.MonkeyPatch) -> None:
+    import frbcli.analysis.hard_cases as module
+
+    def breaks(*_: object) -> object:
+        raise ZeroDivisionError("somewhere")
+
+    monkeypatch.setitem(module.RUNS, "runup", breaks)
+    hard, _ = quick("no-speed")
+    result = hard_case_result((hard, None))
+    assert (result.status, result.message) == ("error", "ZeroDivisionError: somewhere")
+    assert result.problems == ("a bug", "error instead of finished")
+
+
+def odd_work(task: str) -> str:
+    """Hangs, dies or answers."""
+    if task == "hang":
+        time.sleep(60.0)
+    if task == "die":
+        os._exit(1)
+    return f"{task} done"
+
+
+def test_a_worker_that_hangs_or_dies_begins_anew() -> None:
+    with Worker(odd_work) as worker:
+        assert worker.ask("this", 60.0) == "this done"
+        assert worker.ask("hang", 0.2) == HUNG
+        assert worker.ask("die", 60.0) == DIED
+        assert worker.ask("that", 60.0) == "that done"
+
+
+# --- on the command line ---
+
+
+def test_the_command_lists_shows_and_runs_them(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert frb(["cases", "--hard", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)["hard"]
+    assert [entry["name"] for entry in listed] == [hard.name for hard in ALL]
+    assert listed[0]["command"].startswith("frb rotation bearing-axial-groove --set ")
+
+    copy = tmp_path / "copy.toml"
+    assert frb(["cases", "--hard", "no-speed", "-o", str(copy), "--quiet"]) == 0
+    assert load_case_text(copy.read_text(encoding="utf-8")).speed.end == 0.0
+
+    capsys.readouterr()
+    assert frb(["cases", "--run-hard", "no-journal", "no-speed", "--json"]) == 0
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert found["ok"]
+    assert [case["status"] for case in found["hard"]] == ["input-error", "finished"]
+    assert "2 of 2 end as listed" in said.err
+    assert max(map(len, said.err.splitlines())) <= 80
+
+
+def test_names_that_there_are_not_are_wrong_input(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["cases", "--run-hard", "no-sped"]) == 2
+    assert 'Did you mean "no-speed"?' in capsys.readouterr().err
+    with pytest.raises(InputError):
+        hard_cases(["no-speed", "nothing"])
+
+
+def test_the_table_has_a_row_for_each_case() -> None:
+    results = HardResults(tuple(hard_case_result(quick(name)) for name in ("no-journal", "weightless-in-the-centre")))
+    table = results.to_pandas()
+    assert table["status"].tolist() == ["input-error", "finished"]
+    assert table["ok"].all()

@@ -1,0 +1,184 @@
+"""Films whose law makes oil, tabulated: against the solver for all films, known limits, and runs on cells."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.case.load import load_case
+from frbcli.errors import InputError
+from frbcli.film.balance import Motion
+from frbcli.film.bearing import evaluate
+from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.grid import Array
+from frbcli.film.kernel import FilmData
+from frbcli.film.loads import force
+from frbcli.film.source_film import SourceFilm
+from frbcli.film.steady_force import film_at
+from frbcli.film.table import Mesh
+from frbcli.film.volume_grid import fitted_grid
+from frbcli.film.volumes import VolumeFilm
+from frbcli.scene.films import film_places, source_film
+from frbcli.scene.plan import make_plan
+from frbcli.scene.section import film_section
+
+READINGS = ("absolute", "dimensionless")
+MESH = Mesh(axial=6, circumferential=48)
+OMEGA = 2.0 * math.pi * 100.0
+# Displacement over the clearance, velocity over clearance and OMEGA: rotation, squeeze, whirl at about half the speed.
+STATES = (
+    ((0.5, 0.0), (0.0, 0.0)),
+    ((0.2, -0.6), (0.1, 0.3)),
+    ((-0.3, 0.2), (-0.2, 0.4)),
+    ((0.0, 0.9), (-0.43, 0.01)),
+)
+
+
+def film_of(reading: str, *settings: str) -> SourceFilm:
+    case = load_case("jeffcott", ["film.cavitation=penalty", f"film.penalty.pressure={reading}", *settings])
+    return source_film(case, film_places(case)[0].geometry, MESH)
+
+
+@pytest.fixture(scope="module", params=READINGS)
+def tabulated(request: pytest.FixtureRequest) -> tuple[SourceFilm, FilmData]:
+    film = film_of(request.param)
+    return film, film.film()
+
+
+def in_metres(film: SourceFilm, state: tuple[tuple[float, float], tuple[float, float]]) -> tuple[Array, Array]:
+    """Displacement in m and velocity in m/s of one of STATES."""
+    clearance = film.section.clearance
+    return np.array(state[0]) * clearance, np.array(state[1]) * clearance * OMEGA
+
+
+def steady(film: VolumeFilm, motion: Motion) -> Array:
+    return np.array(force(film, film.pressure(film.steady(motion).state)))
+
+
+@pytest.mark.parametrize(
+    ("reading", "supply"), [("absolute", "1 bar"), ("absolute", "3 bar"), ("dimensionless", "1 bar")]
+)
+def test_solved_forces_are_those_of_the_solver_for_all_films(reading: str, supply: str) -> None:
+    """The same cells in the frame of the shell, where oil is dragged along: twice as many around, for its fronts."""
+    film = film_of(reading, f"bearing.supply.pressure={supply}")
+    around = Mesh(film.mesh.axial, 160)
+    for d, v in STATES:
+        plain = VolumeFilm(film.section, fitted_grid(film.section, d, 160, 6), film.law, OMEGA)
+        motion = Motion(d, (v[0] * OMEGA, v[1] * OMEGA), OMEGA)
+        expected = steady(film_at(plain, film.follows, math.hypot(*d), OMEGA), motion)
+        found = SourceFilm(film.section, film.law, film.follows, around).force(*in_metres(film, (d, v)), OMEGA)
+        assert found == pytest.approx(expected, abs=3e-3 * float(np.hypot(*expected)))
+
+
+def test_the_table_holds_what_was_solved(tabulated: tuple[SourceFilm, FilmData]) -> None:
+    """Errors over the force, or where the film nearly lets go over a fifth of that of an equal speed across."""
+    film, table = tabulated
+    clearance, random = film.section.clearance, np.random.default_rng(4)
+    errors = []
+    for _ in range(60):
+        eccentricity, direction = 1.0 - math.exp(-random.uniform(0.02, 4.0)), random.uniform(0.0, 2.0 * math.pi)
+        w = OMEGA * math.exp(random.uniform(-3.0, 0.0))
+        d, carried = np.array([0.0, eccentricity * clearance]), np.array([-0.5 * OMEGA * eccentricity, 0.0])
+        across, v = (
+            (w * np.array([math.cos(angle), math.sin(angle)]) + carried) * clearance for angle in (0.0, direction)
+        )
+        solved, least = film.force(d, v, OMEGA), 0.2 * np.hypot(*film.force(d, across, OMEGA))
+        off = np.hypot(*(evaluate(table, clearance, d, v, OMEGA).force - solved))
+        errors.append(float(off / max(np.hypot(*solved), least)))
+    assert np.quantile(errors, 0.9) < 5e-3
+    assert max(errors) < 2e-2
+
+
+def test_derivatives_are_those_of_the_table(tabulated: tuple[SourceFilm, FilmData]) -> None:
+    film, table = tabulated
+    clearance = film.section.clearance
+    for state in STATES:
+        d, v = in_metres(film, state)
+        found = evaluate(table, clearance, d, v, OMEGA)
+        small, slow = 1e-6 * clearance, 1e-5 * clearance * OMEGA
+        stiffness, damping = np.empty((2, 2)), np.empty((2, 2))
+        for i, unit in enumerate(np.eye(2)):
+            ahead, behind = (evaluate(table, clearance, d + side * small * unit, v, OMEGA).force for side in (1, -1))
+            stiffness[:, i] = (ahead - behind) / (2 * small)
+            ahead, behind = (evaluate(table, clearance, d, v + side * slow * unit, OMEGA).force for side in (1, -1))
+            damping[:, i] = (ahead - behind) / (2 * slow)
+        assert found.by_displacement == pytest.approx(stiffness, abs=1e-6 * np.abs(stiffness).max())
+        assert found.by_velocity == pytest.approx(damping, abs=1e-6 * np.abs(damping).max())
+
+
+def test_force_at_rest_is_finite_and_radial(tabulated: tuple[SourceFilm, FilmData]) -> None:
+    film, table = tabulated
+    clearance = film.section.clearance
+    at_rest = evaluate(table, clearance, np.array([0.6 * clearance, 0.0]), np.zeros(2), 0.0)
+    assert np.all(np.isfinite(at_rest.by_velocity))
+    assert abs(at_rest.force[1]) < 1e-6 * abs(at_rest.force[0])
+
+
+def test_a_pressure_that_follows_the_speed_makes_the_force_proportional_to_it() -> None:
+    film = film_of("dimensionless")
+    table, clearance = film.film(), film.section.clearance
+    for state in STATES:
+        d, v = in_metres(film, state)
+        once, thrice = (evaluate(table, clearance, d, n * v, n * OMEGA).force for n in (1.0, 3.0))
+        assert thrice == pytest.approx(3.0 * once, rel=1e-12)
+
+
+def test_fast_films_obey_the_condition_of_reynolds() -> None:
+    """With b |w| the penalty leaves less and less suction: 1e5 times the usual speed leaves Reynolds' condition."""
+    film = film_of("absolute")
+    fast, clearance = 1e5 * OMEGA, film.section.clearance
+    table = film.film()
+    for d, v in STATES[:3]:
+        section = film_section(load_case("jeffcott"), film_places(load_case("jeffcott"))[0].geometry)
+        plain = VolumeFilm(section, fitted_grid(section, d, 96, 6), Reynolds(), fast)
+        expected = steady(plain, Motion(d, (v[0] * fast, v[1] * fast), fast))
+        found = evaluate(table, clearance, np.array(d) * clearance, np.array(v) * clearance * fast, fast).force
+        assert found == pytest.approx(expected, abs=1e-2 * float(np.hypot(*expected)))
+
+
+@pytest.mark.parametrize("reading", READINGS)
+def test_runs_agree_with_those_on_cells(reading: str, tmp_path: Path) -> None:
+    settings = ["film.cavitation=penalty", f"film.penalty.pressure={reading}"]
+    settings += ["speed.from=20Hz", "speed.to=40Hz", "speed.duration=0.1s"]
+    runs = [
+        frbcli.runup(load_case("jeffcott", [*settings, f"film.solution={solution}"]), tmp_path / f"{solution}.h5")
+        for solution in ("table", "cells")
+    ]
+    table, cells = (np.asarray(run["eccentricity"]) for run in runs)
+    assert np.max(np.abs(table - cells)) < 3e-3
+    for run in runs:
+        error = run.error["film_force_relative"]
+        assert error is not None
+        assert error < 2e-2
+
+
+def film_decision(name: str, *settings: str) -> tuple[str, str]:
+    plan = make_plan(load_case(name, ["film.cavitation=penalty", *settings]))
+    (decision,) = (item for item in plan.decisions if item.choice == "film")
+    return decision.value, decision.reason
+
+
+def test_the_plan_says_which_films_are_tabulated() -> None:
+    assert "table" in film_decision("jeffcott")[0]
+    assert "table" in film_decision("jeffcott", "bearing.supply.pressure=2 bar")[0]
+    dimensionless = "film.penalty.pressure=dimensionless"
+    for settings, why in (
+        ((dimensionless, "bearing.supply.pressure=2 bar"), "fourth axis"),
+        (("accuracy.target=1e-4",), "too coarse"),
+        (("bearing.ends=free-to-air", "bearing.supply.pressure=2 bar"), "free ends"),
+        (("film.solution=cells",), "set in the case"),
+    ):
+        value, reason = film_decision("jeffcott", *settings)
+        assert "cells" in value
+        assert why in reason
+    assert "openings" in film_decision("axial-groove")[1]
+
+
+def test_a_table_that_cannot_be_is_refused() -> None:
+    for name, *settings in (("axial-groove", "film.cavitation=penalty"), ("jeffcott", "film.cavitation=elrod")):
+        with pytest.raises(InputError, match=r"film\.solution"):
+            make_plan(load_case(name, [*settings, "film.solution=table"]))
