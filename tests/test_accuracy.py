@@ -82,6 +82,24 @@ def test_the_front_is_what_nothing_cheaper_beats(found: AccuracyLadder) -> None:
     assert replace(found, ladder=tuple(results)).front == (results[0], results[2])
 
 
+def test_distance_from_the_front(found: AccuracyLadder) -> None:
+    """The choice of the plan costs three times as much as what is closer, and as much as nothing that is less close."""
+    planned = replace(made(3.0, 0.1), planned=True, work_s=2.0)
+    loose, tight = (replace(planned.rung, tolerance=tolerance) for tolerance in (1e-3, 1e-6))
+    cheap = replace(made(0.5, 0.2), rung=loose, work_s=0.1)
+    few = replace(found, ladder=(cheap, replace(made(1.0, 0.05), rung=tight, work_s=1.6), planned))
+    assert few.above_front() == pytest.approx(3.0)
+    assert few.above_front(quiet=True) == pytest.approx(1.25)
+    assert replace(found, ladder=(cheap, planned)).above_front() == 1.0
+
+
+def test_rungs_carry_what_their_runs_state(found: AccuracyLadder) -> None:
+    planned = next(item for item in found.ladder if item.planned)
+    assert planned.stated["eccentricity"] > planned.error.eccentricity_largest
+    assert set(planned.signals) == {"eccentricity", "journal_x_m", "journal_y_m", "disk_x_m", "disk_y_m"}
+    assert planned.signals["eccentricity"] == planned.error.eccentricity_largest
+
+
 def test_a_film_without_a_short_theory_has_no_such_rung() -> None:
     case = load_case("jeffcott", [*QUICK, "film.cavitation=reynolds"])
     rungs = list(ladder(case, planned_rung(make_plan(case))))
@@ -125,3 +143,5 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert document["reference"]["change"]["window_s"] == [0.0, 0.02]
     assert sum(item["planned"] for item in document["ladder"]) == 1
     assert "Pareto" in out.err
+    assert document["ladder"][0]["stated"]["eccentricity"] > 0.0
+    assert "times the front" in out.err

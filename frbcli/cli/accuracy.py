@@ -81,9 +81,13 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
         f"reference: {reference.name}; on a coarser mesh and with twice the tolerance it\n"
         f"changes by {change.eccentricity_largest:.1e} (max) and {change.eccentricity_rms:.1e} (rms)."
     )
+    for item in (item for item in found.ladder if item.planned):
+        stated = item.stated.get("eccentricity")
+        told = "" if stated is None else f", its error is stated as {stated:.1e}"
+        terminal.say(f"the choice of the plan costs {found.above_front():.2g} times the front{told}.")
     ended = {item.error.until_s for item in found.ladder} - {found.until_s}
     if ended:
-        terminal.say(f"errors of the eccentricity until {min(ended):.4g} s, where a run begins to whirl or ends.")
+        terminal.say(f"errors of the eccentricity until {min(ended):.4g} s, where a whirl begins to grow.")
     for item in found.ladder:
         if item.status != "finished":
             terminal.say(f"{item.rung.name}: {item.status}")
@@ -119,7 +123,8 @@ def _rung(rung: Rung) -> dict[str, Any]:
 
 
 def _document(item: RungResult) -> dict[str, Any]:
-    return _rung(item.rung) | {"status": item.status, "cpu_s": item.cpu_s, "error": _error(item.error)}
+    stated = {"stated": dict(item.stated)} if item.stated else {}
+    return _rung(item.rung) | {"status": item.status, "cpu_s": item.cpu_s, "error": _error(item.error)} | stated
 
 
 def _error(error: RungError) -> dict[str, Any]:

@@ -41,7 +41,7 @@ def measured(row: dict[str, Any], run: Run) -> list[float]:
     if row.get("ring_ratio"):
         late = run["time_s"] > 0.3
         names = points(run.signals, "ring")
-        return [float((run[joined("ring_speed", name, "Hz")] / run["speed_Hz"])[late].max()) for name in names]
+        return [float((run[joined("ring_speed", name, "Hz")][late] / run["speed_Hz"][late]).max()) for name in names]
     place = ("t_s", "speed_Hz").index(row["quantity"])
     films: dict[str, float] = {}
     for whirl in rows(run):
