@@ -24,6 +24,7 @@ TABULATED = ("none", "circumferential-groove", "axial-grooves")  # supplies of g
 CLOSED_FORM, CLIPPED = "closed form", "clipped exactly along z, 96 points around"
 TABLE, FIELDS = "table over eccentricity and direction", "tabulated fields, clipped at every call"
 CHAINS, CELLS = "solved between the grooves at every call", "cells"
+MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)
 
 # Eccentricity up to which films hold the target. A table costs little more if it is finer; where every element is paid
 # for at every call, the last bit next to the shell is not worth it.
@@ -81,15 +82,16 @@ def choose_films(case: Case) -> FilmChoice:
         mesh_why = "set in the case" if given is not None else f"wrong by {SOLUTION_ERROR:.1g}, as the splines are"
         theory_why = "tabulated before the run"
         return FilmChoice("finite", SOLUTIONS, mesh, None, SOLUTION_ERROR, theory_why, mesh_why)
-    film = film_places(case)[0].geometry
-    slenderness = _slenderness(film)
+    films = [place.geometry for place in film_places(case)]
+    slenderness = max(_slenderness(film) for film in films)
     short = short_error(slenderness, SOLVED_HOLDS_TO)
     theory, theory_why = case.film.theory, "set in the case"
     if theory == "auto":
-        fits = short <= FILM_SHARE * target and film.supply.kind != "axial-grooves"
+        fits = short <= FILM_SHARE * target and all(film.supply.kind != "axial-grooves" for film in films)
         theory = "short" if fits else "finite"
         theory_why = f"the short bearing of b/D = {slenderness:.2g} is wrong by {short:.1g} at {SOLVED_HOLDS_TO:g}"
-    form = film_form(case, film, theory)
+    # One mesh for all: the one that the most expensive film is worth.
+    form = min((film_form(case, film, theory) for film in films), key=MOST_EXPENSIVE_FIRST.index)
     mesh, error = _mesh(form, slenderness, FILM_SHARE * target)
     holds_to = SOLVED_HOLDS_TO if form == CHAINS else TABLE_HOLDS_TO
     mesh_why = f"wrong by {error:.1g} at an eccentricity of {holds_to:g}"
