@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.film.table import Mesh
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
@@ -33,6 +34,7 @@ ITERATIONS = {CLOSED_FORM: 1.6, CLIPPED: 2.4, TABLE: 1.6, FIELDS: 2.4, CHAINS: 2
 RING_ITERATIONS = 3.6  # of a film with cells between a ring and something else
 CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.15, CELLS: 2.0, SOLUTIONS: 1.05,
            PUBLISHED: 1.5}  # fmt: skip
+FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 CELL_COUNT, CELL_POWER = 288, 1.4  # 48 x 6
 # Of the time of a solve on cells; others: 1.
@@ -67,6 +69,8 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
 def solve_us(plan: Plan) -> float:
     """Time of one film solve on the reference machine, us."""
     us = SOLVE_us[plan.form]
+    if plan.form == FIELDS:  # beside films that are cheap
+        us = float(np.mean([_fields_us(mesh) if form == FIELDS else SOLVE_us[form] for form, mesh in plan.films]))
     if plan.form == CHAINS:
         elements = plan.mesh.axial * plan.mesh.circumferential
         us *= 1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS
@@ -74,6 +78,10 @@ def solve_us(plan: Plan) -> float:
         count = plan.cells[0] * plan.cells[1]
         us *= LAW_FACTORS.get(plan.cavitation, 1.0) * (count / CELL_COUNT) ** CELL_POWER
     return us
+
+
+def _fields_us(mesh: Mesh) -> float:
+    return SOLVE_us[FIELDS] * mesh.circumferential / FIELD_ELEMENTS
 
 
 def _steps(plan: Plan, profile: SpeedProfile) -> float:

@@ -48,9 +48,10 @@ LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4
 
 @dataclass(frozen=True)
 class FilmChoice:
-    """theory: "short" | "finite"; form: how a film is evaluated, in words, CELLS for cells; mesh: of films without
-    cells; cells: (around, along) or None; error: expected of the forces, relative, at the eccentricity up to which
-    the film holds the target; theory_why, mesh_why: reasons."""
+    """theory: "short" | "finite"; form: how the most expensive film is evaluated, in words, CELLS for cells; mesh: of
+    films without cells, the finest; cells: (around, along) or None; error: expected of the forces, relative, at the
+    eccentricity up to which the film holds the target; theory_why, mesh_why: reasons; films: (form, mesh) of each
+    film on quadratic elements, none of others."""
 
     theory: str
     form: str
@@ -59,6 +60,7 @@ class FilmChoice:
     error: float
     theory_why: str
     mesh_why: str
+    films: tuple[tuple[str, Mesh], ...] = ()
 
 
 def choose_films(case: Case) -> FilmChoice:
@@ -90,15 +92,19 @@ def choose_films(case: Case) -> FilmChoice:
         fits = short <= FILM_SHARE * target and all(film.supply.kind != "axial-grooves" for film in films)
         theory = "short" if fits else "finite"
         theory_why = f"the short bearing of b/D = {slenderness:.2g} is wrong by {short:.1g} at {SOLVED_HOLDS_TO:g}"
-    # One mesh for all: the one that the most expensive film is worth.
-    form = min((film_form(case, film, theory) for film in films), key=MOST_EXPENSIVE_FIRST.index)
-    mesh, error = _mesh(form, slenderness, FILM_SHARE * target)
+    forms = [film_form(case, film, theory) for film in films]
+    form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
+    meshes = [_mesh(form, _slenderness(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]
+    mesh, error = max((mesh for mesh, _ in meshes), key=_size), max(error for _, error in meshes)
     holds_to = SOLVED_HOLDS_TO if form == CHAINS else TABLE_HOLDS_TO
     mesh_why = f"wrong by {error:.1g} at an eccentricity of {holds_to:g}"
     if given is not None:
         mesh, mesh_why = Mesh(*given), "set in the case"
         error = _mesh_error(form, mesh, slenderness)
-    return FilmChoice(theory, form, mesh, None, short if theory == "short" else error, theory_why, mesh_why)
+        meshes = [(mesh, error)] * len(films)
+    each = tuple((form, mesh) for form, (mesh, _) in zip(forms, meshes, strict=True))
+    error = short if theory == "short" else error
+    return FilmChoice(theory, form, mesh, None, error, theory_why, mesh_why, each)
 
 
 def short_error(slenderness: float, eccentricity: float) -> float:
@@ -154,6 +160,10 @@ def _mesh(form: str, slenderness: float, allowed: float) -> tuple[Mesh, float]:
     allowed = max(allowed, {CHAINS: CHAIN_FLOOR, FIELDS: FIELDS_FLOOR}.get(form, 0.0))
     index = next((i for i, error in enumerate(errors) if error <= allowed), len(errors) - 1)
     return meshes[index], errors[index]
+
+
+def _size(mesh: Mesh) -> int:
+    return mesh.axial * mesh.circumferential
 
 
 def _mesh_error(form: str, mesh: Mesh, slenderness: float) -> float:

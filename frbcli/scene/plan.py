@@ -54,16 +54,18 @@ Decide = Callable[[str, object, str], None]
 
 @dataclass(frozen=True)
 class Plan:
-    """What will be modelled. theory: "short" | "finite"; cavitation: of films that name none of their own; form: how a
-    film is evaluated, in words; mesh: of films without cells; cells: (around, along) of films with cells, None for the
-    others; film_error: expected of the forces, relative; method: name of a time integration method; tolerance: local
-    error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of COUPLINGS; macro_step:
-    longest one in s of a co-simulation, else None."""
+    """What will be modelled. theory: "short" | "finite"; cavitation: of films that name none of their own; form: how
+    the most expensive film is evaluated, in words; mesh: of films without cells, the finest; films: form and mesh of
+    each of those on quadratic elements; cells: (around, along) of films with cells, None for the others; film_error:
+    expected of the forces, relative; method: name of a time integration method; tolerance: local error of a
+    displacement over the clearance; steps_per_revolution: at least; coupling: one of COUPLINGS; macro_step: longest
+    one in s of a co-simulation, else None."""
 
     theory: str
     cavitation: str
     form: str
     mesh: Mesh
+    films: tuple[tuple[str, Mesh], ...]
     cells: tuple[int, int] | None
     film_error: float
     method: str
@@ -106,6 +108,7 @@ def make_plan(case: Case) -> Plan:
         cavitation=case.film.cavitation,
         form=films.form,
         mesh=films.mesh,
+        films=films.films,
         cells=films.cells,
         film_error=films.error,
         method=method,
@@ -157,8 +160,10 @@ def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
         decide("film", films.form, reason)
         kind = "cells" if films.form == SOLUTIONS else "quadratic elements"
         if films.theory == "finite":
-            decide("mesh", f"{films.mesh.axial} x {films.mesh.circumferential}",
-                   f"{kind}, axial x around; {films.mesh_why}")
+            meshes = [mesh for _, mesh in films.films] or [films.mesh]
+            meshes = meshes[:1] if len(set(meshes)) == 1 else meshes
+            told = ", ".join(f"{mesh.axial} x {mesh.circumferential}" for mesh in meshes)
+            decide("mesh", told, f"{kind}, axial x around; {films.mesh_why}")
         return
     if films.form == PUBLISHED:
         for decided in published_decisions(case, films.cells, films.mesh_why):

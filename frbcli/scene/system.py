@@ -136,11 +136,9 @@ def make_system(case: Case, plan: Plan) -> System:
     if plan.form == SOLUTIONS:
         solved = tuple(source_film(case, place.geometry, plan.mesh) for place in places)
         return replace(system, bearings=bearings, solved=solved, films=tuple(film.film() for film in solved))
-    return replace(
-        system,
-        bearings=bearings,
-        films=tuple(planned_film(plan, *each, plan.mesh) for each in zip(bearings, system.laws, strict=True)),
-    )
+    meshes = tuple(mesh for _, mesh in plan.films)
+    films = tuple(planned_film(plan, *each) for each in zip(bearings, system.laws, meshes, strict=True))
+    return replace(system, bearings=bearings, films=films)
 
 
 def film_drag(case: Case, film: FilmGeometry) -> float:
