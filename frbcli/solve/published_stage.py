@@ -10,23 +10,15 @@ of the film grows: a steep step theta(p) has kinks.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from frbcli.film.balance import Motion
-from frbcli.film.grid import Array
-from frbcli.film.published.assembly import DIRECTIONS, Elements, Gap, assemble
-from frbcli.film.published.film import PublishedFilm
-from frbcli.film.published.law import Step
-from frbcli.film.published.newton import REFERENCES
-from frbcli.film.published.ring import Ring, make_ring, solve_ring
-from frbcli.film.published.unknown import Unknowns, make_unknowns, pressures_of
-from frbcli.film.table import LARGEST_ECCENTRICITY
+from frbcli.film.published.ring import solve_ring
+from frbcli.film.published.unknown import pressures_of
+from frbcli.solve.published_equations import RIGHTS, residual
 from frbcli.solve.stage import CORRECTION, FORCE, OMEGA, U_0, X_0, U, norm, reach
 
-RIGHTS = 3  # what is missing, and its derivatives by both velocities
 ITERATIONS = 20
 MEMORY = 4  # a residual has to be smaller than the largest of so many before it
 SMALLEST_SHARE = 0.06  # of a correction
@@ -37,117 +29,6 @@ FILM_SETTLED = 1e-3  # correction of a node's unknown, of the order of 1, whose 
 # Residual over the sum of its terms that is put up with where no correction makes it smaller, see film.TOLERATED.
 TOLERATED = 1e-2
 ENOUGH = 2e-3  # the same where the journal does not move any more
-
-
-class FilmEquations(NamedTuple):
-    """What does not change in a run. unknowns: of the nodes; weights (nodes, 2): force on the journal in N per scaled
-    pressure; height, slope (e, 9): H and dH/dphi of the centred journal at the points."""
-
-    elements: Elements
-    step: Step
-    unknowns: Unknowns
-    weights: Array
-    height: Array
-    slope: Array
-
-
-class Room(NamedTuple):
-    """Scratch. gap (3, e, 9): H, its slope, its rate; matrix (e, 9, 9) and its right sides; w, pressure, by_w, total
-    (nodes,): of the trial, total being its residual; best (nodes,): unknowns with the smallest one; follow (2, 2): how
-    the gap follows the journal."""
-
-    ring: Ring
-    matrix: Array
-    derived: Array
-    right: Array
-    solution: Array
-    gap: Array
-    w: Array
-    pressure: Array
-    by_w: Array
-    total: Array
-    best: Array
-    follow: Array
-
-
-def film_equations(film: PublishedFilm) -> FilmEquations:
-    """The equations of a film as solve_stage takes them."""
-    centred = film.gap(Motion((0.0, 0.0), (0.0, 0.0), 0.0))
-    step, reference = film.step_law, REFERENCES[0] * film.step_law.cavity
-    unknowns = make_unknowns(film.mesh, film.elements.fixed, step, reference)
-    weights = np.ascontiguousarray(film.weights.reshape(-1, 2))
-    return FilmEquations(film.elements, step, unknowns, weights, centred.height, centred.slope)
-
-
-def make_room(film: PublishedFilm) -> Room:
-    """Scratch for the stages of a film."""
-    mesh = film.mesh
-    size, nodes = len(mesh.nodes), mesh.phi.size
-    return Room(
-        make_ring(mesh.around, mesh.along, RIGHTS),
-        np.zeros((size, 9, 9)),
-        np.zeros((size, 9, 1 + DIRECTIONS)),
-        np.zeros((size, 9, RIGHTS)),
-        np.zeros((*mesh.phi.shape, RIGHTS)),
-        np.zeros((3, size, 9)),
-        np.zeros(nodes),
-        np.zeros(nodes),
-        np.zeros(nodes),
-        np.zeros(nodes),
-        np.zeros(nodes),
-        np.zeros((2, 2)),
-    )
-
-
-@njit(cache=True, error_model="numpy")
-def keep_a_gap(follow, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
-    """Displacement and velocity as the film feels them: a journal that has sunk into the shell, as far as an elastic
-    contact lets it, leaves the gap that it had just before; it only moves along it. follow (2, 2) <- dv_film/dv."""
-    eccentricity = norm(d_x, d_y)
-    follow[0, 0] = follow[1, 1] = 1.0
-    follow[0, 1] = follow[1, 0] = 0.0
-    if eccentricity <= LARGEST_ECCENTRICITY:
-        return d_x, d_y, v_x, v_y
-    share, n_x, n_y = LARGEST_ECCENTRICITY / eccentricity, d_x / eccentricity, d_y / eccentricity
-    follow[0, 0], follow[1, 1] = share * n_y * n_y, share * n_x * n_x
-    follow[0, 1] = follow[1, 0] = -share * n_x * n_y
-    along = share * (n_x * v_y - n_y * v_x)
-    return share * d_x, share * d_y, -along * n_y, along * n_x
-
-
-@njit(cache=True, error_model="numpy")
-def _residual(equations, room, w, past, d_x, d_y, v_x, v_y, omega, g):  # type: ignore[no-untyped-def]
-    """Assemble at the unknowns w (nodes,). Returns the size of the residual, and its share of the sum of its terms."""
-    elements = equations.elements
-    d_x, d_y, v_x, v_y = keep_a_gap(room.follow, d_x, d_y, v_x, v_y)
-    sine, cosine = elements.sine, elements.cosine
-    height, slope, rate = room.gap[0], room.gap[1], room.gap[2]
-    for e in range(sine.shape[0]):
-        for q in range(9):
-            height[e, q] = equations.height[e, q] + d_x * sine[e, q] - d_y * cosine[e, q]
-            slope[e, q] = equations.slope[e, q] + d_x * cosine[e, q] + d_y * sine[e, q]
-            rate[e, q] = v_x * sine[e, q] - v_y * cosine[e, q]
-    pressure, by_w = pressures_of(equations.unknowns, equations.step, w)
-    for i in range(len(w)):
-        room.pressure[i], room.by_w[i] = pressure[i], by_w[i]
-    gap = Gap(height, slope, rate, 0.5 * omega)
-    assemble(elements, equations.step, gap, room.pressure, room.by_w, 1.0 / g, past, room.matrix, room.derived)
-    follow, terms = room.follow, 1e-300
-    room.total[:] = 0.0
-    for e in range(sine.shape[0]):
-        for a in range(9):
-            r = room.derived[e, a]
-            room.right[e, a, 0] = r[0]
-            for k in range(2):
-                by_velocity = (g * r[1] + r[3]) * follow[0, k] + (g * r[2] + r[4]) * follow[1, k]
-                room.right[e, a, 1 + k] = by_velocity
-            room.total[elements.nodes[e, a]] += r[0]
-            terms += abs(r[0])
-    size, left = 0.0, 0.0
-    for i in range(len(w)):
-        size += room.total[i] ** 2
-        left += abs(room.total[i])
-    return math.sqrt(size), left / terms
 
 
 @njit(cache=True, error_model="numpy")
@@ -235,7 +116,7 @@ def solve_stage(  # type: ignore[no-untyped-def]
     """
     omega, cost, since = film[OMEGA, 0], 1, 0
     d_x, d_y = (film[X_0, 0] + g * film[U, 0]) / clearance, (film[X_0, 1] + g * film[U, 1]) / clearance
-    size, left = _residual(equations, room, w, past, d_x, d_y, film[U, 0] / clearance, film[U, 1] / clearance, omega, g)
+    size, left = residual(equations, room, w, past, d_x, d_y, film[U, 0] / clearance, film[U, 1] / clearance, omega, g)
     sizes, least, change = np.full(MEMORY, size), math.inf, np.empty_like(w)
     best_size, best_x, best_y = math.inf, film[U, 0], film[U, 1]
     for iteration in range(ITERATIONS):
@@ -264,7 +145,7 @@ def solve_stage(  # type: ignore[no-untyped-def]
                 room.w[i] = w[i] + share * change[i]
             t_x, t_y = film[U, 0] + share * u_x, film[U, 1] + share * u_y
             d_x, d_y = (film[X_0, 0] + g * t_x) / clearance, (film[X_0, 1] + g * t_y) / clearance
-            size, left = _residual(equations, room, room.w, past, d_x, d_y, t_x / clearance, t_y / clearance, omega, g)
+            size, left = residual(equations, room, room.w, past, d_x, d_y, t_x / clearance, t_y / clearance, omega, g)
             cost += 1
             if size < target or share < SMALLEST_SHARE:
                 break

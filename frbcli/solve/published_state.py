@@ -61,9 +61,14 @@ def first_film(film: PublishedFilm, displacement: Array, omega: float) -> tuple[
     """State.wet and State.flows at the start, the journal at rest at a displacement (2,) in m: settled where that is
     possible, else full at the ambient pressure. omega: omega_J + omega_S in rad/s."""
     d, state = displacement / film.section.clearance, film.full()
-    if np.any(d != 0.0) and omega != 0.0:
+    moves = bool(np.any(d != 0.0)) and omega != 0.0
+    # Next to an opening of higher pressure a full film at the ambient one is none: its elements would dip below p_cav.
+    fixed = film.elements.fixed.reshape(film.mesh.phi.shape)
+    fed = bool(np.any(film.mesh.fixed_pressure[fixed] > state.pressure.min()))
+    if moves or fed:
         with contextlib.suppress(NotConverged):
-            state = film.steady(Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)).state
+            motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega if moves else 0.0)
+            state = film.steady(motion).state
     step = film.step_law
     unknowns = make_unknowns(film.mesh, film.elements.fixed, step, REFERENCES[0] * step.cavity)
     wet = np.zeros((WET, 1, *film.mesh.nodes.shape))

@@ -11,7 +11,8 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.unknown import pressures_of
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.march import ELASTIC_LIMIT
-from frbcli.solve.published_stage import FilmEquations, Room, film_equations, make_room, solve_stage
+from frbcli.solve.published_equations import FilmEquations, Room, film_equations, make_room
+from frbcli.solve.published_stage import solve_stage
 from frbcli.solve.published_state import film_layers, unknowns_in
 from frbcli.solve.stage import JOURNAL_ROWS, OMEGA, STAGE_ROWS, U, accelerate, guess, prepare, start_stage
 from frbcli.solve.state import HISTORY, INVERSE_G, SOLVES, STEP_DONE, Control, RotorData, State

@@ -13,7 +13,7 @@ from typing import Any
 
 from frbcli.case.load import load_case
 from frbcli.scene.plan import make_plan
-from validation import chapter6_rows, chapter_7_page, convergence, forms, measures
+from validation import chapter6_rows, chapter_7_page, convergence, forms, measures, published
 from validation.measured import Measured, number, speeds
 from validation.measured import rises as rising
 from validation.measures import DATA, REFERENCE, RIGID
@@ -179,6 +179,8 @@ def main(folder: Path) -> None:
         "",
         chapter_7_page.section(folder, PAGE.read_text(encoding="utf-8")),
         *forms.table(),
+        "",
+        *published.table(),
         "",
         *convergence.table(folder),
         "",

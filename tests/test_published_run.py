@@ -1,0 +1,262 @@
+"""Run-ups in the published two-phase form: known limits, orders, its stage by itself, and the oil that it creates."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import frbcli
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.errors import InputError
+from frbcli.film.balance import Motion
+from frbcli.film.published.film import PublishedFilm
+from frbcli.film.published.loads import published_loads
+from frbcli.film.published.unknown import unknowns_of
+from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.system import System, make_system, run_up_profile
+from frbcli.solve.march import advance
+from frbcli.solve.published_equations import FilmEquations, film_equations, make_room, residual
+from frbcli.solve.published_march import advance_published
+from frbcli.solve.published_stage import solve_stage
+from frbcli.solve.published_state import film_layers, oil_created, unknowns_in
+from frbcli.solve.run import control_of
+from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
+from frbcli.solve.start import first_state, rotor_data
+from frbcli.solve.state import FINISHED, RUNNING, Control, State
+from frbcli.solve.tableau import METHODS
+
+Array = NDArray[np.float64]
+SHORT = ["speed.from=30Hz", "speed.to=30Hz", "speed.duration=0.02s", "output.step=0.5ms", "accuracy.mesh=[4,14]"]
+PUBLISHED = ["film.cavitation=two-phase", "film.two-phase.form=published"]
+SOFT = "film.two-phase.steepness=0.9"
+# Ambient pressure far above p_cav: the film stays full, and every form is Reynolds' equation; theta'_0 makes it denser
+# by a hundredth.
+FULL = [
+    "oil.ambient_pressure=11bar", "oil.cavitation_pressure=1bar", "bearing.supply.pressure=11bar",
+    "bearing.ends=oil-bath",
+]  # fmt: skip
+
+
+def case_of(*settings: str, name: str = "jeffcott") -> Case:
+    return load_case(name, [*SHORT, *PUBLISHED, *settings])
+
+
+def planned(case: Case) -> tuple[Plan, System]:
+    plan = make_plan(case)
+    return plan, make_system(case, plan)
+
+
+def run(
+    case: Case, plan: Plan, system: System, control: Control | None = None, budget: int = 10**6
+) -> tuple[Array, State]:
+    """Displacements (rows, n) at the output times, and the last state."""
+    profile = run_up_profile(case)
+    state, n = first_state(case.start, system, profile), system.rotor.size
+    out_q, out_v, out_oil = np.empty((2000, n)), np.empty((2000, n)), np.empty((2000, len(system.names)))
+    status, written = RUNNING, 0
+    tableau, rotor = METHODS[plan.method].tableau, rotor_data(system, profile)
+    forward = advance_published if isinstance(system.films, PublishedFilm) else advance
+    while status == RUNNING:
+        status, fresh = forward(
+            rotor, system.films, tableau, control or control_of(case, plan), state, budget,
+            out_q[written:], out_v[written:], out_oil[written:])  # fmt: skip
+        written += fresh
+    assert status == FINISHED
+    return out_q[:written], state
+
+
+def fixed_steps(case: Case, plan: Plan, steps: int) -> Control:
+    """Equal steps, a number of them in the whole run."""
+    return control_of(case, plan)._replace(tolerance=1e-2, longest_step=case.speed.duration / steps)
+
+
+def film_of(system: System) -> PublishedFilm:
+    assert isinstance(system.films, PublishedFilm)
+    return system.films
+
+
+def test_a_full_film_is_that_of_the_other_forms() -> None:
+    case, other = case_of(*FULL), load_case("jeffcott", [*SHORT, *FULL, "film.cavitation=sommerfeld"])
+    plan, system = planned(case)
+    found, state = run(case, plan, system)
+    expected, _ = run(other, *planned(replace_mesh(other)))
+    assert np.max(np.abs(found)) > 0.5 * system.clearances[0]
+    assert np.max(np.abs(found - expected)) < 5e-3 * system.clearances[0]
+    fraction = film_layers(state).fraction
+    assert np.all(fraction >= 1.0)
+
+
+def replace_mesh(case: Case) -> Case:
+    """The case on the mesh that is planned for it."""
+    return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"mesh": None})})
+
+
+def test_a_fed_film_moves_as_in_the_conservative_form() -> None:
+    settings = ["bearing.supply.pressure=2bar", "bearing.ends=oil-bath", SOFT, "speed.duration=0.03s"]
+    case = case_of(*settings, "accuracy.mesh=[5,20]")
+    other = load_case("jeffcott", [*SHORT, "film.cavitation=two-phase", *settings, "accuracy.mesh=[8,96]"])
+    plan, system = planned(case)
+    found, _ = run(case, plan, system)
+    expected, _ = run(other, *planned(other))
+    apart, moved = np.abs(found - expected), np.abs(found - found[0])
+    assert np.max(moved) > 0.3 * system.clearances[0]
+    assert np.max(apart) < 0.02 * system.clearances[0]
+
+
+def test_a_rotor_that_rests_stays_there() -> None:
+    case = case_of(SOFT, "start.position=resting", "rotor.unbalance=0 kg*m", "speed.duration=0.05s")
+    plan, system = planned(case)
+    q, _ = run(case, plan, system)
+    assert np.max(np.abs(q - q[0])) < 1e-4 * system.clearances[0]
+
+
+def test_a_fed_film_starts_full() -> None:
+    case = case_of("bearing.supply.pressure=2bar")
+    _, system = planned(case)
+    state = first_state(case.start, system, run_up_profile(case))
+    assert np.all(film_layers(state).fraction >= 1.0)
+
+
+def stage_of(system: System, d: tuple[float, float]) -> tuple[FilmEquations, PublishedFilm, Array, Array, Array]:
+    """A settled film in its equations with the unknowns, past and journal's rows of a stage of 0.1 ms."""
+    film, g, omega = film_of(system), 1e-4, 2 * math.pi * 30.0
+    start = film.steady(Motion(d, (0.0, 0.0), omega)).state
+    rows = np.zeros((JOURNAL_ROWS, 2))
+    clearance = film.section.clearance
+    rows[X_0] = np.array(d) * clearance
+    rows[U] = rows[U_0] = np.array([3.0, -8.0]) * clearance
+    rows[OMEGA] = omega
+    equations = film_equations(film)
+    w = unknowns_of(equations.unknowns, equations.step, start.pressure.ravel())
+    return equations, film, w, start.fraction / g, rows
+
+
+@pytest.mark.parametrize("d", [(0.1, -0.5), (0.3, -1.05)])
+def test_right_sides_of_a_stage_are_derivatives(d: tuple[float, float]) -> None:
+    """Also of a journal that has sunk into an elastic shell."""
+    _, system = planned(case_of(SOFT))
+    equations, film, w, past, rows = stage_of(system, (0.1, -0.5))
+    room, g, omega = make_room(film), 1e-4, float(rows[OMEGA, 0])
+    v = np.array([3.0, -8.0])
+
+    def missing(v: Array) -> Array:
+        at = np.array(d) + g * v
+        residual(equations, room, w, past, at[0], at[1], v[0], v[1], omega, g)
+        return room.right.copy()
+
+    exact, size = missing(v), 1e-3
+    for k in range(2):
+        change = np.eye(2)[k] * size
+        measured = (missing(v + change)[..., 0] - missing(v - change)[..., 0]) / (2.0 * size)
+        np.testing.assert_allclose(measured, exact[..., 1 + k], rtol=1e-5, atol=1e-6 * np.abs(exact[..., 1 + k]).max())
+
+
+def test_a_stage_holds_both_equations() -> None:
+    """The force is that of the film alone, moved as the stage says; the journal moves as that force has it."""
+    _, system = planned(case_of(SOFT))
+    equations, film, w, past, rows = stage_of(system, (0.1, -0.5))
+    g, clearance, compliance = 1e-4, film.section.clearance, 2e-4 * np.eye(2)
+    solved, _, cost = solve_stage(
+        equations, make_room(film), compliance, clearance, g, 1.0, 0.99, 0.0, 1e-6, past, w, rows
+    )
+    assert solved
+    assert cost <= 8
+    d, v = (rows[X_0] + g * rows[U]) / clearance, rows[U] / clearance
+    motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), float(rows[OMEGA, 0]))
+    alone = film.keep(motion, film.full().pressure, 1.0 / g, past)
+    np.testing.assert_allclose(rows[FORCE], alone.response.force, rtol=1e-4)
+    assert np.hypot(*(rows[U] - rows[U_0])) > 1e-2 * np.hypot(*rows[U])  # the force does move the journal
+    np.testing.assert_allclose(rows[U], rows[U_0] + compliance @ rows[FORCE], rtol=1e-9)
+
+
+def test_order_of_the_time_steps() -> None:
+    """Third order with a smooth theta(p): errors against eight times as many steps."""
+    case = case_of("film.two-phase.steepness=0.5", "bearing.ends=oil-bath", "start.displacement=[0.1,-0.3]",
+                   "speed.duration=0.004s", "bearing.supply.pressure=2bar", "accuracy.target=3e-3")  # fmt: skip
+    plan, system = planned(case)
+    ends = [run(case, plan, system, fixed_steps(case, plan, steps))[1].q for steps in (8, 16, 128)]
+    errors = [float(np.max(np.abs(end - ends[-1]))) for end in ends[:2]]
+    assert errors[0] < 1e-2 * system.clearances[0]
+    assert math.log2(errors[0] / errors[1]) > 2.0
+
+
+def test_pauses_do_not_change_the_run() -> None:
+    case = case_of("speed.duration=0.005s")
+    plan, system = planned(case)
+    whole, end = run(case, plan, system)
+    pieces, paused = run(case, plan, system, budget=7)
+    np.testing.assert_array_equal(pieces, whole)
+    for one, other in zip(paused, end, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_an_interrupted_run_goes_on_as_if_it_had_not_stopped(tmp_path: Path) -> None:
+    case = case_of("speed.duration=0.01s")
+    whole = frbcli.runup(case, tmp_path / "whole.h5")
+    count = 0
+
+    def interrupt(_: object) -> None:
+        nonlocal count
+        count += 1
+        if count == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    first = frbcli.runup(case, tmp_path / "pieces.h5", observe=interrupt)
+    assert first.status == "interrupted"
+    assert 0.0 < first.t_end_s < 0.01
+    pieces = frbcli.runup(case, tmp_path / "pieces.h5", resume=True)
+    assert pieces.status == whole.status == "finished"
+    for name in ("journal_x_m", "eccentricity", "oil_fraction"):
+        np.testing.assert_array_equal(pieces[name], whole[name])
+    for name in ("oil_in_m3", "oil_created_m3"):
+        assert pieces.cost[name] == whole.cost[name]
+
+
+def test_the_oil_that_it_creates_is_told() -> None:
+    """At rest the run creates oil at the rate that the film alone does."""
+    case = case_of("start.position=resting", "rotor.unbalance=0 kg*m", SOFT, "speed.duration=0.02s")
+    plan, system = planned(case)
+    q, end = run(case, plan, system)
+    profile = run_up_profile(case)
+    film = film_of(system)
+    d = system.rotor.journals[0] @ q[-1] / system.clearances[0]
+    steady = film.steady(Motion((float(d[0]), float(d[1])), (0.0, 0.0), float(profile.speeds[0])))
+    oil = published_loads(film, steady).oil
+    rate = -oil.defect_relative * max(oil.in_m3_s, oil.out_m3_s)
+    assert rate > 0.1 * oil.out_m3_s
+    assert oil_created(end) == pytest.approx(rate * case.speed.duration, rel=2e-2)
+    w = unknowns_in(film, film_layers(end).w)
+    assert np.all(np.isfinite(w))
+
+
+def test_a_run_reports_it(tmp_path: Path) -> None:
+    found = frbcli.runup(case_of("speed.duration=0.01s"), tmp_path / "run.h5")
+    assert found.status == "finished"
+    cost, share = found.cost, found.error["oil_balance_relative"]
+    assert share is not None
+    assert 0.0 < share < 1.0
+    assert cost["oil_out_m3"] > 0.0
+    assert "oil_created_m3" in cost
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "key"),
+    [
+        ("floating-ring", "film.torque=all", "bearing.kind"),
+        ("turbocharger-car", "film.torque=all", "rotor.kind"),
+        ("jeffcott", "film.coupling=co-simulation", "film.coupling"),
+        ("jeffcott", "film.grid=half-speed", "film.grid"),
+        ("jeffcott", "film.two-phase.whirl_steepness=0.9", "film.two-phase.whirl_steepness"),
+    ],
+)
+def test_what_the_published_form_cannot_do_is_refused(name: str, setting: str, key: str) -> None:
+    with pytest.raises(InputError) as refused:
+        make_plan(load_case(name, [*PUBLISHED, setting]))
+    assert key in [fault.key for fault in refused.value.faults]
