@@ -18,10 +18,10 @@ from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
 from frbcli.solve.march import advance
 from frbcli.solve.oil import net_flow, oil_defect
-from frbcli.solve.run import control_of
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import RUNNING, State
 from frbcli.solve.tableau import METHODS
+from frbcli.solve.under_way import control_of
 
 Array = NDArray[np.float64]
 SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]

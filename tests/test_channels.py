@@ -29,11 +29,12 @@ from frbcli.solve.march import advance
 from frbcli.solve.micro_step import _solve_films
 from frbcli.solve.oil import net_flow, oil_defect
 from frbcli.solve.passengers import OIL, PASSED, W, begin_stage, make_work
-from frbcli.solve.run import control_of, runup
+from frbcli.solve.run import runup
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import RUNNING, State
 from frbcli.solve.tableau import METHODS
+from frbcli.solve.under_way import control_of
 
 Array = NDArray[np.float64]
 COUPLED = ("bearing.channels=coupled", "accuracy.mesh=[5,32]", "output.step=1e-4")

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from frbcli.cli.main import run as frb
 from frbcli.cli.transient import progress_line
 from frbcli.results.store import Run, read_run
-from frbcli.solve.run import Progress
+from frbcli.solve.under_way import Progress
 
 ROOT = Path(__file__).parents[1]
 PNG = b"\x89PNG"

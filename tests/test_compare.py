@@ -19,8 +19,9 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.compare import comparison_figure
 from frbcli.results.store import Run, read_run
-from frbcli.solve import run as run_module
-from frbcli.solve.run import Progress, runup
+from frbcli.solve import under_way
+from frbcli.solve.run import runup
+from frbcli.solve.under_way import Progress
 
 QUICK = ("speed.duration=0.4 s", "speed.from=20 Hz", "speed.to=120 Hz", "output.step=2e-4 s", "accuracy.mesh=[4, 48]")
 HALF, FULL = "half-sommerfeld", "sommerfeld"
@@ -154,7 +155,7 @@ def test_a_directory_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_ends_the_comparison_with_the_run_under_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run_module, "BUDGET", 60)
+    monkeypatch.setattr(under_way, "BUDGET", 60)
     seen: list[str] = []
 
     def observe(variant: Variant, _: Progress) -> None:

@@ -21,10 +21,11 @@ from frbcli.solve.cosimulation import in_turn, micro_cost
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.march import advance
 from frbcli.solve.micro_step import MICRO_STEPS, parabola
-from frbcli.solve.run import control_of, runup
+from frbcli.solve.run import runup
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import FINISHED, STEPS, State
 from frbcli.solve.tableau import METHODS
+from frbcli.solve.under_way import control_of
 
 Array = NDArray[np.float64]
 

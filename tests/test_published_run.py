@@ -26,11 +26,11 @@ from frbcli.solve.published_equations import FilmEquations, film_equations, make
 from frbcli.solve.published_march import advance_published
 from frbcli.solve.published_stage import solve_stage
 from frbcli.solve.published_state import film_layers, oil_created, unknowns_in
-from frbcli.solve.run import control_of
 from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import FINISHED, RUNNING, Control, State
 from frbcli.solve.tableau import METHODS
+from frbcli.solve.under_way import control_of
 
 Array = NDArray[np.float64]
 SHORT = ["speed.from=30Hz", "speed.to=30Hz", "speed.duration=0.02s", "output.step=0.5ms", "accuracy.mesh=[4,14]"]

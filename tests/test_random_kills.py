@@ -14,6 +14,7 @@ import pytest
 import frbcli.solve.run as solve_run
 from frbcli.case.load import load_case
 from frbcli.results.store import Run, read_run
+from frbcli.solve import under_way
 from frbcli.solve.run import runup
 
 
@@ -60,8 +61,8 @@ def test_killed_at_random_times_it_resumes_to_equal_results(
     machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The error that a run states is read at each look at the clock: all have to look at the same steps.
-    monkeypatch.setattr(solve_run, "BUDGET", machine.budget)
-    monkeypatch.setattr(solve_run, "CELL_BUDGET", machine.budget)
+    monkeypatch.setattr(under_way, "BUDGET", machine.budget)
+    monkeypatch.setattr(under_way, "CELL_BUDGET", machine.budget)
     case = load_case(machine.base, machine.settings)
     runup(case, tmp_path / "first.h5")  # compiled or loaded, then it is quick
     begun = time.monotonic()

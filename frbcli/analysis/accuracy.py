@@ -20,7 +20,8 @@ from frbcli.scene.coupling import COUPLINGS
 from frbcli.scene.film_choice import DEFAULT_MESH
 from frbcli.scene.plan import THEORIES, Plan, make_plan
 from frbcli.scene.system import make_system
-from frbcli.solve.run import Progress, runup
+from frbcli.solve.run import runup
+from frbcli.solve.under_way import Progress
 
 if TYPE_CHECKING:
     import pandas as pd

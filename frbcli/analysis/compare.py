@@ -21,7 +21,8 @@ from frbcli.scene.film_choice import CLOSED
 from frbcli.scene.kinematic import MODELS
 from frbcli.scene.kinematic import TESTS as KINEMATIC_TESTS
 from frbcli.scene.plan import THEORIES, make_plan
-from frbcli.solve.run import Progress, runup
+from frbcli.solve.run import runup
+from frbcli.solve.under_way import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -14,7 +14,8 @@ from frbcli.case.schema import Case
 from frbcli.results.store import Run
 from frbcli.scene.coupling import APART, SEMI, chosen_coupling
 from frbcli.scene.plan import make_plan
-from frbcli.solve.run import Progress, rundown, runup
+from frbcli.solve.run import rundown, runup
+from frbcli.solve.under_way import Progress
 
 COMMANDS = {"runup": runup, "rundown": rundown}
 

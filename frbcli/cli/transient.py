@@ -16,7 +16,8 @@ from frbcli.cli.runs import OUTPUT, beside, here
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.results.store import Run
-    from frbcli.solve.run import Observer, Progress
+    from frbcli.solve.run import Observer
+    from frbcli.solve.under_way import Progress
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
