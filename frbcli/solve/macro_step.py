@@ -18,6 +18,7 @@ from frbcli.solve.dense import solve_dense
 from frbcli.solve.march import ELASTIC_LIMIT, ERROR_MEMORY, INVERSE_LASTS, LAG_SWEEPS
 from frbcli.solve.micro_step import SMALLEST_STEP, films_follow, parabola
 from frbcli.solve.passengers import make_work, write_oil
+from frbcli.solve.ring_spin import spin_up
 from frbcli.solve.stage import (
     FORCE,
     FREE,
@@ -30,7 +31,6 @@ from frbcli.solve.stage import (
     accelerate,
     norm,
     prepare,
-    spin_up,
     start_stage,
 )
 from frbcli.solve.state import (

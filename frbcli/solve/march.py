@@ -13,6 +13,7 @@ from numba import njit
 
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.passengers import accept_films, begin_stage, make_work, write_oil
+from frbcli.solve.ring_spin import set_speeds, spin_up
 from frbcli.solve.stage import (
     FREE,
     JOURNAL_ROWS,
@@ -27,8 +28,6 @@ from frbcli.solve.stage import (
     guess,
     norm,
     prepare,
-    set_speeds,
-    spin_up,
     start_stage,
 )
 from frbcli.solve.state import (

@@ -11,7 +11,8 @@ from numba import njit
 
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.passengers import accept_films, begin_stage, move_film
-from frbcli.solve.stage import FORCE, X_0, U, forces, set_speeds
+from frbcli.solve.ring_spin import set_speeds
+from frbcli.solve.stage import FORCE, X_0, U, forces
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE
 from frbcli.solve.step import SAFETY, step_after
 

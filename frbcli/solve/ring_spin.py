@@ -1,0 +1,70 @@
+"""How floating rings turn in one stage of the time loop: speeds of their films, torques on them. Compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from frbcli.solve.cell_passengers import GRID_SPEED, GRID_TURN
+from frbcli.solve.passengers import drag_integral
+from frbcli.solve.stage import FORCE, OMEGA, X_0, Q, U, V
+from frbcli.solve.state import GRID, SLIP, SUM
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def set_speeds(turning, bodies, angles, film, grids):  # type: ignore[no-untyped-def]
+    """OMEGA of each film, and how its grid stands, by speeds and angles of the rotor and the rings."""
+    for f in range(turning.shape[0]):
+        total, speed, angle = 0.0, 0.0, 0.0
+        for b in range(bodies.shape[0]):
+            total += turning[f, SUM, b] * bodies[b]
+            speed += turning[f, GRID, b] * bodies[b]
+            angle += turning[f, GRID, b] * angles[b]
+        film[OMEGA, 2 * f] = film[OMEGA, 2 * f + 1] = total
+        if grids.shape[1] > f:
+            grids[GRID_TURN, f], grids[GRID_SPEED, f] = angle, speed
+
+
+@njit(cache=True, error_model="numpy")
+def spin_up(  # type: ignore[no-untyped-def]
+    films, work, rotor, s, g, clearances, at, film, bodies, angles, torque, stage_v, stage_a
+):
+    """Let the films' torques (4.17) turn the rings: speeds and angles of the stage. Returns how far, in rad, the angle
+    of a ring was off.
+
+    Couette's term pulls at the surfaces against each other, Poiseuille's, half the moment of the film's force about the
+    middle between them, at both in the same sense. How Couette's term of a ring falls with its own speed is taken in by
+    Newton's method: a ring of little inertia follows it at once, and plain iterations would go to and fro.
+    """
+    rings = rotor.spins.shape[0]
+    if rings == 0:
+        return 0.0
+    held = np.zeros(rings)  # what Couette's terms fall by per speed of the ring
+    for r in range(rings):
+        torque[r] = 0.0
+    for f in range(clearances.shape[0]):
+        x, y, c = 2 * f, 2 * f + 1, clearances[f]
+        e_x, e_y = film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]
+        slip = 0.0
+        for b in range(bodies.shape[0]):
+            slip += rotor.turning[f, SLIP, b] * bodies[b]
+        resistance = rotor.drag[f] * drag_integral(films, work, f, e_x / c, e_y / c, rotor.torque_terms[1])
+        couette = -resistance * slip
+        poiseuille = -0.5 * (e_x * film[FORCE, y] - e_y * film[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
+        inside, outside = rotor.ring_of[f, 0], rotor.ring_of[f, 1]
+        if inside >= 0:
+            torque[inside] += couette + poiseuille
+            held[inside] += resistance
+        if outside >= 0:
+            torque[outside] += poiseuille - couette
+            held[outside] += resistance
+    off = 0.0
+    for r in range(rings):
+        i = rotor.spins[r]
+        pulled = torque[r] + held[r] * (bodies[1 + r] - at[V, i])
+        stage_a[i, s] = pulled / (rotor.mass[i, i] + g * held[r])
+        speed = at[V, i] + g * stage_a[i, s]
+        off = max(off, abs(g * (speed - bodies[1 + r])))
+        stage_v[i, s] = bodies[1 + r] = speed
+        angles[1 + r] = at[Q, i] + g * speed
+    return off
