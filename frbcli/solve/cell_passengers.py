@@ -37,23 +37,31 @@ SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
+STOPS_FROM = 0.9992  # eccentricity from which the film sees a journal come to a stop
 SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
 @njit(cache=True, error_model="numpy")
-def _keep_a_gap(grid, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
-    """Displacement and velocity as the film feels them: a journal that has sunk into the shell, as far as an elastic
-    contact lets it, leaves the gap that it had just before; it only moves along it."""
+def keep_a_gap(grid, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
+    """Displacement and velocity as the film feels them: a journal that sinks into the shell, as far as an elastic
+    contact lets it, comes to a stop before the last of the gap is gone, smoothly, so that the film's force does."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY] = 1.0, 1.0, 0.0
-    if eccentricity <= LARGEST_ECCENTRICITY:
+    if eccentricity <= STOPS_FROM:
         return d_x, d_y, v_x, v_y
-    share, n_x, n_y = LARGEST_ECCENTRICITY / eccentricity, d_x / eccentricity, d_y / eccentricity
-    grid[FOLLOWS_X], grid[FOLLOWS_Y] = share * n_y * n_y, share * n_x * n_x
-    grid[FOLLOWS_XY] = -share * n_x * n_y
-    along = share * (n_x * v_y - n_y * v_x)
-    return share * d_x, share * d_y, -along * n_y, along * n_x
+    n_x, n_y, left = d_x / eccentricity, d_y / eccentricity, LARGEST_ECCENTRICITY - STOPS_FROM
+    way = math.tanh((eccentricity - STOPS_FROM) / left)
+    along, radial = (STOPS_FROM + left * way) / eccentricity, 1.0 - way * way
+    grid[FOLLOWS_X] = radial * n_x * n_x + along * n_y * n_y
+    grid[FOLLOWS_Y] = radial * n_y * n_y + along * n_x * n_x
+    grid[FOLLOWS_XY] = (radial - along) * n_x * n_y
+    return (
+        along * d_x,
+        along * d_y,
+        grid[FOLLOWS_X] * v_x + grid[FOLLOWS_XY] * v_y,
+        grid[FOLLOWS_XY] * v_x + grid[FOLLOWS_Y] * v_y,
+    )
 
 
 @njit(cache=True, error_model="numpy")
@@ -96,7 +104,7 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     """film_numbers of passengers.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
     pressures of the channels over its cells, see cell_channels.py."""
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
-    d_x, d_y, v_x, v_y = _keep_a_gap(grid, d_x, d_y, v_x, v_y)
+    d_x, d_y, v_x, v_y = keep_a_gap(grid, d_x, d_y, v_x, v_y)
     c, s = math.cos(turn), math.sin(turn)
     x, y = c * d_x + s * d_y, c * d_y - s * d_x
     grid[GRID_X], grid[GRID_Y] = x, y
