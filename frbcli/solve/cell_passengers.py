@@ -37,7 +37,7 @@ SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
-STOPS_FROM = 0.9992  # eccentricity from which the film sees a journal come to a stop
+STOPS_FROM = 0.999  # eccentricity from which the film sees a journal come to a stop
 SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
