@@ -23,8 +23,7 @@ modelled, `frb schema > case.schema.json` gives editors the same knowledge.
   `bearing.1.width` reaches into the second `[[bearing]]`.
 - An unknown key is a fault, not a remark: every fault of a file is reported at once, with its line and a remedy.
 
-The schema already describes floating rings, turbochargers and cavitation models that this version reads and checks, but
-does not model yet; `frb check` and every run name what is missing (see the [README](../README.md)).
+What a run cannot have together is said before anything is computed, with what can be had in its place.
 
 This page is written from the schema by `cd tests && python -m case_reference`, and a test keeps it so.
 """
@@ -42,6 +41,7 @@ TABLES = {
     "[bearing.ring]": "Ring",
     "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",
+    "clearance_steps = [{ ... }]": "ClearanceStep",
     "lobes = { ... }": "Lobes",
     'supply = { kind = "none" }': "NoSupply",
     'supply = { kind = "circumferential-groove" }': "CircumferentialGroove",

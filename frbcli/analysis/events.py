@@ -1,4 +1,5 @@
-"""Events of a run, found from its signals alone: critical speed, onset, offset and lock-in of whirl, contact.
+"""Events of a run, found from its signals alone: critical speed, onset, offset and lock-in of whirl, contact; and when
+a clearance changed.
 
 The motion x + iy is read at even steps of the rotor's angle (revolutions.py). With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
@@ -22,7 +23,7 @@ from frbcli.analysis.revolutions import SAMPLES_PER_REVOLUTION, Revolutions, by_
 from frbcli.analysis.signals import Motion, RunLike, Values, joined, points
 from frbcli.analysis.subsynchronous import find_whirls
 
-Kind = Literal["critical-speed", "onset", "offset", "lock-in", "contact"]
+Kind = Literal["critical-speed", "onset", "offset", "lock-in", "contact", "clearance-step"]
 
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
@@ -58,7 +59,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
 
     Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
     bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film; uses
-    ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any.
+    ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s and so on.
     """
     time_s, speed = run["time_s"], run["speed_Hz"]
     if len(time_s) < 2:
@@ -83,7 +84,15 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
         ended = run.status == "contact" and film == touching
         limit = run.references.get("contact_eccentricity", CONTACT_ECCENTRICITY)
         events += _contacts(time_s, speed, run[joined("eccentricity", film)] >= limit, film or None, ended)
-    return tuple(sorted(events, key=lambda event: event.t_s))
+    changes = _clearance_steps(run, time_s, speed)  # before what they bring about at the same time
+    return tuple(sorted([*changes, *events], key=lambda event: event.t_s))
+
+
+def _clearance_steps(run: RunLike, time_s: Values, speed: Values) -> Iterator[Event]:
+    """Changes of a clearance that the run has reached: what follows may be owed to them."""
+    for t in signals.clearance_steps(run):
+        if t <= time_s[-1]:
+            yield Event("clearance-step", None, t, float(np.interp(t, time_s, speed)), None, None)
 
 
 def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> Iterator[Event]:

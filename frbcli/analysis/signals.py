@@ -8,6 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.results.store import CLEARANCE_STEP
+
 Values = NDArray[np.float64]
 Motion = NDArray[np.complex128]
 
@@ -59,6 +61,11 @@ def film_clearance(run: RunLike, film: str = "") -> float | None:
     """The clearance in m of a film by its name, or else that of all; None if the run does not say it."""
     lengths = run.references
     return lengths.get(joined("clearance_m", film), lengths.get("clearance_m"))
+
+
+def clearance_steps(run: RunLike) -> list[float]:
+    """Times in s at which clearances change, ascending; whether the run has reached them or not."""
+    return sorted(time for name, time in run.references.items() if name.startswith(CLEARANCE_STEP))
 
 
 def bearing_clearance(run: RunLike, name: str = "") -> float | None:

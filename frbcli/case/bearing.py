@@ -16,6 +16,7 @@ from frbcli.case.quantities import (
     Angle,
     Clearance,
     Count,
+    Duration,
     Expansion,
     Fraction,
     Identifier,
@@ -111,6 +112,13 @@ class ColdClearance(Model):
         return self.cold + 0.5 * diameter * growth
 
 
+class ClearanceStep(Model):
+    """A clearance from some time of a run on: the gap widens or narrows at once, and the oil in it stays."""
+
+    time: Duration
+    clearance: Clearance = Field(description="radial, warm, from then on")
+
+
 def _clearance_form(given: object) -> str:
     return "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"
 
@@ -140,6 +148,7 @@ class FilmGeometry(Model):
     width: Length = Field(description="axial width of the whole bearing")
     diameter: Length
     given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
+    clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="of a run, in the order of their times")
     ends: Literal["free-to-air", "oil-bath"] = "free-to-air"
     supply: Supply = NoSupply()
     lobes: Lobes | None = Field(default=None, description="of the shell, which is a plain cylinder if not given")

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from frbcli.case.bearing import ColdClearance
 from frbcli.case.lines import Path
 from frbcli.case.schema import ATMOSPHERE, Vogel
-from frbcli.case.tables import Breach, number, table
+from frbcli.case.tables import Breach, number, table, tables
 from frbcli.units import NUMBER, display
 
 # A film is thin, the Reynolds equation its limit for clearance/radius -> 0.
@@ -25,10 +25,10 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     diameter, width = number(film, "diameter", "m"), number(film, "width", "m")
     clearance = _clearance(film, diameter)
     if diameter and clearance is not None and not 0 < clearance < THICKEST_FILM * diameter / 2:
-        problem = f"is {display(clearance, 'm')}, no thin film at a diameter of {display(diameter, 'm')}."
-        yield Breach((*path, "clearance"), problem, "It is the radial gap, about a thousandth of the radius.")
+        yield _too_thick((*path, "clearance"), clearance, diameter)
     elif diameter and clearance is not None:
         yield from _lobes((*path, "lobes"), table(film, "lobes"), clearance, diameter)
+    yield from _clearance_steps(path, film, diameter, data)
     if "temperature" in film and "vogel" not in oil:
         yield Breach((*path, "temperature"), "has no effect: [oil] has no Vogel's law.", "Add oil.vogel or remove it.")
     elif "temperature" in film:
@@ -41,6 +41,27 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     if supply.get("on") == "journal" and "lobes" in film:
         problem = "are in the shell, the bores in the journal: the film stands still in neither."
         yield Breach((*path, "lobes"), problem, 'Remove them, or write supply.on = "shell".')
+
+
+def _too_thick(path: Path, clearance: float, diameter: float) -> Breach:
+    problem = f"is {display(clearance, 'm')}, no thin film at a diameter of {display(diameter, 'm')}."
+    return Breach(path, problem, "It is the radial gap, about a thousandth of the radius.")
+
+
+def _clearance_steps(
+    path: Path, film: Mapping[str, Any], diameter: float | None, data: Mapping[str, Any]
+) -> Iterator[Breach]:
+    steps, before = tables(film, "clearance_steps"), 0.0
+    if steps and "speed" not in data and "motion" in data:
+        yield Breach((*path, "clearance_steps"), "has no effect on kinematic tests.", "Remove it.")
+    for place, step in steps:
+        time, clearance = number(step, "time", "s"), number(step, "clearance", "m")
+        if diameter and clearance is not None and clearance >= THICKEST_FILM * diameter / 2:
+            yield _too_thick((*path, *place, "clearance"), clearance, diameter)
+        if time is not None and 0 < time <= before:
+            problem = f"is {display(time, 's')}, not after the step before it."
+            yield Breach((*path, *place, "time"), problem, "Write the steps in the order of their times.")
+        before = max(before, time or 0.0)
 
 
 def _lobes(path: Path, lobes: Mapping[str, Any], clearance: float, diameter: float) -> Iterator[Breach]:

@@ -102,6 +102,8 @@ def command(
 
 
 def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
+    from frbcli.scene.clearance_steps import step_times
+
     every = math.ceil(len(found.points) / LONGEST_TABLE)
     shown = found.points[every - 1 :: every]
     title = found.case.title or found.case.name
@@ -111,6 +113,8 @@ def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
     for problem in (point.problem for point in found.points if point.problem):
         terminal.say(problem)
     terminal.say(_sentence(found))
+    if step_times(found.case):
+        terminal.say("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
     if picture is not None:
         terminal.say(f"Campbell diagram: {picture}")
 

@@ -23,7 +23,7 @@ WINDOWS = 4  # a run shorter than this many windows gets shorter ones
 FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
 
 NAMES = {"critical-speed": "critical speed", "onset": "onset of whirl", "offset": "end of whirl", "lock-in": "lock-in",
-         "contact": "contact"}
+         "contact": "contact", "clearance-step": "clearance step"}
 
 
 def summary_figure(run: Run) -> Figure:

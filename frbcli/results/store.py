@@ -29,6 +29,7 @@ __all__ = ["Header", "Run", "RunWriter", "Signal", "check_output", "read_run"]
 Values = NDArray[np.float64]
 
 INTERRUPTED = "interrupted"
+CLEARANCE_STEP = "clearance_step"  # begins the names of the references that are times of one
 TIME = "time_s"
 TEXTS = ("title", "command", "case_name", "case_text", "status")
 RECORDS = ("versions", "references", "cost", "error", "events")  # kept as JSON text
@@ -46,8 +47,8 @@ class Signal:
 class Header:
     """What is known of a run before it starts.
 
-    units: name of each signal -> its unit; references: lengths and the like that pictures refer to, in SI, e.g.
-    {"clearance_m": 35e-6}; versions: program -> version.
+    units: name of each signal -> its unit; references: what pictures and events refer to, in SI, e.g.
+    {"clearance_m": 35e-6, "clearance_step_1_s": 3.0}; versions: program -> version.
     """
 
     title: str

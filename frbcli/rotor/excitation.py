@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,10 +29,26 @@ class SpeedProfile:
         """Rotor speed in rad/s at the times t (n,)."""
         return np.interp(t, self.times, self.speeds)
 
+    def rotation(self, t: float) -> tuple[float, float, float]:
+        """Angular acceleration in rad/s^2, speed in rad/s and angle in rad at the time t; at a kink, just after it."""
+        piece = min(max(int(np.searchsorted(self.times, t, side="right")) - 1, 0), len(self.times) - 2)
+        acceleration, speed, angle = rotation(self.times, self.speeds, self.angles, piece, t)
+        return float(acceleration), float(speed), float(angle)
+
     def angle(self, t: float) -> float:
         """Angle of the rotor in rad at the time t."""
-        piece = min(max(int(np.searchsorted(self.times, t, side="right")) - 1, 0), len(self.times) - 2)
-        return float(rotation(self.times, self.speeds, self.angles, piece, t)[2])
+        return self.rotation(t)[2]
+
+    def with_stops(self, times: Iterable[float]) -> SpeedProfile:
+        """The same speeds with kinks of no angle at those of the times (s) that lie within."""
+        kinks = [t for t in times if self.times[0] < t < self.times[-1]]
+        t = np.union1d(self.times, np.array(kinks))
+        return speed_profile(t.tolist(), self.speed(t).tolist())
+
+    def until(self, t: float) -> SpeedProfile:
+        """The profile up to one of its own times, s."""
+        kept = slice(int(np.searchsorted(self.times, t, side="right")))
+        return SpeedProfile(self.times[kept], self.speeds[kept], self.angles[kept])
 
 
 def speed_profile(times: list[float], speeds: list[float]) -> SpeedProfile:

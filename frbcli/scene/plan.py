@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
-from frbcli.film.gap import ends_at_ambient
-from frbcli.film.section_faults import section_faults, starves
+from frbcli.errors import InputError
+from frbcli.film.section_faults import starves
 from frbcli.film.table import Mesh
-from frbcli.scene.channels import channel_faults, coupled, opens_to_groove, resistance
-from frbcli.scene.coupling import REMEMBERING, coupling_fault, plan_coupling
+from frbcli.scene.channels import coupled, opens_to_groove, resistance
+from frbcli.scene.clearance_steps import clearance_decisions
+from frbcli.scene.coupling import REMEMBERING, plan_coupling
 from frbcli.scene.film_choice import (
     CHAINS,
     FIELDS,
@@ -24,14 +24,13 @@ from frbcli.scene.film_choice import (
     LOOSE_TARGET,
     MIDDLE,
     FilmChoice,
-    all_clipped,
     choose_films,
-    needs_cells,
 )
-from frbcli.scene.films import film_places, is_plain, rings, turning_rings
-from frbcli.scene.published import PUBLISHED, published_decisions, published_faults
+from frbcli.scene.films import film_places, rings, turning_rings
+from frbcli.scene.plan_faults import plan_faults
+from frbcli.scene.published import PUBLISHED, published_decisions
 from frbcli.scene.section import film_section
-from frbcli.scene.tabulated import SOLUTIONS, solution_fault
+from frbcli.scene.tabulated import SOLUTIONS
 
 THEORIES = ("short", "finite")
 # At least: of films with cells, and of those that are solved at every call, where a step costs more than it is worth.
@@ -78,7 +77,9 @@ class Plan:
 
 def make_plan(case: Case) -> Plan:
     """Plan a case. Raises InputError naming every part of it that cannot be modelled."""
-    _refuse_what_is_not_modelled(case)
+    faults = plan_faults(case)
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))
     decisions: list[Decision] = []
 
     def decide(choice: str, value: object, reason: str) -> None:
@@ -134,6 +135,8 @@ def _decide_scene(case: Case, decide: Decide) -> None:
             decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
     if len(places) == 1:
         decide("gap", *_gap(places[0].geometry))
+    for decided in clearance_decisions(case):
+        decide(*decided)
 
 
 def _cavitations(case: Case) -> tuple[tuple[str, str], ...]:
@@ -218,38 +221,3 @@ def _gap(film: FilmGeometry) -> tuple[str, str]:
     if supply.kind == "none":
         return "1 rectangle", "plain bearing: the pressure is symmetric about the middle, its odd modes vanish"
     return "developed gap", f"{supply.kind} are cut out of it"
-
-
-def _refuse_what_is_not_modelled(case: Case) -> None:
-    faults = []
-
-    def missing(key: str, value: str, known: tuple[str, ...]) -> None:
-        faults.append(Fault(key, value, None, "is not modelled in this version.", f"Modelled are: {', '.join(known)}."))
-
-    if case.film.theory == "short" and (needs_cells(case) or not all_clipped(case)):
-        remedy = "finite or auto for this cavitation model and supply; short knows half-sommerfeld between rectangles"
-        missing("film.theory", "short", (remedy,))
-    elif case.film.theory == "short" and any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case)):
-        missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
-    faults += channel_faults(case)
-    chained = any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case))
-    told = solution_fault(case, all_clipped(case), not (chained or needs_cells(case)))
-    faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
-    faults += published_faults(case)
-    if case.film.grid != "fixed" and not (needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))):
-        missing("film.grid", case.film.grid, ("fixed where a film has openings or lobes, or no cells",))
-    for place in film_places(case):
-        supply = place.geometry.supply
-        if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):
-            missing("bearing.supply.axial_position", f"{supply.axial_position:g}", ("0.5, 0 and 1",))
-            continue
-        section = film_section(case, place.geometry, place.mouths)
-        if case.cavitation(place.geometry) not in REMEMBERING:  # a film that makes its oil cannot run dry
-            section = ends_at_ambient(section)
-        for found in section_faults(section):
-            faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
-    if not faults and len(case.bearings) != 1 and not isinstance(case.rotor, TurbochargerRotor):
-        both = "one [bearing], which stands for both of a symmetric rotor"
-        missing("bearing", f"{len(case.bearings)} bearings", (both,))
-    if faults:
-        raise InputError(case.name or "case", tuple(faults))

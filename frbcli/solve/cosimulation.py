@@ -2,44 +2,37 @@
 
 from __future__ import annotations
 
-import contextlib
-
 import numpy as np
 
-from frbcli.errors import NotConverged
 from frbcli.scene.system import System
 from frbcli.solve.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
-from frbcli.solve.start import FIRST_STEP
-from frbcli.solve.state import HISTORY, NUMBERS, STEPS, Array, State
+from frbcli.solve.start import FIRST_STEP, settled_forces
+from frbcli.solve.state import HISTORY, STEPS, TIME, State
 
 
 def in_turn(system: System, state: State, omega: float) -> State:
-    """The first state of advance_in_turn from that of advance; omega: speed of the rotor in rad/s.
+    """The state of advance_in_turn from that of advance, at the beginning or after a clearance has changed.
+
+    omega: speed of the rotor in rad/s.
 
     The coupling variables (section 5.2.1) are taken as constant before the beginning, but for the journals, which move
     on as they do.
     """
     rotor, rings = system.rotor, list(system.spins)
-    numbers = np.concatenate([state.numbers, np.zeros(CO_NUMBERS - NUMBERS)])
+    numbers = np.zeros(CO_NUMBERS)
+    numbers[: len(state.numbers)] = state.numbers
     numbers[MICRO_STEP] = FIRST_STEP
     numbers[FILMS_REMEMBER] = float(system.remembers)
     place, rate = rotor.journals @ state.q, rotor.journals @ state.v
     times = FIRST_STEP * np.arange(1 - HISTORY, 1)
-    exchanged = [_forces(system, place, rate, omega, state.v[rings]).ravel(), np.zeros(len(rings))]
+    exchanged = [settled_forces(system, omega, state.q, state.v).ravel(), np.zeros(len(rings))]
     past = np.array([
-        np.concatenate([[t], (place + t * rate).ravel(), rate.ravel(), state.q[rings], state.v[rings], *exchanged])
+        np.concatenate([
+            [numbers[TIME] + t], (place + t * rate).ravel(), rate.ravel(), state.q[rings], state.v[rings], *exchanged
+        ])
         for t in times
-    ])
+    ])  # fmt: skip
     return state._replace(numbers=numbers, past=past)
-
-
-def _forces(system: System, place: Array, rate: Array, omega: float, ring_speeds: Array) -> Array:
-    """(films, 2) forces of the films, none of those that starve."""
-    forces = np.zeros_like(place)
-    for i, speed in enumerate(system.omegas(omega, ring_speeds)):
-        with contextlib.suppress(NotConverged):
-            forces[i] = system.film_force(i, place[i], rate[i], float(speed)).force
-    return forces
 
 
 def micro_cost(state: State, cpu_s: float) -> dict[str, float]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from frbcli.film.balance import Motion
 from frbcli.film.cell_balances import CHANNELS_NET, ENDS_NET, INFLOW, OUTFLOW, SUPPLY_NET
+from frbcli.film.frame import turned
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.section_faults import starves
 from frbcli.scene.system import System
@@ -27,14 +26,12 @@ def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None
         return created_share(system.films, state)
     if not system.remembers:
         return None
-    worst, turned = 0.0, np.concatenate([[angle], state.q[list(system.spins)]])
-    for i, (film, pick) in enumerate(zip(system.volumes, system.rotor.journals, strict=True)):
+    worst = 0.0
+    for i, film in enumerate(system.volumes):
         if not system.remembering[i]:
             continue
-        turn = float(system.turning[i, GRID] @ turned)
-        cosine, sine = math.cos(turn), math.sin(turn)
-        d = np.array([[cosine, sine], [-sine, cosine]]) @ pick @ state.q / system.clearances[i]
-        now = film.content(Motion((float(d[0]), float(d[1])), (0.0, 0.0), 0.0), state.wet[W, i])
+        d = turned(displacement(system, state, i), -grid_angle(system, state, i, angle))
+        now = film.content(Motion(d, (0.0, 0.0), 0.0), state.wet[W, i])
         free = ~film.grid.fixed
         passed = max(state.flows[PASSED, i, INFLOW], state.flows[PASSED, i, OUTFLOW])
         area = film.grid.area[free]
@@ -42,6 +39,17 @@ def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None
         passed = max(float(passed), float((area * now[free]).sum()))
         worst = max(worst, abs(float((area * (now - state.wet[OIL, i])[free]).sum())) / passed)
     return worst
+
+
+def displacement(system: System, state: State, film: int) -> tuple[float, float]:
+    """Of a film's journal, over the clearance."""
+    x, y = system.rotor.journals[film] @ state.q / system.clearances[film]
+    return float(x), float(y)
+
+
+def grid_angle(system: System, state: State, film: int, angle: float) -> float:
+    """By which a film's grid has turned, rad; angle: of the rotor, rad."""
+    return float(system.turning[film, GRID] @ np.concatenate([[angle], state.q[list(system.spins)]]))
 
 
 def net_flow(state: State, film: int) -> float:

@@ -12,7 +12,8 @@ from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system, run_down_profile, run_up_profile
+from frbcli.scene.stretches import make_stretches
+from frbcli.scene.system import run_down_profile, run_up_profile
 from frbcli.solve.interrupt import held_back
 from frbcli.solve.run_header import header
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
@@ -49,13 +50,13 @@ def _run(
     earlier = _earlier(command, case, Path(output)) if resume else None
     if earlier is not None and earlier.status != "interrupted":
         return earlier
-    system = make_system(case, plan)
-    march = March(case, plan, system, profile)
+    stretches = make_stretches(case, plan)
+    march = March(case, plan, stretches, profile)
     if earlier is not None and earlier.checkpoint is not None:
         writer = RunWriter.resume(output)
         march.restore(earlier.checkpoint)
     else:
-        writer = RunWriter(output, header(command, case, system))
+        writer = RunWriter(output, header(command, case, stretches))
     march.compile()
     return _go(march, writer, observe)
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
-from frbcli.results.store import Header
+from frbcli.results.store import CLEARANCE_STEP, Header
+from frbcli.scene.stretches import Stretch
 from frbcli.scene.system import System
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
@@ -24,8 +26,9 @@ def ring_names(system: System) -> list[str]:
     return [f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name in outer]
 
 
-def header(command: str, case: Case, system: System) -> Header:
-    """The head of the file of a run."""
+def header(command: str, case: Case, stretches: Sequence[Stretch]) -> Header:
+    """The head of the file of a run. Its clearances, which amplitudes refer to, are the first ones."""
+    system = stretches[0].system
     lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
     eccentricities = [named("eccentricity", name) for name in system.names]
     units = {"time_s": "s", "speed_Hz": "Hz", **dict.fromkeys(eccentricities, ""), **dict.fromkeys(lengths, "m")}
@@ -41,7 +44,8 @@ def header(command: str, case: Case, system: System) -> Header:
         versions={PROGRAM: _version(PROGRAM), "python": platform.python_version()}
         | {package: _version(package) for package in PACKAGES},
         references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
-        | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)},
+        | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
+        | {f"{CLEARANCE_STEP}_{number}_s": stretch.start for number, stretch in enumerate(stretches[1:], start=1)},
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 
 import numpy as np
 
@@ -81,7 +82,8 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
 def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State:
     """The state at the start of a profile with displacements q (n,) in m and velocities v (n,) in m/s."""
     wet, flows = _films_at(system, profile, q, v)
-    a = np.asarray(np.linalg.solve(system.rotor.mass, _forces(system, profile, q, v)), dtype=np.float64)
+    rotation = profile.rotation(float(profile.times[0]))
+    a = accelerations(system, rotation, q, v, settled_forces(system, rotation[1], q, v))
     numbers = np.zeros(NUMBERS)
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
     count = len(system.clearances)
@@ -114,15 +116,27 @@ def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tupl
     return wet, np.zeros((2, len(system.volumes), FLOWS))
 
 
-def _forces(system: System, profile: SpeedProfile, q: Array, v: Array) -> Array:
-    """(n,) all forces on the rotor with displacements q and velocities v at the start of the profile, at angle zero."""
-    rotor, omega = system.rotor, float(profile.speeds[0])
-    acceleration = (profile.speeds[1] - omega) / (profile.times[1] - profile.times[0])
+def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
+    """(films, 2) N: forces of the films that have settled where the rotor is, none of those that starve."""
+    forces, omegas = np.zeros((len(system.names), 2)), system.omegas(omega, v[list(system.spins)])
+    for i, pick in enumerate(system.rotor.journals):
+        with contextlib.suppress(NotConverged):
+            forces[i] = system.film_force(i, pick @ q, pick @ v, float(omegas[i])).force
+    return forces
+
+
+def accelerations(
+    system: System, rotation: tuple[float, float, float], q: Array, v: Array, film_forces: Array
+) -> Array:
+    """(n,) m/s^2 of a rotor with displacements q, velocities v and forces (films, 2) of its films in N.
+
+    rotation: angular acceleration, speed and angle of the rotor, see SpeedProfile.
+    """
+    rotor, (alpha, omega, angle) = system.rotor, rotation
+    sine, cosine = math.sin(angle), math.cos(angle)
     forces = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
-    forces = forces + acceleration * rotor.unbalance_cos + omega**2 * rotor.unbalance_sin
-    omegas = system.omegas(omega, v[list(system.spins)])
-    for i, (pick, count) in enumerate(zip(rotor.journals, rotor.multiplicity, strict=True)):
-        with contextlib.suppress(NotConverged):  # a film that starves carries nothing
-            forces = forces + count * pick.T @ system.film_force(i, pick @ q, pick @ v, float(omegas[i])).force
-    total: Array = forces
-    return total
+    forces = forces + (alpha * cosine - omega**2 * sine) * rotor.unbalance_cos
+    forces = forces + (alpha * sine + omega**2 * cosine) * rotor.unbalance_sin
+    for pick, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
+        forces = forces + count * pick.T @ force
+    return np.asarray(np.linalg.solve(rotor.mass, forces), dtype=np.float64)

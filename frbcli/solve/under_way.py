@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,8 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import Plan
-from frbcli.scene.system import System
+from frbcli.scene.stretches import Stretch
+from frbcli.solve.clearance_step import largest_eccentricity, with_clearances
 from frbcli.solve.cosimulation import in_turn, micro_cost
 from frbcli.solve.error_budget import FIRST, error_budget, quick_budget
 from frbcli.solve.film_error import SAMPLES
@@ -26,9 +27,12 @@ from frbcli.solve.published_march import advance_published
 from frbcli.solve.run_header import named, ring_names
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import (
+    CONTACT,
     ERROR_NOW,
+    FINISHED,
     OUTPUTS,
     REJECTED,
+    RUNNING,
     SOLVES,
     STEPS,
     TIME,
@@ -59,11 +63,17 @@ class Progress:
 
 
 class March:
-    """A run under way: the constant parts, the state, the clock."""
+    """A run under way: the constant parts, the state, the clock.
 
-    def __init__(self, case: Case, plan: Plan, system: System, profile: SpeedProfile) -> None:
-        self._case, self._plan, self._system, self._profile = case, plan, system, profile
-        self._rotor = rotor_data(system, profile)
+    Its machine may change on the way (scene/stretches.py): all stretches are there from the beginning, one is current.
+    """
+
+    def __init__(self, case: Case, plan: Plan, stretches: Sequence[Stretch], profile: SpeedProfile) -> None:
+        self._case, self._plan = case, plan
+        self._stretches = [stretch for stretch in stretches if stretch.start < profile.end]
+        self._profile = profile.with_stops(stretch.start for stretch in self._stretches)
+        self._take_up(0)
+        system = self._system
         self._control = control_of(case, plan)
         self._tableau = METHODS[plan.method].tableau
         self._state = first_state(case.start, system, profile)
@@ -83,6 +93,21 @@ class March:
         self._predicted_cpu_s = expected_cost(case, plan, profile).cpu_s
         self._cpu_s = self._wall_s = 0.0
         self._budget = BUDGET if plan.cells is None else CELL_BUDGET
+
+    def _take_up(self, number: int) -> None:
+        """Make a stretch the current one; the time loop sees the profile up to its end."""
+        self._current, self._system = number, self._stretches[number].system
+        ends = [stretch.start for stretch in self._stretches[number + 1 :]]
+        self._rotor = rotor_data(self._system, self._profile.until(ends[0] if ends else self._profile.end))
+
+    def _change(self) -> int:
+        """At the end of a stretch: the machine and the state of the next one. Returns the status of the run."""
+        before = self._system
+        self._take_up(self._current + 1)
+        if largest_eccentricity(self._system, self._state) >= self._control.contact_eccentricity:
+            return CONTACT  # a shell that closes upon the journal
+        self._state = with_clearances(before, self._system, self._profile, self._state, self._apart)
+        return RUNNING
 
     @property
     def time(self) -> float:
@@ -123,7 +148,10 @@ class March:
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept]])
         self._samples = np.concatenate([self._samples, fresh])
         self._error_history = np.vstack([self._error_history, self._state.numbers[[TIME, ERROR_NOW]]])
-        return status, self._signals(times, speeds, self._q[:rows], self._v[:rows])
+        signals = self._signals(times, speeds, self._q[:rows], self._v[:rows])
+        if status == FINISHED and self._current + 1 < len(self._stretches):
+            status = self._change()
+        return status, signals
 
     def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
@@ -150,6 +178,7 @@ class March:
     def restore(self, checkpoint: dict[str, Array]) -> None:
         """Take up the state of a checkpoint."""
         self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
+        self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
         self._samples = checkpoint["film_samples"].reshape(-1, 2 * self._system.rotor.size + 1)
         self._error_history = checkpoint["error_history"].reshape(-1, 2)
         self._cpu_s, self._wall_s = (float(value) for value in checkpoint["clock"])
@@ -177,14 +206,19 @@ class March:
         return quick_budget(self._system, self._state, self._profile.angle(self.time))
 
     def error(self, events: Iterable[Mapping[str, Any]] = ()) -> dict[str, float | None]:
-        """The error of the run."""
+        """The error of the run: the largest of its stretches."""
         times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
-        return {
-            **self.error_so_far(),
-            **error_budget(
-                self._case, self._plan, self._system, self.time, self._error_history, times, self._samples, events
-            ),
-        }
+        begins = [stretch.start for stretch in self._stretches[: self._current + 1]]
+        budgets = [self.error_so_far()]
+        for stretch, first, last in zip(self._stretches, begins, [*begins[1:], math.inf], strict=False):
+            there = (times >= first) & (times < last)
+            budgets.append(
+                error_budget(
+                    stretch.case, self._plan, stretch.system, self.time, self._error_history, times[there],
+                    self._samples[there], events,
+                )
+            )  # fmt: skip
+        return _largest(budgets)
 
     def progress(self) -> Progress:
         """For people who wait."""
@@ -202,6 +236,13 @@ class March:
             simulated_ms_per_hour=1e3 * 3600.0 * rate,
             left_s=(end - t) / rate if rate > 0 else math.inf,
         )
+
+
+def _largest(budgets: Sequence[Mapping[str, float | None]]) -> dict[str, float | None]:
+    """The largest value of each key, None where it has none."""
+    keys = {key: None for budget in budgets for key in budget}
+    known = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
+    return {key: max(values, default=None) for key, values in known.items()}
 
 
 def control_of(case: Case, plan: Plan) -> Control:

@@ -1,0 +1,64 @@
+"""Clearances that change in steps during a run: when, to what, and what the case is then.
+
+Warming, wear, or a test of the program itself: from one moment on the gap is wider or narrower. The rotor keeps its
+place and its velocity, a film that keeps its oil keeps it (solve/clearance_step.py); what the gap does while it
+changes is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TypeVar
+
+from frbcli.case.bearing import Bearing, FilmGeometry, FloatingRingBearing
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.scene.films import film_places
+from frbcli.scene.published import is_published
+
+Film = TypeVar("Film", bound=FilmGeometry)
+
+
+def step_times(case: Case) -> tuple[float, ...]:
+    """Times in s at which a clearance changes, ascending."""
+    return tuple(sorted({step.time for film in _films(case) for step in film.clearance_steps}))
+
+
+def case_at(case: Case, time: float) -> Case:
+    """The case with the clearances that it has at a time in s."""
+    return case.model_copy(update={"bearings": tuple(_bearing_at(bearing, time) for bearing in case.bearings)})
+
+
+def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
+    """What is decided about clearances that change: choice, value, reason."""
+    for place in film_places(case):
+        steps = place.geometry.clearance_steps
+        if steps:
+            told = [f"{1e6 * step.clearance:.4g} um from {step.time:g} s" for step in steps]
+            value = ", ".join([f"{1e6 * place.geometry.clearance:.4g} um", *told])
+            yield f"clearance {place.name}".rstrip(), value, "set in the case; changes at once, rotor and oil stay"
+
+
+def clearance_faults(case: Case) -> list[Fault]:
+    """What keeps a case from a run with clearances that change."""
+    if not step_times(case) or not is_published(case):
+        return []
+    problem = "is not modelled for the published two-phase form."
+    remedy = 'Write film.two-phase.form = "conservative".'
+    return [Fault("bearing.clearance_steps", "", None, problem, remedy)]
+
+
+def _films(case: Case) -> Iterator[FilmGeometry]:
+    return (place.geometry for place in film_places(case))
+
+
+def _bearing_at(bearing: Bearing, time: float) -> Bearing:
+    if isinstance(bearing, FloatingRingBearing):
+        both = {"inner": _film_at(bearing.inner, time), "outer": _film_at(bearing.outer, time)}
+        return bearing.model_copy(update=both)
+    return _film_at(bearing, time)
+
+
+def _film_at(film: Film, time: float) -> Film:
+    passed = [step.clearance for step in film.clearance_steps if step.time <= time]
+    return film.model_copy(update={"given_clearance": passed[-1], "clearance_steps": ()}) if passed else film

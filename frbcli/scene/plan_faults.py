@@ -1,0 +1,54 @@
+"""What keeps a case from being planned for a run: said before anything is computed."""
+
+from __future__ import annotations
+
+from frbcli.case.bearing import CircumferentialGroove
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.film.gap import ends_at_ambient
+from frbcli.film.section_faults import section_faults
+from frbcli.scene.channels import channel_faults
+from frbcli.scene.clearance_steps import clearance_faults
+from frbcli.scene.coupling import REMEMBERING, coupling_fault
+from frbcli.scene.film_choice import MIDDLE, all_clipped, needs_cells
+from frbcli.scene.films import film_places, is_plain
+from frbcli.scene.published import published_faults
+from frbcli.scene.section import film_section
+from frbcli.scene.tabulated import solution_fault
+
+
+def plan_faults(case: Case) -> list[Fault]:
+    """Every part of a case that no run can have."""
+    faults: list[Fault] = []
+
+    def missing(key: str, value: str, known: tuple[str, ...]) -> None:
+        faults.append(Fault(key, value, None, "is not modelled in this version.", f"Modelled are: {', '.join(known)}."))
+
+    if case.film.theory == "short" and (needs_cells(case) or not all_clipped(case)):
+        remedy = "finite or auto for this cavitation model and supply; short knows half-sommerfeld between rectangles"
+        missing("film.theory", "short", (remedy,))
+    elif case.film.theory == "short" and any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case)):
+        missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
+    faults += channel_faults(case)
+    faults += clearance_faults(case)
+    chained = any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case))
+    told = solution_fault(case, all_clipped(case), not (chained or needs_cells(case)))
+    faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
+    faults += published_faults(case)
+    if case.film.grid != "fixed" and not (needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))):
+        missing("film.grid", case.film.grid, ("fixed where a film has openings or lobes, or no cells",))
+    for place in film_places(case):
+        supply = place.geometry.supply
+        if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):
+            missing("bearing.supply.axial_position", f"{supply.axial_position:g}", ("0.5, 0 and 1",))
+            continue
+        section = film_section(case, place.geometry, place.mouths)
+        if case.cavitation(place.geometry) not in REMEMBERING:  # a film that makes its oil cannot run dry
+            section = ends_at_ambient(section)
+        for found in section_faults(section):
+            faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
+    if not faults and len(case.bearings) != 1 and not isinstance(case.rotor, TurbochargerRotor):
+        both = "one [bearing], which stands for both of a symmetric rotor"
+        missing("bearing", f"{len(case.bearings)} bearings", (both,))
+    return faults

@@ -1,0 +1,194 @@
+"""Clearances that change during a run: it ends where the new one belongs, keeps its oil, and says what it cannot do."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import frbcli
+from frbcli.case.load import load_case, load_case_text
+from frbcli.case.schema import Case
+from frbcli.errors import InputError
+from frbcli.rotor.excitation import speed_profile
+from frbcli.scene.clearance_steps import case_at
+from frbcli.scene.plan import make_plan
+from frbcli.scene.stretches import Stretch, make_stretches
+from frbcli.scene.system import make_system, run_up_profile
+from frbcli.solve.oil import net_flow
+from frbcli.solve.passengers import OIL
+from frbcli.solve.resting import resting_position
+from frbcli.solve.state import FINISHED, RUNNING, State
+from frbcli.solve.under_way import March
+
+Array = NDArray[np.float64]
+STEADY = ["speed.from=60Hz", "speed.to=60Hz", "speed.duration=0.4s", "rotor.unbalance=0 kg*m", "output.step=0.5ms"]
+RESTING = [*STEADY, "start.position=resting"]
+CELLS = ["accuracy.mesh=[4,32]", "bearing.supply.pressure=2bar"]
+
+
+def step_to(clearance: str, time: str = "0.1 s", key: str = "bearing") -> str:
+    return f'{key}.clearance_steps=[{{time="{time}",clearance="{clearance}"}}]'
+
+
+def under_way(case: Case) -> March:
+    plan = make_plan(case)
+    march = March(case, plan, make_stretches(case, plan), run_up_profile(case))
+    march.compile()
+    return march
+
+
+def finish(march: March) -> tuple[int, dict[str, Array]]:
+    status, found = RUNNING, []
+    while status == RUNNING:
+        status, signals = march.chunk()
+        found.append(signals)
+    return status, {name: np.concatenate([part[name] for part in found]) for name in found[0]}
+
+
+def test_profile_with_stops_is_the_same_profile() -> None:
+    profile = speed_profile([0.0, 2.0, 3.0], [0.0, 400.0, 400.0])
+    stopping = profile.with_stops([0.7, 2.0, 2.5, 3.0, 9.0])
+    assert stopping.times.tolist() == [0.0, 0.7, 2.0, 2.5, 3.0]
+    for t in (0.0, 0.3, 0.7, 1.9, 2.2, 2.8):
+        assert stopping.rotation(t) == pytest.approx(profile.rotation(t), rel=1e-14)
+    assert stopping.until(2.5).times.tolist() == [0.0, 0.7, 2.0, 2.5]
+    assert stopping.until(2.5).angle(2.3) == pytest.approx(profile.angle(2.3), rel=1e-14)
+
+
+@pytest.mark.parametrize("clearance", ["25 um", "60 um"])
+def test_a_rotor_comes_to_rest_where_the_new_clearance_has_it(clearance: str) -> None:
+    case = load_case("jeffcott", [*RESTING, "speed.duration=1.5s", step_to(clearance)])
+    after = make_system(case_at(case, 1.0), make_plan(case))
+    rests = np.hypot(*(after.rotor.journals[0] @ resting_position(after, 2.0 * math.pi * 60.0))) / after.clearances[0]
+    status, signals = finish(under_way(case))
+    eccentricity, time = signals["eccentricity"], signals["time_s"]
+    assert status == FINISHED
+    assert np.ptp(eccentricity[time < 0.1]) < 1e-4
+    assert abs(eccentricity[time < 0.1][0] - rests) > 0.1
+    assert eccentricity[-1] == pytest.approx(rests, abs=2e-4)
+
+
+def test_nothing_happens_when_the_clearance_stays(tmp_path: Path) -> None:
+    settings = ["speed.duration=1s", "speed.to=30Hz"]
+    plain = frbcli.runup(load_case("jeffcott", settings), tmp_path / "plain.h5")
+    stepped = frbcli.runup(load_case("jeffcott", [*settings, step_to("35 um", "0.4 s")]), tmp_path / "stepped.h5")
+    np.testing.assert_allclose(stepped["eccentricity"], plain["eccentricity"], atol=2e-4)
+    assert [(event["kind"], event["t_s"]) for event in stepped.events if event["kind"] == "clearance-step"] == [
+        ("clearance-step", 0.4)
+    ]
+
+
+@pytest.mark.parametrize("model", ["elrod", "two-phase"])
+@pytest.mark.parametrize("clearance", ["20 um", "100 um"])
+def test_oil_stays_or_leaves_through_the_ends(model: str, clearance: str) -> None:
+    case = load_case("jeffcott", [*RESTING, *CELLS, f"film.cavitation={model}", step_to(clearance)])
+    march, stretches = under_way(case), make_stretches(case, make_plan(case))
+    while march.time < 0.1:
+        before = march.snapshot()
+        status, _ = march.chunk()
+    assert status == RUNNING
+    after = march.snapshot()
+    assert own_oil(stretches[1], after) == pytest.approx(own_oil(stretches[0], before), rel=1e-12)
+    finish(march)
+    end = march.snapshot()
+    assert own_oil(stretches[1], end) == pytest.approx(own_oil(stretches[0], before), rel=1e-10)
+    defect = march.error_so_far()["oil_balance_relative"]
+    assert defect is not None
+    assert defect < 1e-6
+
+
+def own_oil(stretch: Stretch, snapshot: dict[str, Array]) -> float:
+    """m^3 in the free cells of the only film, less what has come in since the beginning."""
+    film, state = stretch.system.volumes[0], State(*(snapshot[name] for name in State._fields))
+    inside = float((film.grid.area * state.wet[OIL, 0])[~film.grid.fixed].sum())
+    return film.section.radius * film.section.width * film.section.clearance * (inside - net_flow(state, 0))
+
+
+@pytest.mark.parametrize("model", ["half-sommerfeld", "two-phase"])
+def test_a_shell_that_closes_upon_the_journal_is_contact(model: str, tmp_path: Path) -> None:
+    case = load_case("jeffcott", [*RESTING, f"film.cavitation={model}", "speed.from=10Hz", "speed.to=10Hz",
+                                  step_to("10 um")])  # fmt: skip
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    assert (run.status, run.t_end_s) == ("contact", 0.1)
+    assert [event["kind"] for event in run.events] == ["clearance-step", "contact"]
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("jeffcott", [step_to("45 um", "0.03 s")]),
+        ("jeffcott", ["film.coupling=co-simulation", "film.cavitation=two-phase", *CELLS, step_to("45 um", "0.03 s")]),
+        ("floating-ring", ["accuracy.mesh=[3,32]", step_to("60 um", "0.03 s", "bearing.outer")]),
+    ],
+    ids=["table", "co-simulation", "rings"],
+)
+def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(name: str, settings: list[str]) -> None:
+    course = ["speed.duration=0.06s", "speed.from=20 Hz", "speed.to=21Hz", "output.step=0.1ms"]
+    case = load_case(name, [*course, *settings])
+    whole = under_way(case)
+    status, signals = finish(whole)
+    assert status == FINISHED
+    for until in (0.02, 0.03, 0.04):
+        march, found = under_way(case), []
+        while march.time < until:
+            found.append(march.chunk()[1])
+        again = under_way(case)
+        again.restore(march.snapshot())
+        status, rest = finish(again)
+        assert status == FINISHED
+        for signal, values in signals.items():
+            joined = np.concatenate([*(part[signal] for part in found), rest[signal]])
+            np.testing.assert_array_equal(joined, values, err_msg=signal)
+
+
+def test_coupled_in_turn_is_coupled_at_once(tmp_path: Path) -> None:
+    """The journal jumps in the wider gap of a co-simulation as it does when rotor and film are solved together."""
+    settings = ["speed.duration=0.1s", "speed.from=20 Hz", "speed.to=21Hz", step_to("45 um", "0.05 s")]
+    both = [
+        frbcli.runup(load_case("jeffcott", [*settings, f"film.coupling={coupling}"]), tmp_path / f"{coupling}.h5")
+        for coupling in ("auto", "co-simulation")
+    ]
+    np.testing.assert_allclose(both[1]["eccentricity"], both[0]["eccentricity"], atol=5e-3)
+
+
+def test_run_down_steps_too(tmp_path: Path) -> None:
+    case = load_case("run-down", ["speed.duration=0.3s", "speed.to=60Hz", "speed.hold=0.1s", "speed.down_duration=0.2s",
+                                  step_to("30 um", "0.35 s")])  # fmt: skip
+    run = frbcli.rundown(case, tmp_path / "run.h5")
+    assert run.status == "finished"
+    (step,) = (event for event in run.events if event["kind"] == "clearance-step")
+    assert step["speed_Hz"] == pytest.approx(60.0)
+    assert run.references["clearance_m"] == 35e-6
+    assert run.references["clearance_step_1_s"] == 0.35
+
+
+def test_the_case_in_the_file_is_the_case(tmp_path: Path) -> None:
+    steps = 'bearing.clearance_steps=[{time="0.02s",clearance="30um"},{time="0.03s",clearance="33um"}]'
+    case = load_case("jeffcott", ["speed.duration=0.04s", "speed.to=30Hz", "output.step=1ms", steps])
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    assert load_case_text(run.case_text) == case
+    assert [step.clearance for step in case.bearings[0].clearance_steps] == [30e-6, 33e-6]  # type: ignore[union-attr]
+    assert [event["t_s"] for event in run.events if event["kind"] == "clearance-step"] == [0.02, 0.03]
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ([step_to("2 mm")], "no thin film"),
+        ([step_to("-2 um")], "greater than 0"),
+        (['bearing.clearance_steps=[{time="2s",clearance="30um"},{time="1s",clearance="33um"}]'], "not after the step"),
+        ([step_to("40 um"), "film.cavitation=two-phase", "film.two-phase.form=published"], "published two-phase form"),
+    ],
+)
+def test_what_cannot_be(settings: list[str], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        make_plan(load_case("jeffcott", settings))
+
+
+def test_no_effect_on_kinematic_tests() -> None:
+    with pytest.raises(InputError, match="no effect"):
+        load_case("bearing", [step_to("40 um")])
