@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.runs import OUTPUT, SECONDS, here
 from frbcli.cli.transient import live_lines, progress_line
 
@@ -99,17 +99,14 @@ def _cells(item: RungResult, several: bool, mark: str) -> tuple[str, ...]:
         mark,
         f"{rung.theory}\n{rung.coupling}" if several else rung.theory,
         "-" if rung.mesh is None else f"{rung.mesh[0]} x {rung.mesh[1]}",
-        _short(rung.tolerance),
+        short_number(rung.tolerance),
         f"{item.cpu_s:.3g}",
-        _short(error.eccentricity_largest),
-        _short(error.eccentricity_rms),
+        short_number(error.eccentricity_largest),
+        short_number(error.eccentricity_rms),
         "-" if math.isnan(error.onset_Hz) else f"{error.onset_Hz:+.2f}",
-        _short(error.force_relative),
+        short_number(error.force_relative),
     )
 
-
-def _short(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
 
 
 def _rung(rung: Rung) -> dict[str, Any]:

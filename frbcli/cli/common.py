@@ -59,6 +59,13 @@ class Terminal:
         if not self.quiet:
             click.echo(text, err=True)
 
+    def progress(self, line: str, show: Callable[[str], None] | None) -> None:
+        """How far a command is: by `show`, which moves a line where somebody watches, else a line of its own."""
+        if show is None:
+            self.say(line)
+        else:
+            show(line)
+
     def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
         """Print a table for people. rows: as many cells as columns each; cells are shown by str()."""
         if self.quiet:
@@ -78,6 +85,13 @@ class Terminal:
         """Print the command's one JSON document on stdout if --json was given; NaN and infinities become null."""
         if self.json:
             click.echo(json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def short_number(value: float | None) -> str:
+    """Two digits for a narrow column, e.g. 4.2e-3; "-" where there is none."""
+    if value is None or math.isnan(value):
+        return "-"
+    return f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
 
 
 class Names(click.ParamType[tuple[str, ...]]):

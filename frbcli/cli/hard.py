@@ -9,7 +9,7 @@ from typing import Any
 
 from frbcli.analysis.hard_cases import HardResult, HardResults, run_hard_cases
 from frbcli.case.hard import HardCase, hard_cases
-from frbcli.cli.common import Terminal
+from frbcli.cli.common import Terminal, short_number
 from frbcli.cli.transient import live_lines
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
@@ -67,10 +67,7 @@ def write_page(found: HardResults, page: Path, introduction: str) -> None:
 def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[HardResult, int, int], None]:
     def tell(result: HardResult, done: int, whole: int) -> None:
         line = f"{done}/{whole}  {result.hard.name}: {result.status}{'' if result.ok else ', NOT AS LISTED'}"
-        if show is None:
-            terminal.say(line)
-        else:
-            show(line)
+        terminal.progress(line, show)
 
     return tell
 
@@ -83,7 +80,7 @@ def _cause(result: HardResult) -> str:
 def _cells(result: HardResult) -> tuple[str, ...]:
     hard = result.hard
     end = result.status if result.status == hard.end else f"{result.status}, not {hard.end}"
-    return hard.name, hard.hard, end, _short(result.error), _short(result.reported), f"{result.cpu_s:.1f}"
+    return hard.name, hard.hard, end, short_number(result.error), short_number(result.reported), f"{result.cpu_s:.1f}"
 
 
 def _page_cells(result: HardResult) -> tuple[str, ...]:
@@ -92,9 +89,6 @@ def _page_cells(result: HardResult) -> tuple[str, ...]:
     notes = "; ".join(filter(None, (_cause(result), *result.problems))).replace("|", "\\|")
     return f"`{name}`", what, hard.end, result.status, error, stated, cpu_s, notes
 
-
-def _short(value: float | None) -> str:
-    return "-" if value is None else f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
 
 
 def _entry(hard: HardCase) -> dict[str, object]:

@@ -116,10 +116,7 @@ def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callabl
         computed = done - before[0]
         left = (time.monotonic() - began) / computed * (whole - done)
         line = f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {point.message or _result(point)}"
-        if show is None:
-            terminal.say(line)
-        else:
-            show(line)
+        terminal.progress(line, show)
 
     return tell
 
