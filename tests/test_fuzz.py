@@ -93,9 +93,15 @@ def cut(lines: list[str], chance: Chance) -> None:
     lines[at:] = [lines[at][: chance.randrange(len(lines[at]) + 1)]]
 
 
+def stepped(lines: list[str], chance: Chance) -> None:
+    steps = f'{{ time = "{chance.uniform(-1.0, 12.0):.2g} s", clearance = "{10.0 ** chance.uniform(0, 4):.2g} um" }}'
+    at = next((at for at, line in enumerate(lines) if line.startswith("clearance =")), 0)
+    lines.insert(at, f"clearance_steps = [{steps}{', ' + steps if chance.random() < 0.2 else ''}]")
+
+
 MUTATORS: list[Callable[[list[str], Chance], None]] = [
     drop_line, double_line, swap_lines, other_value, other_value, other_unit, other_number, other_number, other_key,
-    new_line, line_of_another_case, cut,
+    new_line, line_of_another_case, cut, stepped,
 ]  # fmt: skip
 
 

@@ -58,6 +58,8 @@ def _clearance_steps(
         time, clearance = number(step, "time", "s"), number(step, "clearance", "m")
         if diameter and clearance is not None and clearance >= THICKEST_FILM * diameter / 2:
             yield _too_thick((*path, *place, "clearance"), clearance, diameter)
+        elif diameter and clearance is not None:
+            yield from _lobes((*path, "lobes"), table(film, "lobes"), clearance, diameter)
         if time is not None and 0 < time <= before:
             problem = f"is {display(time, 's')}, not after the step before it."
             yield Breach((*path, *place, "time"), problem, "Write the steps in the order of their times.")
