@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.analysis.accuracy import AccuracyLadder, Rung, RungError, RungResult, accuracy, ladder, planned_rung
+from frbcli.analysis.accuracy import accuracy, ladder, planned_rung
+from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungError, RungResult
+from frbcli.analysis.stability import stability
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
@@ -72,9 +74,25 @@ def test_a_tighter_tolerance_and_a_finer_mesh_are_closer(found: AccuracyLadder) 
     assert by_rung[(6, 72), 1e-6].force_relative < by_rung[(2, 24), 1e-6].force_relative
 
 
+def test_thresholds_are_those_of_linear_stability() -> None:
+    """Of the whole case, whatever the run is cut to; the short bearing's is another one, the tolerance has none."""
+    course = ["speed.from=150 Hz", "speed.to=200 Hz", "speed.duration=0.01 s", "output.step=1e-4 s"]
+    quick = [*course, "accuracy.mesh=[4, 48]"]
+    case = load_case("jeffcott", quick)
+    found = accuracy(case, 0.005)
+    error = {(item.rung.theory, item.rung.mesh): item.error.threshold_Hz for item in found.ladder}
+    fine, short = (stability(load_case("jeffcott", [*quick, setting])).threshold
+                   for setting in ("accuracy.mesh=[8, 96]", "film.theory=short"))
+    assert fine is not None
+    assert short is not None
+    assert error["short", None] == pytest.approx(short.speed_Hz - fine.speed_Hz, abs=1e-6)
+    assert 0.0 < abs(error["finite", (4, 48)]) < abs(error["finite", (2, 24)])
+    assert len(error) == 4
+
+
 def made(cpu_s: float, error: float) -> RungResult:
     rung = Rung("finite", "half-sommerfeld", (1, 12), 1e-5, "dynamic-static")
-    return RungResult(rung, "finished", cpu_s, RungError(error, error, 1.0, np.nan, np.nan))
+    return RungResult(rung, "finished", cpu_s, RungError(error, error, 1.0, np.nan, np.nan, np.nan))
 
 
 def test_the_front_is_what_nothing_cheaper_beats(found: AccuracyLadder) -> None:

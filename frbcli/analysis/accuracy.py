@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
+from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungError, RungResult
 from frbcli.analysis.differences import difference, onset_speed
+from frbcli.analysis.stability import stability
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
@@ -23,106 +25,12 @@ from frbcli.scene.system import make_system
 from frbcli.solve.run import runup
 from frbcli.solve.under_way import Progress
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 MESHES = (0.5, 1.0, 1.5)  # of the plan's elements or cells in each direction
 TOLERANCES = (100.0, 10.0, 1.0, 0.1)  # of the plan's
 LOOSEST = 0.1  # tolerance that a case may have
 REFERENCE_MESH, REFERENCE_TOLERANCE = 2.0, 0.02
 COARSER_MESH, LOOSER = 1.5, 2.0  # what the reference is held against: of the plan's elements, of its own tolerance
 INTERRUPTED = "interrupted"
-
-
-@dataclass(frozen=True)
-class Rung:
-    """One way to compute the run. mesh: elements or cells (along, around), None for the short-bearing theory."""
-
-    theory: str
-    cavitation: str
-    mesh: tuple[int, int] | None
-    tolerance: float
-    coupling: str
-
-    @property
-    def name(self) -> str:
-        """For tables and progress."""
-        mesh = "" if self.mesh is None else f" {self.mesh[0]} x {self.mesh[1]}"
-        return f"{self.theory}{mesh}, {self.tolerance:.0e}, {self.coupling}".replace("e-0", "e-")
-
-
-@dataclass(frozen=True)
-class RungError:
-    """Against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s, where a
-    whirl begins to grow in either run, or it touches its shell or ends; onset_Hz: difference of the rotor speeds at
-    which the whirl begins, NaN if either has none; force_relative: of the film forces at states of the run, against a
-    finer mesh."""
-
-    eccentricity_largest: float
-    eccentricity_rms: float
-    until_s: float
-    onset_Hz: float
-    force_relative: float
-
-
-@dataclass(frozen=True)
-class RungResult:
-    """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: what the program
-    chooses on its own; signals: largest error of each signal, see Difference; stated: what the run itself says of its
-    error; work_s: CPU time by the count of its film solves and the table of scene/cost.py, whatever else the machine
-    does."""
-
-    rung: Rung
-    status: str
-    cpu_s: float
-    error: RungError
-    planned: bool = False
-    signals: Mapping[str, float] = field(default_factory=dict)
-    stated: Mapping[str, float | None] = field(default_factory=dict)
-    work_s: float = math.nan
-
-
-@dataclass(frozen=True)
-class AccuracyLadder:
-    """until_s: how long the runs are; reference: its error is how far a run on the rung `coarser` is from it; ladder:
-    in the order of their cost; complete: not interrupted."""
-
-    case: Case
-    until_s: float
-    reference: RungResult
-    coarser: Rung
-    ladder: tuple[RungResult, ...]
-    complete: bool = True
-
-    @property
-    def front(self) -> tuple[RungResult, ...]:
-        """Pareto's: the rungs that nothing cheaper comes closer than."""
-        best, found = math.inf, []
-        for result in sorted(self.ladder, key=lambda item: item.cpu_s):
-            if result.error.eccentricity_largest < best:
-                best = result.error.eccentricity_largest
-                found.append(result)
-        return tuple(found)
-
-    def above_front(self, quiet: bool = False) -> float:
-        """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
-        quiet: by the counted work in place of the measured CPU time."""
-        planned = next(item for item in self.ladder if item.planned)
-        error = planned.error.eccentricity_largest
-        costs = {item.rung: item.work_s if quiet else item.cpu_s for item in self.ladder}
-        as_close = [item.rung for item in self.ladder if item.error.eccentricity_largest <= error]
-        return costs[planned.rung] / min(costs[rung] for rung in as_close)
-
-    def to_pandas(self) -> pd.DataFrame:
-        """One row per rung."""
-        import pandas as pd
-
-        return pd.DataFrame([
-            {**vars(item.rung), "status": item.status, "cpu_s": item.cpu_s, **vars(item.error),
-             "stated": item.stated.get("eccentricity"), "work_s": item.work_s,
-             "planned": item.planned, "on_front": item in self.front}
-            for item in self.ladder
-        ])
 
 
 Observer = Callable[[Rung, Progress], None]
@@ -153,14 +61,16 @@ def accuracy(
             watch = None if observe is None else lambda progress: observe(rung, progress)
             return runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch)
 
+        thresholds = _thresholds(case, [fine, coarser, *rungs])
+        result = partial(_result, thresholds)
         exact = run(fine)
-        reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
+        reference = result(fine, exact, coarser, run(coarser), _tabulating(short, fine), forces_of=exact)
         found = []
         for rung in rungs:
             one = run(rung)
             if one.status == INTERRUPTED:
                 break
-            found.append(_result(rung, one, exact, _tabulating(short, rung), rung == own))
+            found.append(result(rung, one, fine, exact, _tabulating(short, rung), rung == own))
     found.sort(key=lambda item: item.cpu_s)
     return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), len(found) == len(rungs))
 
@@ -197,15 +107,46 @@ def _mesh(own: Rung, factor: float) -> tuple[int, int]:
 
 
 def _result(
-    rung: Rung, run: Run, reference: Run, cpu_s: float, planned: bool = False, forces_of: Run | None = None
+    thresholds: Mapping[Film, float],
+    rung: Rung,
+    run: Run,
+    against: Rung,
+    reference: Run,
+    cpu_s: float,
+    planned: bool = False,
+    forces_of: Run | None = None,
 ) -> RungResult:
     apart = difference(run, reference)
     force = (forces_of or run).error["film_force_relative"]
     onset = onset_speed(run) - onset_speed(reference)
-    error = RungError(apart.largest, apart.rms, apart.until_s, onset, math.nan if force is None else float(force))
+    threshold = thresholds[_film(rung)] - thresholds[_film(against)]
+    error = RungError(
+        apart.largest, apart.rms, apart.until_s, onset, threshold, math.nan if force is None else float(force)
+    )
     work = 1e-6 * float(run.cost["film_solves"]) * solve_us(make_plan(load_case_text(run.case_text)))
     march = float(run.cost["cpu_s"])
     return RungResult(rung, run.status, cpu_s + march, error, planned, apart.signals, run.error, work)
+
+
+Film = tuple[str, tuple[int, int] | None]
+
+
+def _film(rung: Rung) -> Film:
+    """What its linear stability depends on."""
+    return rung.theory, rung.mesh
+
+
+def _thresholds(case: Case, rungs: Sequence[Rung]) -> dict[Film, float]:
+    """Rotor speeds in Hz from which on a whirl grows, by linear stability over all speeds of the case; NaN without one,
+    and for films with cells: those with oil of their own have none, the others take minutes."""
+    return {film: _threshold(_with_rung(case, rung)) for film, rung in {_film(rung): rung for rung in rungs}.items()}
+
+
+def _threshold(case: Case) -> float:
+    if make_plan(case).cells is not None:
+        return math.nan
+    found = stability(case).threshold
+    return math.nan if found is None else found.speed_Hz
 
 
 def _tabulating(case: Case, rung: Rung) -> float:

@@ -13,14 +13,15 @@ from frbcli.cli.runs import OUTPUT, SECONDS, here
 from frbcli.cli.transient import live_lines, progress_line
 
 if TYPE_CHECKING:
-    from frbcli.analysis.accuracy import AccuracyLadder, Rung, RungError, RungResult
+    from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungError, RungResult
     from frbcli.case.schema import Case
 
-COLUMNS = ("", "theory", "mesh", "tol.", "CPU", "max", "rms", "onset", "force")
+COLUMNS = ("", "theory", "mesh", "tol.", "CPU", "max", "rms", "onset", "thr.", "force")
 EXPLANATION = (
     "* choice of the plan, + on Pareto's front; tol.: local error of a step; CPU: time\n"
     "in s; max, rms: error of the eccentricity; onset: error of the rotor speed at\n"
-    "which the whirl begins in Hz; force: relative error of the film forces."
+    "which the whirl begins in Hz, thr.: of that from which on it grows by linear\n"
+    "stability; force: relative error of the film forces."
 )
 INTERRUPTED = 130
 
@@ -103,10 +104,14 @@ def _cells(item: RungResult, several: bool, mark: str) -> tuple[str, ...]:
         f"{item.cpu_s:.3g}",
         short_number(error.eccentricity_largest),
         short_number(error.eccentricity_rms),
-        "-" if math.isnan(error.onset_Hz) else f"{error.onset_Hz:+.2f}",
+        _difference(error.onset_Hz),
+        _difference(error.threshold_Hz),
         short_number(error.force_relative),
     )
 
+
+def _difference(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:+.2f}"
 
 
 def _rung(rung: Rung) -> dict[str, Any]:
@@ -130,5 +135,6 @@ def _error(error: RungError) -> dict[str, Any]:
         "eccentricity_rms": error.eccentricity_rms,
         "window_s": [0.0, error.until_s],
         "onset_speed_Hz": error.onset_Hz,
+        "threshold_Hz": error.threshold_Hz,
         "film_force_relative": error.force_relative,
     }

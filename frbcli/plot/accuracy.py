@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.accuracy import AccuracyLadder, Rung, RungResult
+from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungResult
 from frbcli.plot.signals import CAVITATION_NAMES
 from frbcli.plot.style import BLACK, COLOURS, GREY, legend_below, new_figure, styled
 

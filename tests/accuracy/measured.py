@@ -7,7 +7,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from frbcli.analysis.accuracy import RungResult, accuracy
+from frbcli.analysis.accuracy import accuracy
+from frbcli.analysis.accuracy_ladder import RungResult
 from frbcli.case.load import load_case
 from frbcli.plot.accuracy import accuracy_figure
 from frbcli.plot.style import save_figure

@@ -1,0 +1,105 @@
+"""What a ladder of speed against error holds: ways to compute a run, what each costs and errs, Pareto's front."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from frbcli.case.schema import Case
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One way to compute the run. mesh: elements or cells (along, around), None for the short-bearing theory."""
+
+    theory: str
+    cavitation: str
+    mesh: tuple[int, int] | None
+    tolerance: float
+    coupling: str
+
+    @property
+    def name(self) -> str:
+        """For tables and progress."""
+        mesh = "" if self.mesh is None else f" {self.mesh[0]} x {self.mesh[1]}"
+        return f"{self.theory}{mesh}, {self.tolerance:.0e}, {self.coupling}".replace("e-0", "e-")
+
+
+@dataclass(frozen=True)
+class RungError:
+    """Against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s, where a
+    whirl begins to grow in either run, or it touches its shell or ends; onset_Hz: difference of the rotor speeds at
+    which the whirl begins, threshold_Hz: of those from which on it grows by linear stability, NaN if either has none;
+    force_relative: of the film forces at states of the run, against a finer mesh."""
+
+    eccentricity_largest: float
+    eccentricity_rms: float
+    until_s: float
+    onset_Hz: float
+    threshold_Hz: float
+    force_relative: float
+
+
+@dataclass(frozen=True)
+class RungResult:
+    """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: what the program
+    chooses on its own; signals: largest error of each signal, see Difference; stated: what the run itself says of its
+    error; work_s: CPU time by the count of its film solves and the table of scene/cost.py, whatever else the machine
+    does."""
+
+    rung: Rung
+    status: str
+    cpu_s: float
+    error: RungError
+    planned: bool = False
+    signals: Mapping[str, float] = field(default_factory=dict)
+    stated: Mapping[str, float | None] = field(default_factory=dict)
+    work_s: float = math.nan
+
+
+@dataclass(frozen=True)
+class AccuracyLadder:
+    """until_s: how long the runs are; reference: its error is how far a run on the rung `coarser` is from it; ladder:
+    in the order of their cost; complete: not interrupted."""
+
+    case: Case
+    until_s: float
+    reference: RungResult
+    coarser: Rung
+    ladder: tuple[RungResult, ...]
+    complete: bool = True
+
+    @property
+    def front(self) -> tuple[RungResult, ...]:
+        """Pareto's: the rungs that nothing cheaper comes closer than."""
+        best, found = math.inf, []
+        for result in sorted(self.ladder, key=lambda item: item.cpu_s):
+            if result.error.eccentricity_largest < best:
+                best = result.error.eccentricity_largest
+                found.append(result)
+        return tuple(found)
+
+    def above_front(self, quiet: bool = False) -> float:
+        """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
+        quiet: by the counted work in place of the measured CPU time."""
+        planned = next(item for item in self.ladder if item.planned)
+        error = planned.error.eccentricity_largest
+        costs = {item.rung: item.work_s if quiet else item.cpu_s for item in self.ladder}
+        as_close = [item.rung for item in self.ladder if item.error.eccentricity_largest <= error]
+        return costs[planned.rung] / min(costs[rung] for rung in as_close)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per rung."""
+        import pandas as pd
+
+        return pd.DataFrame([
+            {**vars(item.rung), "status": item.status, "cpu_s": item.cpu_s, **vars(item.error),
+             "stated": item.stated.get("eccentricity"), "work_s": item.work_s,
+             "planned": item.planned, "on_front": item in self.front}
+            for item in self.ladder
+        ])
