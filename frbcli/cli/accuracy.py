@@ -16,14 +16,16 @@ if TYPE_CHECKING:
     from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungError, RungResult
     from frbcli.case.schema import Case
 
-COLUMNS = ("", "theory", "mesh", "tol.", "CPU", "max", "rms", "onset", "thr.", "force")
+COLUMNS = ("", "film", "tol.", "CPU", "max", "rms", "onset", "thr.", "force")
 EXPLANATION = (
-    "* choice of the plan, + on Pareto's front; tol.: local error of a step; CPU: time\n"
-    "in s; max, rms: error of the eccentricity; onset: error of the rotor speed at\n"
-    "which the whirl begins in Hz, thr.: of that from which on it grows by linear\n"
-    "stability; force: relative error of the film forces."
+    "* choice of the plan, + on Pareto's front; film: short bearing, or elements of a\n"
+    "finite one; tol.: local error of a step; CPU: time in s; max, rms: error of the\n"
+    "eccentricity; onset: error of the rotor speed at which the whirl begins in Hz,\n"
+    "thr.: of that from which on it grows by linear stability; force: relative error\n"
+    "of the film forces."
 )
 INTERRUPTED = 130
+RESOLVED = 0.01  # Hz; two decimals tell no more
 
 
 @click.command()
@@ -79,12 +81,13 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     terminal.say(EXPLANATION)
     reference, change = found.reference.rung, found.reference.error
     terminal.say(
-        f"reference: {reference.name}; on a coarser mesh and with twice the tolerance it\n"
-        f"changes by {change.eccentricity_largest:.1e} (max) and {change.eccentricity_rms:.1e} (rms)."
+        f"reference: {reference.name}; on a coarser mesh and with\n"
+        f"twice the tolerance it changes by {short_number(change.eccentricity_largest)} (max) and "
+        f"{short_number(change.eccentricity_rms)} (rms)."
     )
     for item in (item for item in found.ladder if item.planned):
         stated = item.stated.get("eccentricity")
-        told = "" if stated is None else f", its error is stated as {stated:.1e}"
+        told = "" if stated is None else f", its error is stated as {short_number(stated)}"
         terminal.say(f"the choice of the plan costs {found.above_front():.2g} times the front{told}.")
     ended = {item.error.until_s for item in found.ladder} - {found.until_s}
     if ended:
@@ -96,11 +99,11 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
 
 def _cells(item: RungResult, several: bool, mark: str) -> tuple[str, ...]:
     rung, error = item.rung, item.error
+    film = rung.theory if rung.mesh is None else f"{rung.mesh[0]}x{rung.mesh[1]}"
     return (
         mark,
-        f"{rung.theory}\n{rung.coupling}" if several else rung.theory,
-        "-" if rung.mesh is None else f"{rung.mesh[0]} x {rung.mesh[1]}",
-        short_number(rung.tolerance),
+        "\n".join((film, rung.coupling.replace("-", "-\n"))) if several else film,
+        short_number(rung.tolerance).replace(".0e", "e"),
         f"{item.cpu_s:.3g}",
         short_number(error.eccentricity_largest),
         short_number(error.eccentricity_rms),
@@ -111,7 +114,9 @@ def _cells(item: RungResult, several: bool, mark: str) -> tuple[str, ...]:
 
 
 def _difference(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:+.2f}"
+    if math.isnan(value) or abs(value) >= RESOLVED:
+        return "-" if math.isnan(value) else f"{value:+.2f}"
+    return short_number(value)
 
 
 def _rung(rung: Rung) -> dict[str, Any]:
