@@ -15,44 +15,26 @@ from numba import njit
 
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.dense import solve_dense
-from frbcli.solve.march import ELASTIC_LIMIT, ERROR_MEMORY, INVERSE_LASTS, LAG_SWEEPS
-from frbcli.solve.micro_step import SMALLEST_STEP, films_follow, parabola
+from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
+from frbcli.solve.micro_step import films_follow, parabola
 from frbcli.solve.passengers import make_work, write_oil
 from frbcli.solve.ring_spin import spin_up
-from frbcli.solve.stage import (
-    FORCE,
-    FREE,
-    JOURNAL_ROWS,
-    LATE,
-    STAGE_ROWS,
-    X_0,
-    U,
-    V,
-    accelerate,
-    norm,
-    prepare,
-    start_stage,
+from frbcli.solve.scratch import make_scratch
+from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, start_stage
+from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK
+from frbcli.solve.step import (
+    SMALLEST_STEP,
+    begin_stages,
+    begin_step,
+    choose_next,
+    count_step,
+    displace,
+    end_of_step,
+    local_error,
+    move_on,
+    reject,
+    write_outputs,
 )
-from frbcli.solve.state import (
-    CONTACT,
-    ERROR_BEFORE,
-    ERROR_LARGEST,
-    ERROR_NOW,
-    FINISHED,
-    INVERSE_G,
-    INVERSE_SPEED,
-    LARGEST_EPS,
-    PIECE,
-    REJECTED,
-    RUNNING,
-    STEP,
-    STEP_BEFORE,
-    STEPS,
-    STUCK,
-    TIME,
-    TURNS,
-)
-from frbcli.solve.step import SAFETY, local_error, step_after, step_to_take, write_outputs
 
 GROWTH = 1.25  # of a macro step at most: it cannot be taken back
 SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
@@ -77,6 +59,71 @@ def _tell(pick, spins, clearances, q, v, motion):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True, error_model="numpy")
+def _responses(rotor, pick):  # type: ignore[no-untyped-def]
+    """(n, m + rings) what forces on the journals and torques on the rings do to the accelerations."""
+    m, n = pick.shape
+    inertia, responses = rotor.mass.copy(), np.zeros((n, m + rotor.spins.shape[0]))
+    for k in range(m):
+        for i in range(n):
+            responses[i, k] = pick[k, i] * rotor.multiplicity[k // 2]
+    for r in range(rotor.spins.shape[0]):
+        responses[rotor.spins[r], m + r] = 1.0
+    solve_dense(inertia, responses)
+    return responses
+
+
+@njit(cache=True, error_model="numpy")
+def _extrapolate(past, t, lagrange, given, film):  # type: ignore[no-untyped-def]
+    """given (m + rings,) <- forces of the films and torques on the rings at the time t by the parabola; FORCE too."""
+    parabola(past[:, 0], t, lagrange)
+    first = past.shape[1] - given.shape[0]
+    for k in range(given.shape[0]):
+        given[k] = 0.0
+        for p in range(HISTORY):
+            given[k] += lagrange[p] * past[p, first + k]
+    for k in range(film.shape[1]):
+        film[FORCE, k] = given[k]
+
+
+@njit(cache=True, error_model="numpy")
+def _recall(past, three, motions):  # type: ignore[no-untyped-def]
+    """three, motions <- times and motions of the last two macro times."""
+    for p in range(2):
+        three[p] = past[1 + p, 0]
+        for k in range(motions.shape[1]):
+            motions[p, k] = past[1 + p, 1 + k]
+
+
+@njit(cache=True, error_model="numpy")
+def _remember(past, t_new, motion, film, torque, given):  # type: ignore[no-untyped-def]
+    """past moves on to t_new; given <- what the extrapolated forces and torques were off by."""
+    told, m = motion.shape[0], film.shape[1]
+    past[0], past[1] = past[1], past[2]
+    past[2, 0] = t_new
+    for k in range(told):
+        past[2, 1 + k] = motion[k]
+    for k in range(given.shape[0]):
+        past[2, 1 + told + k] = film[FORCE, k] if k < m else torque[k - m]
+        given[k] = past[2, 1 + told + k] - given[k]
+
+
+@njit(cache=True, error_model="numpy")
+def _amend(responses, compliance, clearances, given, a):  # type: ignore[no-untyped-def]
+    """Make the accelerations a (n,) consistent with forces that were off by `given`. Returns the largest velocity of a
+    journal, over its clearance, that they were off by in a stage."""
+    for i in range(a.shape[0]):
+        for k in range(given.shape[0]):
+            a[i] += responses[i, k] * given[k]
+    off = 0.0
+    for k in range(compliance.shape[0]):
+        rate = 0.0
+        for j in range(compliance.shape[0]):
+            rate += compliance[k, j] * given[j]
+        off = max(off, abs(rate) / clearances[k // 2])
+    return off
+
+
+@njit(cache=True, error_model="numpy")
 def advance_in_turn(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil):  # type: ignore[no-untyped-def]
     """As march.advance, for rotor and films that are solved apart; the state comes from cosimulation.in_turn.
 
@@ -91,98 +138,52 @@ def advance_in_turn(rotor, films, tableau, control, state, budget, out_q, out_v,
     weights, moments, defect = tableau.stage, tableau.times, tableau.defect
     tolerance, contact_at, stiffness = control.tolerance, control.contact_eccentricity, control.contact_stiffness
     n, m, stages, rings = q.shape[0], 2 * clearances.shape[0], moments.shape[0], spins.shape[0]
-    gamma, last, order, told = weights[1, 1], stages - 1, float(tableau.error_order), 2 * m + 2 * rings
-    limit = ELASTIC_LIMIT if stiffness > 0.0 else 1.0
-
-    pick, inertia, pull = np.empty((m, n)), rotor.mass.copy(), np.zeros((n, m + rings))
-    for k in range(m):
-        pick[k] = rotor.journals[k // 2, k % 2]
-        for i in range(n):
-            pull[i, k] = pick[k, i] * rotor.multiplicity[k // 2]
-    for r in range(rings):
-        pull[spins[r], m + r] = 1.0
-    solve_dense(inertia, pull)  # what a force or a torque does to the accelerations
-    products, loads = np.zeros((3, n, n)), np.zeros((3, n))
-    spread, compliance = np.zeros((n, m)), np.zeros((m, m))
-    at, film, unused_at = np.zeros((STAGE_ROWS, n)), np.zeros((JOURNAL_ROWS, m)), np.zeros((STAGE_ROWS, n))
-    stage_v, stage_a, unused = np.zeros((n, stages)), np.zeros((n, stages)), np.zeros((n, 1))
-    q_new, lagrange, three, motions = np.zeros(n), np.zeros(3), np.zeros(3), np.zeros((3, told))
-    bodies, turned, torque, given = np.zeros(1 + rings), np.zeros(1 + rings), np.zeros(rings), np.zeros(m + rings)
-    inverse_g, inverse_speed = numbers[INVERSE_G], numbers[INVERSE_SPEED]
-    if inverse_g > 0.0:
-        prepare(rotor, pick, inverse_g, inverse_speed, products, loads, spread, compliance)
+    gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
+    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = make_scratch(rotor, numbers, stages)
+    responses, given, lagrange, q_new = _responses(rotor, pick), np.zeros(m + rings), np.zeros(3), np.zeros(n)
+    three, motions = np.zeros(3), np.zeros((3, 2 * m + 2 * rings))
+    bodies, turned, torque = np.zeros(1 + rings), np.zeros(1 + rings), np.zeros(rings)
+    unused_at, unused = np.zeros((STAGE_ROWS, n)), np.zeros((n, 1))
     written, done = 0, 0
 
     while done < budget:
-        t, piece = numbers[TIME], int(numbers[PIECE])
-        if t >= times[piece + 1] and piece + 2 < times.shape[0]:
-            piece += 1
-            numbers[PIECE] = piece
-        if t >= times[-1]:
-            return FINISHED, written
-        _, speed, _ = rotation(times, speeds, angles, piece, t)
-        h, step = step_to_take(
-            numbers[STEP], numbers[STEP_BEFORE], times[piece + 1] - t, speed, control.steps_per_revolution,
-            control.longest_step)
-        if written + int(step / control.output_step) + 2 > out_q.shape[0]:
-            return RUNNING, written
-
-        for i in range(n):
-            stage_v[i, 0], stage_a[i, 0] = v[i], a[i]
-        g = gamma * step
+        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
+        if step == 0.0:
+            return status, written
+        begin_stages(v, a, stage_v, stage_a)
+        g, speed = gamma * step, 0.0
         for s in range(1, stages):
             t_s = t + moments[s] * step
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
-            if g != inverse_g or (gyroscopic and abs(speed - inverse_speed) > INVERSE_LASTS * abs(speed)):
-                inverse_g, inverse_speed = g, speed
-                numbers[INVERSE_G], numbers[INVERSE_SPEED] = g, speed
-                prepare(rotor, pick, g, speed, products, loads, spread, compliance)
+            if outdated(numbers, g, speed, gyroscopic):
+                prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance)
             start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle,
                         gyroscopic, at, film)
-            parabola(past[:, 0], t_s, lagrange)
-            for k in range(m + rings):
-                given[k] = 0.0
-                for p in range(3):
-                    given[k] += lagrange[p] * past[p, 1 + told + k]
-            for k in range(m):
-                film[FORCE, k] = given[k]
-            lag = g * (speed - inverse_speed) if gyroscopic else 0.0
-            for i in range(n):
-                at[LATE, i] = at[FREE, i]
+            _extrapolate(past, t_s, lagrange, given, film)
+            lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
                 accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a)
             for r in range(rings):
-                stage_a[spins[r], s] = given[m + r] / rotor.mass[spins[r], spins[r]]
-                stage_v[spins[r], s] = at[V, spins[r]] + g * stage_a[spins[r], s]
+                i = spins[r]
+                stage_a[i, s] = given[m + r] / rotor.mass[i, i]
+                stage_v[i, s] = at[V, i] + g * stage_a[i, s]
         error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance
         if not error <= 1.0:  # not a number counts as too large
-            numbers[REJECTED] += 1
-            shrink = SAFETY * error ** (-1.0 / order) if math.isfinite(error) else 0.0
-            numbers[STEP] = step * max(0.2, shrink)
-            if numbers[STEP] < SMALLEST_STEP:
-                return STUCK, written
-            continue
-        t_new = t + step
-        if t_new >= times[piece + 1] * (1.0 - 1e-15):
-            t_new = times[piece + 1]
-        for i in range(n):
-            total = 0.0
-            for j in range(stages):
-                total += weights[last, j] * stage_v[i, j]
-            q_new[i] = q[i] + step * total
+            if reject(numbers, step, error, order):
+                continue
+            return STUCK, written
 
-        for p in range(2):
-            three[p] = past[1 + p, 0]
-            for k in range(told):
-                motions[p, k] = past[1 + p, 1 + k]
+        t_new = end_of_step(t, step, times[piece + 1])
+        displace(weights[stages - 1], stage_v, step, q, q_new)
+        _recall(past, three, motions)
         three[2] = t_new
-        largest = _tell(pick, spins, clearances, q_new, stage_v[:, last], motions[2])
+        largest = _tell(pick, spins, clearances, q_new, stage_v[:, stages - 1], motions[2])
         if not largest < limit:  # the films cannot be asked there any more
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
         if not films_follow(
             films, work, wet, flows, numbers, weights, moments, defect, order, tolerance, times, speeds, angles, piece,
             rotor.turning, clearances, contact_at, stiffness, motions, three, film, bodies, turned
-        ):
+        ):  # fmt: skip
             return STUCK, written
         if rings > 0:  # only its torques are wanted, with the journals where they are now
             for k in range(m):
@@ -192,37 +193,15 @@ def advance_in_turn(rotor, films, tableau, control, state, budget, out_q, out_v,
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
         write_oil(films, work, out_oil, before, written)
-        past[0], past[1] = past[1], past[2]
-        past[2, 0] = t_new
-        for k in range(told):
-            past[2, 1 + k] = motions[2, k]
-        for k in range(m + rings):
-            past[2, 1 + told + k] = film[FORCE, k] if k < m else torque[k - m]
-            given[k] = past[2, 1 + told + k] - given[k]  # what the extrapolation to t_new was off by
-        for i in range(n):
-            q[i], v[i], a[i] = q_new[i], stage_v[i, last], stage_a[i, last]
-            for k in range(m + rings):
-                a[i] += pull[i, k] * given[k]
-        off = 0.0
-        for k in range(m):
-            rate = 0.0
-            for j in range(m):
-                rate += compliance[k, j] * given[j]
-            off = max(off, abs(rate) / clearances[k // 2])
-        drift = error * tolerance + off * step
-        error += off / (abs(speed) + SLOWEST) / tolerance
-        numbers[TIME] = t_new
-        numbers[STEPS] += 1
-        numbers[TURNS] += abs(speed) * step / (2.0 * math.pi)
-        numbers[ERROR_NOW] = numbers[ERROR_NOW] * math.exp(-step / ERROR_MEMORY) + drift
-        numbers[ERROR_LARGEST] = max(numbers[ERROR_LARGEST], numbers[ERROR_NOW])
-        numbers[LARGEST_EPS] = max(numbers[LARGEST_EPS], largest)
+        move_on(q, v, a, q_new, stage_v, stage_a)
+        _remember(past, t_new, motions[2], film, torque, given)
+        off = _amend(responses, compliance, clearances, given, a)
         done += 1
-        if stiffness == 0.0 and largest >= contact_at:
-            return CONTACT, written
-        numbers[STEP] = min(step_after(h, error, numbers[ERROR_BEFORE], order), GROWTH * h)
-        numbers[ERROR_BEFORE] = error
-        numbers[STEP_BEFORE] = h
+        status = count_step(numbers, control, t_new, step, speed, error * tolerance + off * step, largest)
+        if status != RUNNING:
+            return status, written
+        error += off / (abs(speed) + SLOWEST) / tolerance
+        choose_next(numbers, h, error, order, GROWTH * h)
         if numbers[STEP] < SMALLEST_STEP:
             return STUCK, written
     return RUNNING, written

@@ -1,6 +1,6 @@
 """The time loop: rotor and films advanced together by an implicit Runge-Kutta method with error control. Compiled.
 
-A step is a few stages (stage.py), an error estimate and dense output (step.py). All that it is given and carries along
+A step is a few stages (stage.py) and what all loops do around them (step.py). All that it is given and carries along
 is in state.py, the methods in tableau.py.
 """
 
@@ -12,57 +12,42 @@ import numpy as np
 from numba import njit
 
 from frbcli.rotor.excitation import rotation
+from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.passengers import accept_films, begin_stage, make_work, write_oil
-from frbcli.solve.ring_spin import set_speeds, spin_up
+from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
+from frbcli.solve.scratch import make_scratch
 from frbcli.solve.stage import (
-    FREE,
-    JOURNAL_ROWS,
-    LATE,
-    STAGE_ROWS,
-    Q,
+    NEWTON_LIMIT,
     U,
-    V,
     accelerate,
+    begin_lag,
     correct,
     forces,
     guess,
+    limit_of,
     norm,
-    prepare,
     start_stage,
 )
-from frbcli.solve.state import (
-    CONTACT,
-    ERROR_BEFORE,
-    ERROR_LARGEST,
-    ERROR_NOW,
-    FINISHED,
-    HISTORY,
-    INVERSE_G,
-    INVERSE_SPEED,
-    LARGEST_EPS,
-    PIECE,
-    REJECTED,
-    RUNNING,
-    SOLVES,
-    STEP,
-    STEP_BEFORE,
-    STEP_DONE,
-    STEPS,
-    STUCK,
-    TIME,
-    TURNS,
+from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK
+from frbcli.solve.step import ERROR_MEMORY as ERROR_MEMORY
+from frbcli.solve.step import (
+    UNSOLVED,
+    begin_past,
+    begin_stages,
+    begin_step,
+    choose_next,
+    count_step,
+    displace,
+    end_of_step,
+    keep_past,
+    local_error,
+    move_on,
+    reject,
+    write_outputs,
 )
-from frbcli.solve.step import SAFETY, local_error, step_after, step_to_take, write_outputs
 
-NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
-CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer
+CELL_LIMIT = 24  # as NEWTON_LIMIT, for films with cells, whose kinks take longer
 NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
-SMALLEST_STEP = 1e-12  # s
-ERROR_MEMORY = 0.1  # s: how long a local error is taken to live on in a damped rotor
-UNSOLVED = 1e3  # stands for the error of a step that Newton's method did not solve
-ELASTIC_LIMIT = 1.5  # eccentricity that no journal exceeds even under elastic contact
-INVERSE_LASTS = 0.01  # relative change of the speed over which a gyroscopic rotor keeps its inverse
-LAG_SWEEPS = 2  # iterations that bring the rest of the gyroscopic term below 1e-8: each gains a factor of 1000
 
 
 @njit(cache=True, error_model="numpy")
@@ -95,69 +80,34 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil
     weights, moments, defect, three = tableau.stage, tableau.times, tableau.defect, tableau.guess
     tolerance, contact_at, contact_stiffness = (
         control.tolerance, control.contact_eccentricity, control.contact_stiffness)
-    linearised = control.linearised
     n, m, stages = q.shape[0], 2 * clearances.shape[0], moments.shape[0]
-    gamma, last, order = weights[1, 1], stages - 1, float(tableau.error_order)
-    # Under elastic contact the shell gives way; without, a journal beyond the shell is no state at all.
-    limit = ELASTIC_LIMIT if contact_stiffness > 0.0 else 1.0
-
-    pick = np.empty((m, n))
-    for k in range(m):
-        pick[k] = rotor.journals[k // 2, k % 2]
-    products, loads = np.zeros((3, n, n)), np.zeros((3, n))
-    spread, compliance, newton = np.zeros((n, m)), np.zeros((m, m)), np.zeros((m, m))
-    at, film = np.zeros((STAGE_ROWS, n)), np.zeros((JOURNAL_ROWS, m))
-    stage_v, stage_a = np.zeros((n, stages)), np.zeros((n, stages))
-    past, q_new = np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n)
+    gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
+    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = make_scratch(rotor, numbers, stages)
+    newton, past, q_new = np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n)
     bodies, angles_now, torque = np.zeros(1 + spins.shape[0]), np.zeros(1 + spins.shape[0]), np.zeros(spins.shape[0])
     has_cells = wet.shape[1] > 0
-    inverse_g, inverse_speed = numbers[INVERSE_G], numbers[INVERSE_SPEED]
-    if inverse_g > 0.0:
-        prepare(rotor, pick, inverse_g, inverse_speed, products, loads, spread, compliance)
     written, done = 0, 0
 
     while done < budget:
-        t, piece = numbers[TIME], int(numbers[PIECE])
-        if t >= times[piece + 1] and piece + 2 < times.shape[0]:
-            piece += 1
-            numbers[PIECE] = piece
-        if t >= times[-1]:
-            return FINISHED, written
-        acceleration, speed, angle = rotation(times, speeds, angles, piece, t)
-        h, step = step_to_take(
-            numbers[STEP], numbers[STEP_BEFORE], times[piece + 1] - t, speed, control.steps_per_revolution,
-            control.longest_step)
-        if written + int(step / control.output_step) + 2 > out_q.shape[0]:
-            return RUNNING, written
-
-        for k in range(HISTORY):
-            for i in range(1 + m):
-                past[k, i] = past_now[k, i]
-        for i in range(n):
-            stage_v[i, 0], stage_a[i, 0] = v[i], a[i]
-        g, solved = gamma * step, True
+        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
+        if step == 0.0:
+            return status, written
+        begin_past(past_now, past)
+        begin_stages(v, a, stage_v, stage_a)
+        g, solved, speed = gamma * step, True, 0.0
         for s in range(1, stages):
             t_s = t + moments[s] * step
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
-            if g != inverse_g or (gyroscopic and abs(speed - inverse_speed) > INVERSE_LASTS * abs(speed)):
-                inverse_g, inverse_speed = g, speed
-                numbers[INVERSE_G], numbers[INVERSE_SPEED] = g, speed
-                prepare(rotor, pick, g, speed, products, loads, spread, compliance)
+            if outdated(numbers, g, speed, gyroscopic):
+                prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance)
             start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle,
-                         gyroscopic, at, film)
+                        gyroscopic, at, film)
             guess(past, three, s, pick, q, clearances, g, t_s, limit, film)
-            bodies[0], angles_now[0] = speed, angle
-            for r in range(spins.shape[0]):  # a ring goes on as it did in the stage before
-                i = spins[r]
-                bodies[1 + r] = at[V, i] + g * stage_a[i, s - 1]
-                angles_now[1 + r] = at[Q, i] + g * bodies[1 + r]
+            guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles_now)
             set_speeds(turning, bodies, angles_now, film, grids)
             begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
                         moments[s] / moments[s - 1] if s > 1 else 1.0)
-            lag = g * (speed - inverse_speed) if gyroscopic else 0.0
-            if lag != 0.0:  # begin with the acceleration of the stage before
-                for i in range(n):
-                    at[LATE, i] = at[FREE, i]
+            lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             solved = False
             for iteration in range(CELL_LIMIT if has_cells else NEWTON_LIMIT):
                 forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
@@ -170,12 +120,12 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil
                 if share == 1.0:
                     accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a)
                     if spins.shape[0] > 0:
-                        turned = spin_up(
-                            films, work, rotor, s, g, clearances, at, film, bodies, angles_now, torque,
-                            stage_v, stage_a)
+                        turned = spin_up(films, work, rotor, s, g, clearances, at, film, bodies, angles_now, torque,
+                                         stage_v, stage_a)
                         left = max(left, turned)
                         set_speeds(turning, bodies, angles_now, film, grids)
-                    if (linearised or left < NEWTON_SHARE * tolerance) and (lag == 0.0 or iteration >= LAG_SWEEPS):
+                    settled = control.linearised or left < NEWTON_SHARE * tolerance
+                    if settled and (lag == 0.0 or iteration >= LAG_SWEEPS):
                         solved = True
                         break
             if not solved:
@@ -185,42 +135,23 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil
                 past[HISTORY + s - 1, 1 + i] = film[U, i]
         error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance if solved else UNSOLVED
         if not error <= 1.0:  # not a number counts as too large
-            numbers[REJECTED] += 1
-            shrink = SAFETY * error ** (-1.0 / order) if math.isfinite(error) else 0.0
-            numbers[STEP] = step * max(0.2, shrink)
-            if numbers[STEP] < SMALLEST_STEP:
-                return STUCK, written
-            continue
+            if reject(numbers, step, error, order):
+                continue
+            return STUCK, written
 
-        t_new = t + step
-        if t_new >= times[piece + 1] * (1.0 - 1e-15):
-            t_new = times[piece + 1]
-        for i in range(n):
-            total = 0.0
-            for j in range(stages):
-                total += weights[last, j] * stage_v[i, j]
-            q_new[i] = q[i] + step * total
+        t_new = end_of_step(t, step, times[piece + 1])
+        displace(weights[stages - 1], stage_v, step, q, q_new)
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
         write_oil(films, work, out_oil, before, written)
         accept_films(films, work, wet, flows, weights, step)
         numbers[STEP_DONE] = step
-        for i in range(n):
-            q[i], v[i], a[i] = q_new[i], stage_v[i, last], stage_a[i, last]
-        for i in range(1 + m):  # the start of this step, its first stage, and its end
-            past_now[0, i], past_now[1, i] = past[2, i], past[3, i]
-            past_now[2, i] = past[HISTORY + last - 1, i]
-        numbers[TIME] = t_new
-        numbers[STEPS] += 1
-        numbers[TURNS] += abs(speed) * step / (2.0 * math.pi)
-        numbers[ERROR_NOW] = numbers[ERROR_NOW] * math.exp(-step / ERROR_MEMORY) + error * tolerance
-        numbers[ERROR_LARGEST] = max(numbers[ERROR_LARGEST], numbers[ERROR_NOW])
-        largest = _largest_eccentricity(clearances, pick, q)
-        numbers[LARGEST_EPS] = max(numbers[LARGEST_EPS], largest)
+        move_on(q, v, a, q_new, stage_v, stage_a)
+        keep_past(past, past_now)
         done += 1
-        if contact_stiffness == 0.0 and largest >= contact_at:
-            return CONTACT, written
-        numbers[STEP] = step_after(h, error, numbers[ERROR_BEFORE], order)
-        numbers[ERROR_BEFORE] = error
-        numbers[STEP_BEFORE] = h
+        largest = _largest_eccentricity(clearances, pick, q)
+        status = count_step(numbers, control, t_new, step, speed, error * tolerance, largest)
+        if status != RUNNING:
+            return status, written
+        choose_next(numbers, h, error, order, math.inf)
     return RUNNING, written

@@ -12,24 +12,20 @@ from numba import njit
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.passengers import accept_films, begin_stage, move_film
 from frbcli.solve.ring_spin import set_speeds
-from frbcli.solve.stage import FORCE, X_0, U, forces
+from frbcli.solve.stage import FORCE, NEWTON_LIMIT, X_0, U, forces, lagrange
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE
-from frbcli.solve.step import SAFETY, step_after
+from frbcli.solve.step import SMALLEST_STEP, shorter, step_after
 
 # Behind the numbers of a state: steps of the films, how many of them were repeated, the next one in s, and whether the
 # films keep their oil: those that do not are solved once per macro step.
 MICRO_STEPS, MICRO_REJECTED, MICRO_STEP, FILMS_REMEMBER, CO_NUMBERS = range(NUMBERS, NUMBERS + 5)
-NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
-SMALLEST_STEP = 1e-12  # s
+UNSOLVED_SHARE = 0.25  # of a step whose films were not solved, to be tried instead
 
 
 @njit(cache=True, error_model="numpy")
 def parabola(times, t, weights):  # type: ignore[no-untyped-def]
     """weights (3,) <- of Lagrange's parabola through three times (3,), at the time t."""
-    a, b, c = times[0], times[1], times[2]
-    weights[0] = (t - b) * (t - c) / ((a - b) * (a - c))
-    weights[1] = (t - a) * (t - c) / ((b - a) * (b - c))
-    weights[2] = (t - a) * (t - b) / ((c - a) * (c - b))
+    weights[0], weights[1], weights[2] = lagrange(times[0], times[1], times[2], t)
 
 
 @njit(cache=True, error_model="numpy")
@@ -113,7 +109,7 @@ def films_follow(  # type: ignore[no-untyped-def]
         error = _oil_error(defect, work.stage_oil, step) / tolerance if solved and remembers else 0.0
         if not solved or not error <= 1.0:
             numbers[MICRO_REJECTED] += 1
-            wanted = step * (max(0.2, SAFETY * error ** (-1.0 / order)) if solved else 0.25)
+            wanted = shorter(step, error, order) if solved else UNSOLVED_SHARE * step
             if wanted < SMALLEST_STEP or not remembers:
                 return False
             continue

@@ -15,32 +15,21 @@ import numpy as np
 from frbcli.film.grid import Array
 from frbcli.film.published.film import PublishedFilm
 from frbcli.rotor.excitation import rotation
-from frbcli.solve.march import ERROR_MEMORY, SMALLEST_STEP, UNSOLVED
 from frbcli.solve.published_state import FilmStep, book_step, mean_fraction
 from frbcli.solve.published_step import Parts, make_parts, pressures, solve_stages
-from frbcli.solve.state import (
-    CONTACT,
-    ERROR_BEFORE,
-    ERROR_LARGEST,
-    ERROR_NOW,
-    FINISHED,
-    HISTORY,
-    LARGEST_EPS,
-    PIECE,
-    REJECTED,
-    RUNNING,
-    STEP,
-    STEP_BEFORE,
-    STEP_DONE,
-    STEPS,
-    STUCK,
-    TIME,
-    TURNS,
-    Control,
-    RotorData,
-    State,
+from frbcli.solve.state import RUNNING, STEP_DONE, STUCK, Control, RotorData, State
+from frbcli.solve.step import (
+    UNSOLVED,
+    begin_step,
+    choose_next,
+    count_step,
+    end_of_step,
+    keep_past,
+    local_error,
+    move_on,
+    reject,
+    write_outputs,
 )
-from frbcli.solve.step import SAFETY, local_error, step_after, step_to_take, write_outputs
 from frbcli.solve.tableau import Tableau
 
 
@@ -62,21 +51,13 @@ def advance_published(
         advance_published(rotor, films, tableau, control, copied, 1, out_q, out_v, out_oil)
         return RUNNING, 0
     parts = make_parts(rotor, films, tableau, control, state)
-    numbers, times = state.numbers, rotor.profile_times
+    numbers, order = state.numbers, float(tableau.error_order)
+    profile = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     written, done = 0, 0
     while done < budget:
-        t, piece = numbers[TIME], int(numbers[PIECE])
-        if t >= times[piece + 1] and piece + 2 < times.shape[0]:
-            piece += 1
-            numbers[PIECE] = piece
-        if t >= times[-1]:
-            return FINISHED, written
-        speed = rotation(times, rotor.profile_speeds, rotor.profile_angles, piece, t)[1]
-        h, step = step_to_take(
-            numbers[STEP], numbers[STEP_BEFORE], times[piece + 1] - t, speed, control.steps_per_revolution,
-            control.longest_step)  # fmt: skip
-        if written + int(step / control.output_step) + 2 > out_q.shape[0]:
-            return RUNNING, written
+        status, t, piece, h, step = begin_step(numbers, *profile, control, out_q.shape[0] - written)
+        if step == 0.0:
+            return status, written
         solved = solve_stages(parts, state, piece, t, step)
         scratch, g = parts.scratch, tableau.stage[1, 1] * step
         error = UNSOLVED
@@ -84,63 +65,45 @@ def advance_published(
             error = local_error(tableau.defect, rotor.observed, scratch.stage_v, scratch.stage_a, step, g)
             error /= control.tolerance
         if not error <= 1.0:  # not a number counts as too large
-            numbers[REJECTED] += 1
-            shrink = SAFETY * error ** (-1.0 / tableau.error_order) if math.isfinite(error) else 0.0
-            numbers[STEP] = step * max(0.2, shrink)
-            if numbers[STEP] < SMALLEST_STEP:
-                return STUCK, written
-            continue
-        written = _accept(parts, state, piece, t, step, error, out_q, out_v, out_oil, written)
+            if reject(numbers, step, error, order):
+                continue
+            return STUCK, written
+        before, t_new = written, end_of_step(t, step, rotor.profile_times[piece + 1])
+        speed = rotation(*profile, piece, t_new)[1]
+        written = _accept(parts, state, t, step, t_new, speed, out_q, out_v, written)
+        out_oil[before:written] = mean_fraction(parts.film, scratch.thetas[-1])
         done += 1
-        if control.contact_stiffness == 0.0 and _eccentricity(parts, state.q) >= control.contact_eccentricity:
-            return CONTACT, written
-        numbers[STEP] = step_after(h, error, numbers[ERROR_BEFORE], float(tableau.error_order))
-        numbers[ERROR_BEFORE] = error
-        numbers[STEP_BEFORE] = h
+        largest = float(np.hypot(*(scratch.pick @ state.q))) / parts.clearance
+        status = count_step(numbers, control, t_new, step, speed, error * control.tolerance, largest)
+        if status != RUNNING:
+            return status, written
+        choose_next(numbers, h, error, order, math.inf)
     return RUNNING, written
 
 
 def _accept(
     parts: Parts,
     state: State,
-    piece: int,
     t: float,
     step: float,
-    error: float,
+    t_new: float,
+    speed: float,
     out_q: Array,
     out_v: Array,
-    out_oil: Array,
     written: int,
 ) -> int:
-    """Write what lies within the step and move the state on. Returns the rows written."""
-    numbers, scratch, rotor, control = state.numbers, parts.scratch, parts.rotor, parts.control
-    times, last = rotor.profile_times, len(parts.tableau.times) - 1
-    t_new = t + step
-    if t_new >= times[piece + 1] * (1.0 - 1e-15):
-        t_new = float(times[piece + 1])
+    """Write what lies within the step and move the state on. speed: of the rotor at the end. Returns the rows
+    written."""
+    scratch, last = parts.scratch, len(parts.tableau.times) - 1
     q_new = state.q + step * scratch.stage_v @ parts.tableau.stage[last]
-    before = written
     written = write_outputs(
-        numbers, scratch.stage_v, control.output_step, t, step, t_new, state.q, q_new, out_q, out_v, written
+        state.numbers, scratch.stage_v, parts.control.output_step, t, step, t_new, state.q, q_new, out_q, out_v, written
     )
-    speed = rotation(times, rotor.profile_speeds, rotor.profile_angles, piece, t_new)[1]
     place = scratch.pick @ np.column_stack([state.q, q_new, scratch.stage_v[:, last]]) / parts.clearance
-    omega = float(rotor.turning[0, 0, 0] * speed)
+    omega = float(parts.rotor.turning[0, 0, 0] * speed)
     end = FilmStep(scratch.w, pressures(parts), scratch.thetas[last], scratch.rates[last])
     book_step(parts.film, state, end, place, omega, step)
-    out_oil[before:written] = mean_fraction(parts.film, end.fraction)
-    state.q[:], state.v[:], state.a[:] = q_new, scratch.stage_v[:, last], scratch.stage_a[:, last]
-    state.past[0], state.past[1] = scratch.past[2], scratch.past[3]
-    state.past[2] = scratch.past[HISTORY + last - 1]
-    numbers[STEP_DONE] = step
-    numbers[TIME] = t_new
-    numbers[STEPS] += 1
-    numbers[TURNS] += abs(speed) * step / (2.0 * math.pi)
-    numbers[ERROR_NOW] = numbers[ERROR_NOW] * math.exp(-step / ERROR_MEMORY) + error * control.tolerance
-    numbers[ERROR_LARGEST] = max(numbers[ERROR_LARGEST], numbers[ERROR_NOW])
-    numbers[LARGEST_EPS] = max(numbers[LARGEST_EPS], _eccentricity(parts, state.q))
-    return written
-
-
-def _eccentricity(parts: Parts, q: Array) -> float:
-    return float(np.hypot(*(parts.scratch.pick @ q))) / parts.clearance
+    move_on(state.q, state.v, state.a, q_new, scratch.stage_v, scratch.stage_a)
+    keep_past(scratch.past, state.past)
+    state.numbers[STEP_DONE] = step
+    return int(written)

@@ -10,19 +10,22 @@ from frbcli.film.grid import Array
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.unknown import pressures_of
 from frbcli.rotor.excitation import rotation
-from frbcli.solve.march import ELASTIC_LIMIT
+from frbcli.solve.inverse import outdated, prepare
 from frbcli.solve.published_equations import FilmEquations, Room, film_equations, make_room
 from frbcli.solve.published_stage import solve_stage
 from frbcli.solve.published_state import film_layers, unknowns_in
-from frbcli.solve.stage import JOURNAL_ROWS, OMEGA, STAGE_ROWS, U, accelerate, guess, prepare, start_stage
-from frbcli.solve.state import HISTORY, INVERSE_G, SOLVES, STEP_DONE, Control, RotorData, State
+from frbcli.solve.scratch import make_scratch
+from frbcli.solve.stage import OMEGA, U, accelerate, guess, limit_of, start_stage
+from frbcli.solve.state import HISTORY, SOLVES, STEP_DONE, Control, RotorData, State
+from frbcli.solve.step import begin_past, begin_stages
 from frbcli.solve.tableau import Tableau
 
 LARGEST_GUESS = 0.5  # of an unknown's change by extrapolation: further, and a step theta(p) is overshot
 
 
 class Scratch(NamedTuple):
-    """What the stages of a step share, see advance of march.py; thetas, rates (stages, e, 9): oil fraction and rate."""
+    """What the stages of a step share, see scratch.py; past as in march.py; thetas, rates (stages, e, 9): oil fraction
+    and rate; w (nodes,) unknowns of the film."""
 
     pick: Array
     products: Array
@@ -54,27 +57,14 @@ class Parts(NamedTuple):
 
 
 def make_parts(rotor: RotorData, film: PublishedFilm, tableau: Tableau, control: Control, state: State) -> Parts:
-    n, stages = state.q.shape[0], tableau.times.shape[0]
-    pick = np.ascontiguousarray(rotor.journals[0])
-    scratch = Scratch(
-        pick,
-        np.zeros((3, n, n)),
-        np.zeros((3, n)),
-        np.zeros((n, 2)),
-        np.zeros((2, 2)),
-        np.zeros((STAGE_ROWS, n)),
-        np.zeros((JOURNAL_ROWS, 2)),
-        np.zeros((n, stages)),
-        np.zeros((n, stages)),
+    stages, points = tableau.times.shape[0], film.mesh.angle.shape
+    own = (
         np.zeros((HISTORY + stages - 1, 3)),
-        np.zeros((stages, *film.mesh.angle.shape)),
-        np.zeros((stages, *film.mesh.angle.shape)),
+        np.zeros((stages, *points)),
+        np.zeros((stages, *points)),
         np.zeros(film.mesh.phi.size),
     )
-    if state.numbers[INVERSE_G] > 0.0:
-        _prepare(rotor, scratch, float(state.numbers[INVERSE_G]))
-    # Under elastic contact the shell gives way; without, a journal beyond the shell is no state at all.
-    limit = ELASTIC_LIMIT if control.contact_stiffness > 0.0 else 1.0
+    scratch = Scratch(*[*make_scratch(rotor, state.numbers, stages), *own])
     return Parts(
         rotor,
         film,
@@ -84,19 +74,15 @@ def make_parts(rotor: RotorData, film: PublishedFilm, tableau: Tableau, control:
         control,
         scratch,
         float(rotor.clearances[0]),
-        limit,
+        limit_of(control.contact_stiffness),
     )
-
-
-def _prepare(rotor: RotorData, scratch: Scratch, g: float) -> None:
-    prepare(rotor, scratch.pick, g, 0.0, scratch.products, scratch.loads, scratch.spread, scratch.compliance)
 
 
 def solve_stages(parts: Parts, state: State, piece: int, t: float, step: float) -> bool:
     """Solve the stages of a step into the scratch arrays. Returns whether that was possible."""
     scratch, weights = parts.scratch, parts.tableau.stage
-    scratch.past[:HISTORY] = state.past
-    scratch.stage_v[:, 0], scratch.stage_a[:, 0] = state.v, state.a
+    begin_past(state.past, scratch.past)
+    begin_stages(state.v, state.a, scratch.stage_v, scratch.stage_a)
     layers = film_layers(state)
     scratch.rates[0] = layers.rate
     first, before = unknowns_in(parts.film, layers.w), unknowns_in(parts.film, layers.w_before)
@@ -120,9 +106,8 @@ def _stage(parts: Parts, state: State, piece: int, t: float, step: float, s: int
     t_s = t + parts.tableau.times[s] * step
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
-    if g != numbers[INVERSE_G]:
-        numbers[INVERSE_G] = g
-        _prepare(rotor, scratch, g)
+    if outdated(numbers, g, 0.0, False):
+        prepare(rotor, pick, numbers, g, 0.0, scratch.products, scratch.loads, scratch.spread, scratch.compliance)
     start_stage(weights, s, step, g, state.q, state.v, scratch.stage_v, scratch.stage_a, scratch.products,
                 scratch.loads, pick, acceleration, speed, angle, False, at, film)  # fmt: skip
     guess(scratch.past, parts.tableau.guess, s, pick, state.q, rotor.clearances, g, t_s, parts.limit, film)

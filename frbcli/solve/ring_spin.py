@@ -25,6 +25,17 @@ def set_speeds(turning, bodies, angles, film, grids):  # type: ignore[no-untyped
             grids[GRID_TURN, f], grids[GRID_SPEED, f] = angle, speed
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles):  # type: ignore[no-untyped-def]
+    """bodies, angles (1 + rings,) <- speed and angle of the rotor, and of each ring, which goes on as it did in the
+    stage before."""
+    bodies[0], angles[0] = speed, angle
+    for r in range(spins.shape[0]):
+        i = spins[r]
+        bodies[1 + r] = at[V, i] + g * stage_a[i, s - 1]
+        angles[1 + r] = at[Q, i] + g * bodies[1 + r]
+
+
 @njit(cache=True, error_model="numpy")
 def spin_up(  # type: ignore[no-untyped-def]
     films, work, rotor, s, g, clearances, at, film, bodies, angles, torque, stage_v, stage_a

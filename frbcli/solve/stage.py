@@ -6,19 +6,22 @@ for the velocities u of the journals alone,
     u = u_0 + S F(x(u), u),      x = x_0 + g u,      S = g P E P^T,
 
 which Newton's method solves with the films' analytic derivatives: 2 x 2 for one bearing, however large the rotor is.
-The products of E with D, K, G and the loads are made when the step changes, not in every stage.
+The products of E with D, K, G and the loads are made when the step changes, not in every stage (inverse.py).
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 from frbcli.solve.dense import solve_dense
+from frbcli.solve.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
 from frbcli.solve.passengers import film_numbers, follow_channels, join_films, meet_channels, move_film
+from frbcli.solve.state import INVERSE_SPEED
 
+NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
+ELASTIC_LIMIT = 1.5  # eccentricity that no journal exceeds even under elastic contact
 CLOSEST = 0.5  # share of the remaining gap that one Newton correction may close
 
 # Rows of the scratch arrays: of a stage at the rotor's n degrees of freedom, and at the journals' m = 2 films.
@@ -27,14 +30,27 @@ V, Q, FREE, LATE, STAGE_ROWS = range(5)
 # u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y.
 # OMEGA is omega_J + omega_S of the journal's own film.
 U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, JOURNAL_ROWS = range(9)
-# Products of the inverse E with the matrices and the loads.
-E_DAMPING, E_STIFFNESS, E_GYROSCOPIC = range(3)
-E_STATIC, E_COS, E_SIN = range(3)
 
 
 @njit(cache=True, error_model="numpy")
 def norm(x, y):  # type: ignore[no-untyped-def]
     return math.sqrt(x * x + y * y)
+
+
+@njit(cache=True, error_model="numpy")
+def limit_of(contact_stiffness):  # type: ignore[no-untyped-def]
+    """Eccentricity that is no state any more: under elastic contact the shell gives way, else it ends at the shell."""
+    return ELASTIC_LIMIT if contact_stiffness > 0.0 else 1.0
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
+    """The three weights of the parabola through points at the times a, b, c, at the time t."""
+    return (
+        (t - b) * (t - c) / ((a - b) * (a - c)),
+        (t - a) * (t - c) / ((b - a) * (b - c)),
+        (t - a) * (t - b) / ((c - a) * (c - b)),
+    )
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -85,48 +101,11 @@ def reach(d_x, d_y, c_x, c_y, limit):  # type: ignore[no-untyped-def]
     return factor
 
 
-@njit(cache=True, error_model="numpy")
-def prepare(rotor, pick, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
-    """Make the inverse E for this g and speed and keep its products, see advance for their shapes."""
-    n, m = rotor.mass.shape[0], pick.shape[0]
-    # One elimination for all right-hand sides: the three matrices, the three loads, the journals.
-    dynamic, right = np.empty((n, n)), np.empty((n, 3 * n + 3 + m))
-    for i in range(n):
-        for j in range(n):
-            dynamic[i, j] = rotor.mass[i, j] + g * (
-                rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j]
-            )
-            right[i, j] = rotor.damping[i, j]
-            right[i, n + j] = rotor.stiffness[i, j]
-            right[i, 2 * n + j] = rotor.gyroscopic[i, j]
-        right[i, 3 * n] = rotor.static_load[i]
-        right[i, 3 * n + 1] = rotor.unbalance_cos[i]
-        right[i, 3 * n + 2] = rotor.unbalance_sin[i]
-        for k in range(m):
-            right[i, 3 * n + 3 + k] = pick[k, i] * rotor.multiplicity[k // 2]
-    solve_dense(dynamic, right)
-    for i in range(n):
-        for j in range(n):
-            products[E_DAMPING, i, j] = right[i, j]
-            products[E_STIFFNESS, i, j] = right[i, n + j]
-            products[E_GYROSCOPIC, i, j] = right[i, 2 * n + j]
-        for k in range(3):
-            loads[k, i] = right[i, 3 * n + k]
-        for k in range(m):
-            spread[i, k] = right[i, 3 * n + 3 + k]
-    for k in range(m):
-        for j in range(m):
-            total = 0.0
-            for i in range(n):
-                total += pick[k, i] * spread[i, j]
-            compliance[k, j] = g * total
-
-
 @njit(cache=True, error_model="numpy", inline="always")
 def start_stage(  # type: ignore[no-untyped-def]
     weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle, gyroscopic, at, film
 ):
-    """Fill V, Q, FREE of `at` and U_0, X_0 of `film`: what stage s knows before its films do. weights: (s,) its row."""
+    """Fill V, Q, FREE of `at` and U_0, X_0 of `film`: what stage s knows before its films do."""
     n = q.shape[0]
     for i in range(n):
         sum_v, sum_a = 0.0, 0.0
@@ -156,6 +135,14 @@ def start_stage(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
+def begin_lag(numbers, g, speed, at):  # type: ignore[no-untyped-def]
+    """The lag of `accelerate` in a stage of a gyroscopic rotor, which begins with the speed of its inverse: LATE."""
+    for i in range(at.shape[1]):
+        at[LATE, i] = at[FREE, i]
+    return g * (speed - numbers[INVERSE_SPEED])
+
+
+@njit(cache=True, error_model="numpy", inline="always")
 def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
     """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
 
@@ -163,10 +150,7 @@ def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ig
     the parabola of stage s.
     """
     i_a, i_b, i_c = three[s, 0], three[s, 1], three[s, 2]
-    a, b, c = points[i_a, 0], points[i_b, 0], points[i_c, 0]
-    weight_a = (t - b) * (t - c) / ((a - b) * (a - c))
-    weight_b = (t - a) * (t - c) / ((b - a) * (b - c))
-    weight_c = (t - a) * (t - b) / ((c - a) * (c - b))
+    weight_a, weight_b, weight_c = lagrange(points[i_a, 0], points[i_b, 0], points[i_c, 0], t)
     for i in range(pick.shape[0]):
         film[U, i] = weight_a * points[i_a, 1 + i] + weight_b * points[i_b, 1 + i] + weight_c * points[i_c, 1 + i]
     for f in range(clearances.shape[0]):

@@ -1,4 +1,7 @@
-"""Between the stages of the time loop: the error of a step, its output, the next step. Compiled."""
+"""What all time loops do around the stages of a step: its length, its error, its end, its output, the next. Compiled.
+
+The functions are given few arrays each: to pass a tuple of many costs more than they do.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,32 @@ import math
 
 from numba import njit
 
-from frbcli.solve.state import OUTPUTS
+from frbcli.rotor.excitation import rotation
+from frbcli.solve.state import (
+    CONTACT,
+    ERROR_BEFORE,
+    ERROR_LARGEST,
+    ERROR_NOW,
+    FINISHED,
+    HISTORY,
+    LARGEST_EPS,
+    OUTPUTS,
+    PIECE,
+    REJECTED,
+    RUNNING,
+    STEP,
+    STEP_BEFORE,
+    STEPS,
+    TIME,
+    TURNS,
+)
 
+SMALLEST_STEP = 1e-12  # s
+UNSOLVED = 1e3  # stands for the error of a step whose stages were not solved
+ERROR_MEMORY = 0.1  # s: how long a local error is taken to live on in a damped rotor
 SAFETY = 0.9  # of the step that the error estimate would allow
+SMALLEST_SHARE = 0.2  # of a step that is left of it after an error
+LARGEST_SHARE = 5.0  # of a step that the next may be
 GROWTH = 1.2  # a step is enlarged only if it pays for the new inverse
 LASTING = 0.95  # of the longest allowed step: a step chosen there lasts a while before the speed outgrows it
 
@@ -52,7 +78,7 @@ def write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_q
 def step_after(h, error, before, order):  # type: ignore[no-untyped-def]
     """Proportional-integral control: the step after an accepted one; errors over the tolerance, now and before."""
     ratio = SAFETY * max(error, 1e-8) ** (-0.7 / order) * max(before, 1e-8) ** (0.3 / order)
-    ratio = min(5.0, max(0.2, ratio))
+    ratio = min(LARGEST_SHARE, max(SMALLEST_SHARE, ratio))
     return h * ratio if ratio < 1.0 or ratio > GROWTH else h
 
 
@@ -71,3 +97,111 @@ def step_to_take(h, before, remaining, speed, steps_per_revolution, longest):  #
     if h > 0.5 * remaining:
         return h, 0.5 * remaining
     return h, h
+
+
+@njit(cache=True, error_model="numpy")
+def begin_step(numbers, times, speeds, angles, control, room):  # type: ignore[no-untyped-def]
+    """(status, t, piece, h, step): how things stand, the time, its piece of the profile, and both of step_to_take.
+
+    Without a step, 0, the loop has to end: FINISHED with the profile, or RUNNING, for `room` rows cannot take what the
+    step would write.
+    """
+    t, piece = numbers[TIME], int(numbers[PIECE])
+    if t >= times[piece + 1] and piece + 2 < times.shape[0]:
+        piece += 1
+        numbers[PIECE] = piece
+    if t >= times[-1]:
+        return FINISHED, t, piece, 0.0, 0.0
+    speed = rotation(times, speeds, angles, piece, t)[1]
+    h, step = step_to_take(
+        numbers[STEP], numbers[STEP_BEFORE], times[piece + 1] - t, speed, control.steps_per_revolution,
+        control.longest_step)  # fmt: skip
+    if int(step / control.output_step) + 2 > room:
+        return RUNNING, t, piece, h, 0.0
+    return RUNNING, t, piece, h, step
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def begin_stages(v, a, stage_v, stage_a):  # type: ignore[no-untyped-def]
+    """The first stage, which is explicit: the state at the start of the step."""
+    for i in range(v.shape[0]):
+        stage_v[i, 0], stage_a[i, 0] = v[i], a[i]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def begin_past(past_now, past):  # type: ignore[no-untyped-def]
+    """The points that predict the stages, see State.past: those of the step before, ahead of its own."""
+    for k in range(HISTORY):
+        for i in range(past.shape[1]):
+            past[k, i] = past_now[k, i]
+
+
+@njit(cache=True, error_model="numpy")
+def shorter(step, error, order):  # type: ignore[no-untyped-def]
+    """The step to try in place of one whose error, over the tolerance, was too large or no number."""
+    share = SAFETY * error ** (-1.0 / order) if math.isfinite(error) else 0.0
+    return step * max(SMALLEST_SHARE, share)
+
+
+@njit(cache=True, error_model="numpy")
+def reject(numbers, step, error, order):  # type: ignore[no-untyped-def]
+    """Count a step that has to be tried again, shorter. Returns whether that makes sense any more."""
+    numbers[REJECTED] += 1
+    numbers[STEP] = shorter(step, error, order)
+    return not numbers[STEP] < SMALLEST_STEP
+
+
+@njit(cache=True, error_model="numpy")
+def end_of_step(t, step, end):  # type: ignore[no-untyped-def]
+    """The time after a step: the end of the profile's piece, not a rounding error beside it."""
+    t_new = t + step
+    return end if t_new >= end * (1.0 - 1e-15) else t_new
+
+
+@njit(cache=True, error_model="numpy")
+def displace(weights, stage_v, step, q, q_new):  # type: ignore[no-untyped-def]
+    """q_new <- the displacements after a step; weights: (stages,) of the result."""
+    for i in range(q.shape[0]):
+        total = 0.0
+        for j in range(weights.shape[0]):
+            total += weights[j] * stage_v[i, j]
+        q_new[i] = q[i] + step * total
+
+
+@njit(cache=True, error_model="numpy")
+def move_on(q, v, a, q_new, stage_v, stage_a):  # type: ignore[no-untyped-def]
+    """The state after a step: q_new, and the velocities and accelerations of the last stage."""
+    last = stage_v.shape[1] - 1
+    for i in range(q.shape[0]):
+        q[i], v[i], a[i] = q_new[i], stage_v[i, last], stage_a[i, last]
+
+
+@njit(cache=True, error_model="numpy")
+def keep_past(past, past_now):  # type: ignore[no-untyped-def]
+    """The points of a step that is done: its start, its first stage, and its end."""
+    end = past.shape[0] - 1
+    for i in range(past.shape[1]):
+        past_now[0, i], past_now[1, i], past_now[2, i] = past[HISTORY - 1, i], past[HISTORY, i], past[end, i]
+
+
+@njit(cache=True, error_model="numpy")
+def count_step(numbers, control, t_new, step, speed, drift, largest):  # type: ignore[no-untyped-def]
+    """Count a step that is done. drift: what its error adds to that of the run; largest eccentricity at its end.
+
+    Returns RUNNING, or CONTACT where a journal has met a shell that does not give way.
+    """
+    numbers[TIME] = t_new
+    numbers[STEPS] += 1
+    numbers[TURNS] += abs(speed) * step / (2.0 * math.pi)
+    numbers[ERROR_NOW] = numbers[ERROR_NOW] * math.exp(-step / ERROR_MEMORY) + drift
+    numbers[ERROR_LARGEST] = max(numbers[ERROR_LARGEST], numbers[ERROR_NOW])
+    numbers[LARGEST_EPS] = max(numbers[LARGEST_EPS], largest)
+    return CONTACT if control.contact_stiffness == 0.0 and largest >= control.contact_eccentricity else RUNNING
+
+
+@njit(cache=True, error_model="numpy")
+def choose_next(numbers, h, error, order, longest):  # type: ignore[no-untyped-def]
+    """The step after an accepted one, at most `longest`; error: of the accepted one over the tolerance."""
+    numbers[STEP] = min(step_after(h, error, numbers[ERROR_BEFORE], order), longest)
+    numbers[ERROR_BEFORE] = error
+    numbers[STEP_BEFORE] = h

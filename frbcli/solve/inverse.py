@@ -1,0 +1,64 @@
+"""The inverse of the rotor behind all implicit stages of a step, see stage.py. Compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from frbcli.solve.dense import solve_dense
+from frbcli.solve.state import INVERSE_G, INVERSE_SPEED
+
+LASTS = 0.01  # relative change of the speed over which a gyroscopic rotor keeps its inverse
+LAG_SWEEPS = 2  # iterations that bring the rest of the gyroscopic term below 1e-8: each gains a factor of 1000
+
+# Products of the inverse E with the matrices and the loads.
+E_DAMPING, E_STIFFNESS, E_GYROSCOPIC = range(3)
+E_STATIC, E_COS, E_SIN = range(3)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def outdated(numbers, g, speed, gyroscopic):  # type: ignore[no-untyped-def]
+    """Whether the inverse that the numbers tell of does not serve a stage with this g and speed."""
+    return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
+
+
+@njit(cache=True, error_model="numpy")
+def prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
+    """Make the inverse E for this g and speed, keep its products, and book in the numbers for what they are.
+
+    products (3, n, n), loads (3, n): of E with the matrices and loads in the order of E_...; spread (n, m): with the
+    forces on the journals; compliance (m, m): S of stage.py.
+    """
+    n, m = rotor.mass.shape[0], pick.shape[0]
+    numbers[INVERSE_G], numbers[INVERSE_SPEED] = g, speed
+    # One elimination for all right-hand sides: the three matrices, the three loads, the journals.
+    dynamic, right = np.empty((n, n)), np.empty((n, 3 * n + 3 + m))
+    for i in range(n):
+        for j in range(n):
+            dynamic[i, j] = rotor.mass[i, j] + g * (
+                rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j]
+            )
+            right[i, j] = rotor.damping[i, j]
+            right[i, n + j] = rotor.stiffness[i, j]
+            right[i, 2 * n + j] = rotor.gyroscopic[i, j]
+        right[i, 3 * n] = rotor.static_load[i]
+        right[i, 3 * n + 1] = rotor.unbalance_cos[i]
+        right[i, 3 * n + 2] = rotor.unbalance_sin[i]
+        for k in range(m):
+            right[i, 3 * n + 3 + k] = pick[k, i] * rotor.multiplicity[k // 2]
+    solve_dense(dynamic, right)
+    for i in range(n):
+        for j in range(n):
+            products[E_DAMPING, i, j] = right[i, j]
+            products[E_STIFFNESS, i, j] = right[i, n + j]
+            products[E_GYROSCOPIC, i, j] = right[i, 2 * n + j]
+        for k in range(3):
+            loads[k, i] = right[i, 3 * n + k]
+        for k in range(m):
+            spread[i, k] = right[i, 3 * n + 3 + k]
+    for k in range(m):
+        for j in range(m):
+            total = 0.0
+            for i in range(n):
+                total += pick[k, i] * spread[i, j]
+            compliance[k, j] = g * total
