@@ -10,7 +10,8 @@ import math
 from numba import njit
 
 from frbcli.rotor.excitation import rotation
-from frbcli.solve.passengers import accept_films, begin_stage, move_film
+from frbcli.solve.film_forces import move_film
+from frbcli.solve.passengers import accept_films, begin_stage
 from frbcli.solve.ring_spin import set_speeds
 from frbcli.solve.stage import FORCE, NEWTON_LIMIT, X_0, U, forces, lagrange
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE

@@ -16,8 +16,8 @@ import math
 from numba import njit
 
 from frbcli.solve.dense import solve_dense
+from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film
 from frbcli.solve.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
-from frbcli.solve.passengers import film_numbers, follow_channels, join_films, meet_channels, move_film
 from frbcli.solve.state import INVERSE_SPEED
 
 NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one

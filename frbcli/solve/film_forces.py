@@ -1,0 +1,170 @@
+"""What the films say in one iteration of a stage, compiled: forces, derivatives, and how they follow the journals.
+
+As in passengers.py, the type of the films decides which kind is meant when the loop is compiled.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from numba.extending import overload
+
+from frbcli.film.kernel import film_force
+from frbcli.solve.cell_channels import follow_journals, join, set_law, set_pressures
+from frbcli.solve.cell_passengers import GRID_X, GRID_Y, cell_numbers, move_cells, sheared
+from frbcli.solve.passengers import Work, have_cells
+from frbcli.solve.state import Array
+
+
+def film_numbers(
+    films: Any,
+    work: Work,
+    f: int,
+    d_x: float,
+    d_y: float,
+    v_x: float,
+    v_y: float,
+    omega: float,
+    g: float,
+    s: int,
+    iteration: int,
+) -> Any:
+    """The ten numbers of film_force for film f; those of cells hold all in the derivatives by the velocity.
+
+    A film whose balances hold already, but not in the first iteration of stage s, is settled: its rates are kept, and
+    it only follows the journal. One that does not settle goes on with shorter steps.
+    """
+    raise NotImplementedError
+
+
+def meet_channels(
+    films: Any, work: Work, x_0: Array, u: Array, omega: Array, clearances: Array, g: float, iteration: int
+) -> None:
+    """Before the films are asked in an iteration: the pressures of the coupled channels, by the films as they are.
+
+    x_0, u, omega: (2 films,), see the rows of stage.py."""
+    raise NotImplementedError
+
+
+def join_films(films: Any, work: Work, clearances: Array, force: Array) -> None:
+    """After all films have been asked: what coupled channels make of their forces (2 films,), and work.cross."""
+    raise NotImplementedError
+
+
+def follow_channels(films: Any, work: Work, correction: Array, share: float) -> None:
+    """Before the films are moved: the coupled channels follow a share of the correction of the journals' velocities."""
+    raise NotImplementedError
+
+
+def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, g: float) -> int:
+    """Take the film along with a correction u of the journal's velocity over the clearance; 1 if it had not settled."""
+    raise NotImplementedError
+
+
+def drag_integral(films: Any, work: Work, f: int, d_x: float, d_y: float, factor: int) -> float:
+    """The integral of 1 / H over the turn, mean over the width, with the cavitation factor where the film knows one."""
+    raise NotImplementedError
+
+
+@overload(film_numbers, inline="always")
+def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: film_force(
+            films[f], d_x, d_y, v_x, v_y, omega
+        )
+
+    def volumes(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
+        return cell_numbers(
+            films.numbers[f],
+            films.ring[f],
+            films.width[f],
+            films.cells[f],
+            work.w[f],
+            work.past[f],
+            work.states[f],
+            work.stencil,
+            work.blocks,
+            work.fields[f],
+            work.stage_oil[s, f],
+            work.stage_flows[s, f],
+            work.grids[:, f],
+            work.slopes[f],
+            work.channel[f] if work.channel.shape[0] > 0 else work.w[f],
+            d_x,
+            d_y,
+            v_x,
+            v_y,
+            omega,
+            g,
+            iteration,
+        )
+
+    return volumes
+
+
+@overload(meet_channels)
+def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        return lambda films, work, x_0, u, omega, clearances, g, iteration: None
+
+    def volumes(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
+        if films.mouths.shape[0] > 0:
+            if iteration == 0:
+                set_law(films, work.grids, x_0, u, omega, clearances, g)
+            set_pressures(films, work.grids, work.w, work.channel)
+
+    return volumes
+
+
+@overload(join_films)
+def _join_films(films, work, clearances, force):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        return lambda films, work, clearances, force: None
+
+    def volumes(films, work, clearances, force):  # type: ignore[no-untyped-def]
+        if films.mouths.shape[0] > 0:
+            join(
+                films, work.grids, work.states, work.fields, clearances, force, work.cross, work.answers, work.changes
+            )
+
+    return volumes
+
+
+@overload(follow_channels)
+def _follow_channels(films, work, correction, share):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        return lambda films, work, correction, share: None
+
+    def volumes(films, work, correction, share):  # type: ignore[no-untyped-def]
+        if films.mouths.shape[0] > 0:
+            follow_journals(films, work.answers, correction, share, work.changes)
+
+    return volumes
+
+
+@overload(move_film, inline="always")
+def _move_film(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        return lambda films, work, f, u_x, u_y, g: 0
+
+    def volumes(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
+        return move_cells(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g, work.changes[f])
+
+    return volumes
+
+
+@overload(drag_integral, inline="always")
+def _drag_integral(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        # of 1 / H over the turn, Sommerfeld's integral
+        return lambda films, work, f, d_x, d_y, factor: (
+            2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
+        )
+
+    def volumes(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+        return sheared(
+            films.ring[f], films.cells[f], work.states[f], work.grids[GRID_X, f], work.grids[GRID_Y, f], factor
+        )
+
+    return volumes
