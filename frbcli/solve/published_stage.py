@@ -16,8 +16,9 @@ from numba import njit
 
 from frbcli.film.published.ring import solve_ring
 from frbcli.film.published.unknown import pressures_of
+from frbcli.solve.journal_newton import reach
 from frbcli.solve.published_equations import RIGHTS, residual
-from frbcli.solve.stage import CORRECTION, FORCE, OMEGA, U_0, X_0, U, norm, reach
+from frbcli.solve.stage import CORRECTION, FORCE, OMEGA, U_0, X_0, U, norm
 
 ITERATIONS = 20
 MEMORY = 4  # a residual has to be smaller than the largest of so many before it
