@@ -3,162 +3,39 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from films import system_of
-from numpy.typing import NDArray
-from scipy.integrate import simpson, solve_ivp
-from scipy.linalg import block_diag, expm
+from marches import (
+    BEARING,
+    GRAVITY,
+    SHORT_FILM,
+    Array,
+    control,
+    even_steps,
+    forces,
+    jeffcott,
+    linear_reference,
+    march,
+    modal_rotor,
+    slender_jeffcott,
+    slope,
+    start,
+    with_short_films,
+    without_films,
+)
+from scipy.integrate import solve_ivp
+from scipy.linalg import block_diag
 
-from frbcli.film.bearing import RectangularBearing, evaluate, make_film
-from frbcli.film.table import Mesh
-from frbcli.rotor.excitation import SpeedProfile, speed_profile
-from frbcli.rotor.jeffcott import jeffcott_rotor
+from frbcli.film.bearing import evaluate
+from frbcli.rotor.excitation import speed_profile
 from frbcli.rotor.linear import LinearRotor, planar
 from frbcli.rotor.rigid import rigid_rotor
-from frbcli.scene.system import System
-from frbcli.solve.march import advance
-from frbcli.solve.start import rotor_data, state_at
-from frbcli.solve.state import (
-    CONTACT,
-    FINISHED,
-    LARGEST_EPS,
-    OUTPUTS,
-    RUNNING,
-    STEP,
-    STEPS,
-    TIME,
-    Control,
-    State,
-)
+from frbcli.solve.state import FINISHED, STEP, STEPS, State
 from frbcli.solve.tableau import METHODS, Method, Tableau
 
-Array = NDArray[np.float64]
-
-MESH = Mesh(6, 96)
-BEARING = RectangularBearing(
-    width=20e-3, diameter=25e-3, clearance=35e-6, viscosity=12e-3, sections=2,
-    ambient_pressure=1e5, cavitation_pressure=1e5, supply_pressure=1e5,
-)  # fmt: skip
-SHORT_FILM = make_film(BEARING, "short", "half-sommerfeld", MESH)
-NO_FILM = SHORT_FILM._replace(force_scale=0.0)
-WIDE = replace(BEARING, clearance=1.0)  # m: the shell of a rotor that runs without films is far away
-
-GRAVITY = 9.81
 ALL_METHODS = pytest.mark.parametrize("method", METHODS.values(), ids=METHODS.keys())
-
-
-@dataclass(frozen=True)
-class Result:
-    """times (k,), q and v (k, n) at the output times, and how the march ended."""
-
-    times: Array
-    q: Array
-    v: Array
-    status: int
-    numbers: Array
-
-
-def without_films(rotor: LinearRotor) -> System:
-    count = len(rotor.journals)
-    return system_of(rotor, (WIDE,) * count, (NO_FILM,) * count)
-
-
-def with_short_films(rotor: LinearRotor) -> System:
-    count = len(rotor.journals)
-    return system_of(rotor, (BEARING,) * count, (SHORT_FILM,) * count)
-
-
-def control(
-    tolerance: float = 1e-6,
-    longest: float = 1e-3,
-    output: float = 1e-4,
-    per_revolution: float = 1.0,
-    stiffness: float = 0.0,
-) -> Control:
-    return Control(tolerance, per_revolution, longest, output, 0.9999, stiffness)
-
-
-def start(system: System, profile: SpeedProfile, q: Array | None = None, v: Array | None = None) -> State:
-    zero = np.zeros(system.rotor.size)
-    return state_at(system, profile, zero if q is None else q, zero if v is None else v)
-
-
-def forces(system: System, q: Array, v: Array, speed_up: float, omega: float, angle: float) -> Array:
-    """All forces on the rotor, written down plainly."""
-    rotor = system.rotor
-    total = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
-    total = total + rotor.unbalance_cos * (speed_up * math.cos(angle) - omega**2 * math.sin(angle))
-    total = total + rotor.unbalance_sin * (speed_up * math.sin(angle) + omega**2 * math.cos(angle))
-    for pick, count, film, c in zip(rotor.journals, rotor.multiplicity, system.films, system.clearances, strict=True):
-        if film.force_scale > 0.0:
-            total = total + count * pick.T @ evaluate(film, c, pick @ q, pick @ v, omega).force
-    return np.asarray(total)
-
-
-def march(
-    system: System,
-    profile: SpeedProfile,
-    limits: Control,
-    state: State | None = None,
-    method: str = "esdirk4",
-    budget: int = 10**9,
-) -> Result:
-    """Advance to the end, handing out `budget` steps at a time."""
-    state = start(system, profile) if state is None else state
-    data, tableau = rotor_data(system, profile), METHODS[method].tableau
-    rows = int(profile.end / limits.output_step) + 10
-    out_q, out_v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
-    written, status = 0, RUNNING
-    while status == RUNNING:
-        status, fresh = advance(
-            data, system.films, tableau, limits, state, budget, out_q[written:], out_v[written:], np.empty((rows, 0))
-        )
-        written += fresh
-    assert written == int(state.numbers[OUTPUTS])
-    times = np.arange(written) * limits.output_step
-    return Result(times, out_q[:written], out_v[:written], status, state.numbers)
-
-
-def even_steps(h: float, output: float) -> Control:
-    """Every step of the same length h: the error never matters, and what is longer than h is refused."""
-    return control(tolerance=1e9, longest=h, output=output)
-
-
-def linear_reference(rotor: LinearRotor, omega: float, times: Array, q: Array, v: Array) -> tuple[Array, Array]:
-    """Exact q and v (k, n) at even times of a rotor without films at constant speed."""
-    n = rotor.size
-    # The state grows by cos, sin of the angle and by one, so that the whole problem is linear and homogeneous.
-    a = np.zeros((2 * n + 3, 2 * n + 3))
-    a[:n, n : 2 * n] = np.eye(n)
-    a[n : 2 * n, :n] = -np.linalg.solve(rotor.mass, rotor.stiffness)
-    a[n : 2 * n, n : 2 * n] = -np.linalg.solve(rotor.mass, rotor.damping + omega * rotor.gyroscopic)
-    a[n : 2 * n, 2 * n] = omega**2 * np.linalg.solve(rotor.mass, rotor.unbalance_sin)
-    a[n : 2 * n, 2 * n + 1] = -(omega**2) * np.linalg.solve(rotor.mass, rotor.unbalance_cos)
-    a[n : 2 * n, 2 * n + 2] = np.linalg.solve(rotor.mass, rotor.static_load)
-    a[2 * n, 2 * n + 1], a[2 * n + 1, 2 * n] = -omega, omega
-    step = expm(a * (times[1] - times[0]))
-    rows = [np.concatenate([q, v, [1.0, 0.0, 1.0]])]
-    for _ in times[1:]:
-        rows.append(step @ rows[-1])
-    exact = np.array(rows)
-    return exact[:, :n], exact[:, n : 2 * n]
-
-
-def jeffcott(journal_mass: float = 0.1, unbalance: float = 3e-6) -> LinearRotor:
-    return jeffcott_rotor(6.0, journal_mass, 5e6, unbalance, 1.0, 0.1, GRAVITY)
-
-
-def slender_jeffcott() -> LinearRotor:
-    """Without films, and with natural frequencies that are not worlds apart."""
-    return jeffcott_rotor(1.0, 0.5, 4e4, 1e-3, 3.0, 2.0, GRAVITY)
-
-
-def slope(sizes: list[float], errors: list[float]) -> float:
-    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
 # --- the methods themselves ---
@@ -329,27 +206,6 @@ def test_overhung_disk_whirls_forward_and_backward_with_its_exact_frequencies() 
         np.testing.assert_allclose(got.q[:, :2] + 1j * got.q[:, 2:], turned, rtol=0, atol=1e-8)
 
 
-def modal_rotor(films: int, seed: int = 4) -> LinearRotor:
-    """60 states coupled gyroscopically, natural frequencies from 30 to 900 Hz, journals and unbalance all over them."""
-    chance, n = np.random.default_rng(seed), 60
-    turn = np.linalg.qr(chance.normal(size=(n, n)))[0]
-    stiffness = turn @ np.diag((2 * math.pi * np.linspace(30.0, 900.0, n)) ** 2) @ turn.T
-    spin = chance.normal(size=(n, n)) * 0.05
-    forward = chance.normal(size=(2, n))
-    return LinearRotor(
-        mass=np.eye(n),
-        damping=20.0 * np.eye(n),
-        gyroscopic=spin - spin.T,
-        stiffness=0.5 * (stiffness + stiffness.T),
-        static_load=chance.normal(size=n),
-        unbalance_cos=1e-5 * forward[0],
-        unbalance_sin=1e-5 * forward[1],
-        journals=chance.normal(size=(films, 2, n)) / math.sqrt(n),
-        multiplicity=np.arange(1.0, films + 1.0),
-        points=(("journal", chance.normal(size=(2, n)) / math.sqrt(n)),),
-    )
-
-
 def test_modal_rotor_of_sixty_states_follows_the_exponential() -> None:
     rotor = modal_rotor(1)
     system, omega, end = without_films(rotor), 2 * math.pi * 120.0, 0.05
@@ -434,138 +290,3 @@ def test_two_different_rotors_in_one_system_do_not_disturb_each_other() -> None:
         alone = march(with_short_films(rotor), profile, limits)
         own = both.q[:, 2 * film : 2 * film + 2]
         np.testing.assert_allclose(own, alone.q, rtol=0, atol=1e-7 * BEARING.clearance)
-
-
-# --- the course of a march ---
-
-
-@pytest.mark.parametrize("rotor", [jeffcott(), modal_rotor(2)], ids=["jeffcott", "modal, gyroscopic"])
-def test_numbers_do_not_depend_on_how_the_steps_are_handed_out(rotor: LinearRotor) -> None:
-    system = with_short_films(rotor)
-    profile = speed_profile([0.0, 0.01, 0.015, 0.02], [600.0, 650.0, 650.0, 300.0])
-    whole = march(system, profile, control())
-    for budget in (1, 7):
-        pieces = march(system, profile, control(), budget=budget)
-        np.testing.assert_array_equal(pieces.q, whole.q)
-        np.testing.assert_array_equal(pieces.v, whole.v)
-        np.testing.assert_array_equal(pieces.numbers, whole.numbers)
-
-
-def test_numbers_do_not_depend_on_the_size_of_the_buffers() -> None:
-    system, profile, limits = with_short_films(jeffcott()), speed_profile([0.0, 0.05], [0.0, 300.0]), control()
-    whole = march(system, profile, limits)
-    state, data = start(system, profile), rotor_data(system, profile)
-    out_q, out_v = np.empty((20, 4)), np.empty((20, 4))
-    rows, status = [], RUNNING
-    while status == RUNNING:
-        status, written = advance(
-            data, system.films, METHODS["esdirk4"].tableau, limits, state, 10**9, out_q, out_v, np.empty((20, 0))
-        )
-        rows.append(out_q[:written].copy())
-    np.testing.assert_array_equal(np.concatenate(rows), whole.q)
-
-
-def test_output_comes_at_its_own_even_times_and_does_not_cut_steps() -> None:
-    system, profile = with_short_films(jeffcott()), speed_profile([0.0, 0.05], [300.0, 300.0])
-    fine, coarse = (march(system, profile, control(output=output)) for output in (1e-6, 1e-3))
-    assert fine.numbers[STEPS] == coarse.numbers[STEPS]
-    assert (len(fine.times), len(coarse.times)) == (50_001, 51)
-    np.testing.assert_allclose(fine.q[::1000], coarse.q, rtol=0, atol=1e-13 * BEARING.clearance)
-
-
-def test_work_done_on_the_rotor_is_the_energy_it_gains() -> None:
-    system = with_short_films(jeffcott(unbalance=30e-6))
-    rotor = system.rotor
-    times, speeds = [0.0, 0.1, 0.12], [600.0, 1100.0, 1100.0]
-    profile = speed_profile(times, speeds)
-    got = march(system, profile, control(1e-9, longest=2e-5, output=1e-5))
-    power = []
-    for t, q, v in zip(got.times, got.q, got.v, strict=True):
-        piece = 0 if t < times[1] else 1
-        speed_up = (speeds[piece + 1] - speeds[piece]) / (times[piece + 1] - times[piece])
-        since = t - times[piece]
-        omega = speeds[piece] + speed_up * since
-        angle = profile.angles[piece] + since * (speeds[piece] + 0.5 * speed_up * since)
-        # Elastic forces are the energy's own; all others do work on it or take it away.
-        power.append(v @ (forces(system, q, v, speed_up, omega, angle) + rotor.stiffness @ q))
-    energy = 0.5 * np.einsum("ki,ij,kj->k", got.v, rotor.mass, got.v)
-    energy += 0.5 * np.einsum("ki,ij,kj->k", got.q, rotor.stiffness, got.q)
-    turnover = simpson(np.abs(power), x=got.times)
-    kink = round(times[1] / 1e-5)  # the unbalance jumps where the acceleration ends
-    for part in (slice(0, kink), slice(kink, None)):
-        gain = energy[part][-1] - energy[part][0]
-        assert simpson(power[part], x=got.times[part]) == pytest.approx(gain, abs=1e-4 * turnover)
-    assert np.ptp(energy) > 1e-3 * turnover  # there is a balance to be struck
-
-
-def test_results_converge_as_the_tolerance_shrinks() -> None:
-    """The run passes the threshold: a whirl grows out of a small error, the same one for every small tolerance."""
-    system = with_short_films(rigid_rotor(6.1, 3e-6, 0.0, GRAVITY))
-    profile = speed_profile([0.0, 0.3], [2 * math.pi * 100.0, 2 * math.pi * 250.0])
-    runs = [march(system, profile, control(tolerance)) for tolerance in (1e-6, 1e-7, 1e-8, 1e-10)]
-    errors = [float(np.abs(run.q - runs[-1].q).max()) / BEARING.clearance for run in runs[:-1]]
-    assert errors[0] < 1e-2
-    assert errors[2] < errors[1] < errors[0]
-    assert errors[2] < 0.05 * errors[0]
-
-
-@pytest.mark.parametrize("journal_mass", [1e-3, 1e-6])
-def test_a_journal_without_mass_worth_mentioning_costs_no_smaller_steps(journal_mass: float) -> None:
-    profile = speed_profile([0.0, 0.1], [2 * math.pi * 80.0, 2 * math.pi * 90.0])
-    heavy = march(with_short_films(jeffcott(0.01)), profile, control(1e-7))
-    light = march(with_short_films(jeffcott(journal_mass)), profile, control(1e-7))
-    assert light.status == FINISHED
-    assert light.numbers[STEPS] < 1.5 * heavy.numbers[STEPS]
-    settled = heavy.times > 0.05
-    assert np.abs(light.q - heavy.q)[settled].max() < 2e-2 * BEARING.clearance
-
-
-# --- contact, standstill, reversal ---
-
-
-TOUCHES = 0.9  # eccentricity at which the surfaces of these two tests meet; closer, the film lets no rotor through
-
-
-def test_contact_stops_the_march_with_the_journal_at_the_shell() -> None:
-    system, profile = with_short_films(jeffcott(unbalance=3e-3)), speed_profile([0.0, 1.0], [0.0, 1800.0])
-    got = march(system, profile, control()._replace(contact_eccentricity=TOUCHES))
-    assert got.status == CONTACT
-    assert 0.1 < got.numbers[TIME] < 1.0
-    assert TOUCHES <= got.numbers[LARGEST_EPS] < TOUCHES + 0.01
-    assert got.times[-1] <= got.numbers[TIME] < got.times[-1] + 1e-4
-    assert np.hypot(got.q[:, 0], got.q[:, 2]).max() < TOUCHES * BEARING.clearance
-
-
-def test_elastic_contact_pushes_back_and_the_march_goes_on() -> None:
-    system, profile = with_short_films(jeffcott(unbalance=3e-3)), speed_profile([0.0, 1.0], [0.0, 1800.0])
-    free = march(system, profile, control())
-    deepest = []
-    for stiffness in (1e8, 1e10):
-        got = march(system, profile, control(stiffness=stiffness)._replace(contact_eccentricity=TOUCHES))
-        assert got.status == FINISHED
-        deepest.append(got.numbers[LARGEST_EPS])
-    assert free.numbers[LARGEST_EPS] > deepest[0] > deepest[1] > TOUCHES
-
-
-def test_a_rotor_at_standstill_sinks_and_never_turns_sideways() -> None:
-    system, profile = with_short_films(jeffcott()), speed_profile([0.0, 0.2], [0.0, 0.0])
-    got = march(system, profile, control())
-    assert got.status == FINISHED
-    depth = got.q[:, 2] / BEARING.clearance
-    assert np.abs(got.q[:, 0]).max() < 1e-9 * BEARING.clearance
-    assert -1.0 < depth[-1] < -0.85
-    assert (np.diff(depth[20:]) < 0.0).all()
-
-
-def test_reversed_rotation_is_the_mirror_image() -> None:
-    system, limits = with_short_films(jeffcott(unbalance=0.0)), control(1e-8)
-    there, back = (march(system, speed_profile([0.0, 0.1], [sign * 300.0, sign * 500.0]), limits) for sign in (1, -1))
-    np.testing.assert_allclose(back.q * [-1, -1, 1, 1], there.q, rtol=0, atol=1e-9 * BEARING.clearance)
-    assert np.abs(there.q[:, 0]).max() > 0.1 * BEARING.clearance
-
-
-def test_speed_may_pass_through_zero() -> None:
-    system, profile = with_short_films(jeffcott()), speed_profile([0.0, 0.2], [200.0, -200.0])
-    loose, tight = (march(system, profile, control(tolerance)) for tolerance in (1e-7, 1e-9))
-    assert loose.status == tight.status == FINISHED
-    assert np.abs(loose.q - tight.q).max() < 1e-4 * BEARING.clearance

@@ -1,0 +1,166 @@
+"""Marches of rotors without films, and in short ones, for the tests of the time loop."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from films import system_of
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from frbcli.film.bearing import RectangularBearing, evaluate, make_film
+from frbcli.film.table import Mesh
+from frbcli.rotor.excitation import SpeedProfile
+from frbcli.rotor.jeffcott import jeffcott_rotor
+from frbcli.rotor.linear import LinearRotor
+from frbcli.scene.system import System
+from frbcli.solve.march import advance
+from frbcli.solve.start import rotor_data, state_at
+from frbcli.solve.state import OUTPUTS, RUNNING, Control, State
+from frbcli.solve.tableau import METHODS
+
+Array = NDArray[np.float64]
+
+MESH = Mesh(6, 96)
+BEARING = RectangularBearing(
+    width=20e-3, diameter=25e-3, clearance=35e-6, viscosity=12e-3, sections=2,
+    ambient_pressure=1e5, cavitation_pressure=1e5, supply_pressure=1e5,
+)  # fmt: skip
+SHORT_FILM = make_film(BEARING, "short", "half-sommerfeld", MESH)
+NO_FILM = SHORT_FILM._replace(force_scale=0.0)
+WIDE = replace(BEARING, clearance=1.0)  # m: the shell of a rotor that runs without films is far away
+
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class Result:
+    """times (k,), q and v (k, n) at the output times, and how the march ended."""
+
+    times: Array
+    q: Array
+    v: Array
+    status: int
+    numbers: Array
+
+
+def without_films(rotor: LinearRotor) -> System:
+    count = len(rotor.journals)
+    return system_of(rotor, (WIDE,) * count, (NO_FILM,) * count)
+
+
+def with_short_films(rotor: LinearRotor) -> System:
+    count = len(rotor.journals)
+    return system_of(rotor, (BEARING,) * count, (SHORT_FILM,) * count)
+
+
+def control(
+    tolerance: float = 1e-6,
+    longest: float = 1e-3,
+    output: float = 1e-4,
+    per_revolution: float = 1.0,
+    stiffness: float = 0.0,
+) -> Control:
+    return Control(tolerance, per_revolution, longest, output, 0.9999, stiffness)
+
+
+def start(system: System, profile: SpeedProfile, q: Array | None = None, v: Array | None = None) -> State:
+    zero = np.zeros(system.rotor.size)
+    return state_at(system, profile, zero if q is None else q, zero if v is None else v)
+
+
+def forces(system: System, q: Array, v: Array, speed_up: float, omega: float, angle: float) -> Array:
+    """All forces on the rotor, written down plainly."""
+    rotor = system.rotor
+    total = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
+    total = total + rotor.unbalance_cos * (speed_up * math.cos(angle) - omega**2 * math.sin(angle))
+    total = total + rotor.unbalance_sin * (speed_up * math.sin(angle) + omega**2 * math.cos(angle))
+    for pick, count, film, c in zip(rotor.journals, rotor.multiplicity, system.films, system.clearances, strict=True):
+        if film.force_scale > 0.0:
+            total = total + count * pick.T @ evaluate(film, c, pick @ q, pick @ v, omega).force
+    return np.asarray(total)
+
+
+def march(
+    system: System,
+    profile: SpeedProfile,
+    limits: Control,
+    state: State | None = None,
+    method: str = "esdirk4",
+    budget: int = 10**9,
+) -> Result:
+    """Advance to the end, handing out `budget` steps at a time."""
+    state = start(system, profile) if state is None else state
+    data, tableau = rotor_data(system, profile), METHODS[method].tableau
+    rows = int(profile.end / limits.output_step) + 10
+    out_q, out_v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
+    written, status = 0, RUNNING
+    while status == RUNNING:
+        status, fresh = advance(
+            data, system.films, tableau, limits, state, budget, out_q[written:], out_v[written:], np.empty((rows, 0))
+        )
+        written += fresh
+    assert written == int(state.numbers[OUTPUTS])
+    times = np.arange(written) * limits.output_step
+    return Result(times, out_q[:written], out_v[:written], status, state.numbers)
+
+
+def even_steps(h: float, output: float) -> Control:
+    """Every step of the same length h: the error never matters, and what is longer than h is refused."""
+    return control(tolerance=1e9, longest=h, output=output)
+
+
+def linear_reference(rotor: LinearRotor, omega: float, times: Array, q: Array, v: Array) -> tuple[Array, Array]:
+    """Exact q and v (k, n) at even times of a rotor without films at constant speed."""
+    n = rotor.size
+    # The state grows by cos, sin of the angle and by one, so that the whole problem is linear and homogeneous.
+    a = np.zeros((2 * n + 3, 2 * n + 3))
+    a[:n, n : 2 * n] = np.eye(n)
+    a[n : 2 * n, :n] = -np.linalg.solve(rotor.mass, rotor.stiffness)
+    a[n : 2 * n, n : 2 * n] = -np.linalg.solve(rotor.mass, rotor.damping + omega * rotor.gyroscopic)
+    a[n : 2 * n, 2 * n] = omega**2 * np.linalg.solve(rotor.mass, rotor.unbalance_sin)
+    a[n : 2 * n, 2 * n + 1] = -(omega**2) * np.linalg.solve(rotor.mass, rotor.unbalance_cos)
+    a[n : 2 * n, 2 * n + 2] = np.linalg.solve(rotor.mass, rotor.static_load)
+    a[2 * n, 2 * n + 1], a[2 * n + 1, 2 * n] = -omega, omega
+    step = expm(a * (times[1] - times[0]))
+    rows = [np.concatenate([q, v, [1.0, 0.0, 1.0]])]
+    for _ in times[1:]:
+        rows.append(step @ rows[-1])
+    exact = np.array(rows)
+    return exact[:, :n], exact[:, n : 2 * n]
+
+
+def jeffcott(journal_mass: float = 0.1, unbalance: float = 3e-6) -> LinearRotor:
+    return jeffcott_rotor(6.0, journal_mass, 5e6, unbalance, 1.0, 0.1, GRAVITY)
+
+
+def slender_jeffcott() -> LinearRotor:
+    """Without films, and with natural frequencies that are not worlds apart."""
+    return jeffcott_rotor(1.0, 0.5, 4e4, 1e-3, 3.0, 2.0, GRAVITY)
+
+
+def slope(sizes: list[float], errors: list[float]) -> float:
+    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
+
+
+def modal_rotor(films: int, seed: int = 4) -> LinearRotor:
+    """60 states coupled gyroscopically, natural frequencies from 30 to 900 Hz, journals and unbalance all over them."""
+    chance, n = np.random.default_rng(seed), 60
+    turn = np.linalg.qr(chance.normal(size=(n, n)))[0]
+    stiffness = turn @ np.diag((2 * math.pi * np.linspace(30.0, 900.0, n)) ** 2) @ turn.T
+    spin = chance.normal(size=(n, n)) * 0.05
+    forward = chance.normal(size=(2, n))
+    return LinearRotor(
+        mass=np.eye(n),
+        damping=20.0 * np.eye(n),
+        gyroscopic=spin - spin.T,
+        stiffness=0.5 * (stiffness + stiffness.T),
+        static_load=chance.normal(size=n),
+        unbalance_cos=1e-5 * forward[0],
+        unbalance_sin=1e-5 * forward[1],
+        journals=chance.normal(size=(films, 2, n)) / math.sqrt(n),
+        multiplicity=np.arange(1.0, films + 1.0),
+        points=(("journal", chance.normal(size=(2, n)) / math.sqrt(n)),),
+    )
