@@ -190,6 +190,7 @@ def test_estimate_is_exact_between_first_and_second_order() -> None:
     for order, low, high in ((1.0, 0.5, 1.0), (2.0, 1.0, 2.0)):
         fine, coarse = 1.0 + 1e-3, 1.0 + 1e-3 * 2.0**order
         assert low < estimate((fine, 0.0), (coarse, 0.0)) / 1e-3 < high
+        assert estimate((fine, 0.0), (coarse, 0.0), order) == pytest.approx(1e-3, rel=2e-3)
     assert estimate((0.0, 0.0), (0.0, 0.0)) == 0.0
 
 

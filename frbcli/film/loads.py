@@ -9,6 +9,7 @@ import numpy as np
 
 from frbcli.film.axial import axial_weights
 from frbcli.film.balance import Motion
+from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 from frbcli.film.volumes import VolumeFilm, VolumeSolution
@@ -159,11 +160,8 @@ def _vertex(low: float, middle: float, high: float, before: float, behind: float
     return middle if bend >= 0.0 else middle - 0.25 * slope**2 / bend
 
 
-def estimate(fine: tuple[float, float], coarse: tuple[float, float]) -> float:
-    """Relative error of a force from the same one on a mesh twice as coarse, by Richardson's extrapolation.
-
-    Fronts between cells make the order 1 to 2; half the difference holds for the middle of it.
-    """
+def estimate(fine: tuple[float, float], coarse: tuple[float, float], order: float = FRONTS) -> float:
+    """Relative error of a force from the same one on a mesh twice as coarse, by Richardson's extrapolation."""
     size = float(np.hypot(*fine))
     difference = float(np.hypot(fine[0] - coarse[0], fine[1] - coarse[1]))
-    return difference / (2.0**1.5 - 1.0) / size if size > 0.0 else 0.0
+    return difference / (2.0**order - 1.0) / size if size > 0.0 else 0.0

@@ -46,5 +46,5 @@ def steady_film(
     film = VolumeFilm(section, fitted_grid(section, motion.d, around, along), law, reference)
     solution = film.steady(motion, film.from_coarser(coarse, first.w))
     fine = loads(film, motion, solution, slip, factor)
-    error = estimate(fine.force, loads(coarse, motion, first).force)
+    error = estimate(fine.force, loads(coarse, motion, first).force, law.order)
     return SteadyFilm(film, solution, fine, error, first.iterations + solution.iterations)

@@ -135,7 +135,7 @@ def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, 
     except NotConverged:
         return math.nan, 0
     coarse = turned(loads(film, worst.motion, solution).force, plan.turning * worst.time)
-    return estimate(force, coarse), solution.iterations
+    return estimate(force, coarse, film.law.order), solution.iterations
 
 
 def _coarser(plan: KinematicPlan) -> KinematicPlan:

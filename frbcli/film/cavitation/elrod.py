@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, CellState, Scales
+from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
 
 
 @dataclass(frozen=True)
@@ -15,6 +15,7 @@ class Elrod:
 
     bulk_modulus: float = np.inf
     conserves = True
+    order = FRONTS
     clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:

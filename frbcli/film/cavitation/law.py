@@ -33,10 +33,14 @@ class Scales:
     ambient: float
 
 
+FRONTS = 1.5  # fronts between cells make the order 1 to 2: the middle of it
+
+
 class Law(Protocol):
     """A cavitation model.
 
-    conserves: whether oil neither appears nor vanishes in its cells; clips: whether loads take no pressure below p_cav.
+    conserves: whether oil neither appears nor vanishes in its cells; clips: whether loads take no pressure below p_cav;
+    order: by which forces become exact with smaller cells.
     """
 
     @property
@@ -44,6 +48,9 @@ class Law(Protocol):
 
     @property
     def clips(self) -> bool: ...
+
+    @property
+    def order(self) -> float: ...
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         """The state of cells with the unknown w, of any shape."""

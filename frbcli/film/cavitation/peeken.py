@@ -15,6 +15,7 @@ class Peeken:
 
     bunsen: float
     conserves = True
+    order = 1.0  # oil and air mix everywhere in the cavity, and flow upwind
     clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, CellState, Scales
+from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
 
 PREFACTOR = 0.01  # a of (3.31)
 
@@ -22,6 +22,7 @@ class Penalty:
     prefactor: float
     steepness: float
     conserves = False
+    order = FRONTS
     clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, CellState, Scales
+from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
 
 
 @dataclass(frozen=True)
@@ -17,6 +17,7 @@ class Reynolds:
     """No parameters."""
 
     conserves = False
+    order = FRONTS
     clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, CellState, Scales
+from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
 
 
 @dataclass(frozen=True)
@@ -15,6 +15,7 @@ class Sommerfeld:
 
     clips: bool = False
     conserves = True
+    order = FRONTS
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         zero, one = np.zeros_like(w), np.ones_like(w)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, CellState, Scales
+from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
 
 # theta'_0, the slope outside of the step. As published it makes the full film as compressible as a bulk modulus of
 # 1000 p_cav does; the unknown w needs none, so it may be chosen as small as one likes.
@@ -21,6 +21,7 @@ class TwoPhase:
     steepness: float
     outer_slope: float = PUBLISHED_SLOPE
     conserves = True
+    order = FRONTS
     clips = False
 
     def cells(self, w: Array, scales: Scales) -> CellState:
