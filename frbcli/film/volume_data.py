@@ -13,13 +13,15 @@ from frbcli.film.balance import NO_DISTANCE
 from frbcli.film.cell_law import law_code
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
+from frbcli.film.kept_gap import gap_limits
+from frbcli.film.table import LARGEST_ECCENTRICITY
 from frbcli.film.volumes import VolumeFilm
 
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
 # Numbers of one film. PULL: by which the given pressures fall with the square of the grid's speed, in s; WHIRLING: what
-# FIRST becomes in a half-frequency whirl.
+# FIRST becomes in a half-frequency whirl; STOPS_FROM, LEAST_GAP: see kept_gap.py.
 (
     ASPECT,
     REFERENCE,
@@ -41,8 +43,10 @@ CLOSED, GIVEN, FREE = range(3)
     FOLLOWS,
     PULL,
     WHIRLING,
+    STOPS_FROM,
+    LEAST_GAP,
     FILM_NUMBERS,
-) = range(21)
+) = range(23)
 # Whether the penalty's b (3.32) follows the eccentricity, FIRST and SECOND being those of the centred journal; whether
 # both follow the speed, being those of 1 rad/s; whether the first follows the whirl of the journal.
 STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL = range(4)
@@ -78,10 +82,15 @@ class VolumeFilms(NamedTuple):
 
 
 def volume_films(
-    films: Sequence[VolumeFilm], follows: Sequence[int] = (), pulls: Sequence[float] = (), whirling: float = 0.0
+    films: Sequence[VolumeFilm],
+    follows: Sequence[int] = (),
+    pulls: Sequence[float] = (),
+    whirling: float = 0.0,
+    contact_eccentricity: float = LARGEST_ECCENTRICITY,
 ) -> VolumeFilms:
     """The films as arrays; all have grids of the same shape. follows: what the parameters of their laws do; pulls: in
-    s; whirling: what the laws' first parameter becomes in a whirl, if it follows that."""
+    s; whirling: what the laws' first parameter becomes in a whirl, if it follows that; contact_eccentricity: from which
+    on the surfaces touch."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
@@ -97,6 +106,7 @@ def volume_films(
         data.numbers[index, FOLLOWS] = follows[index] if follows else STANDS
         data.numbers[index, PULL] = pulls[index] if pulls else 0.0
         data.numbers[index, WHIRLING] = whirling
+        data.numbers[index, STOPS_FROM], data.numbers[index, LEAST_GAP] = gap_limits(contact_eccentricity)
     return data
 
 

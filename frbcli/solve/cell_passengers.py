@@ -12,14 +12,31 @@ from numba import njit
 
 from frbcli.film.block_cyclic import solve_ring
 from frbcli.film.cell_balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
+from frbcli.film.cell_law import empty_unknown
 from frbcli.film.cell_newton import damp, film_loads, imbalance, store_rates
 from frbcli.film.cell_states import FRACTION, cell_states, law_parameters
 from frbcli.film.channel_flow import ask_of_channels, exchange
-from frbcli.film.table import LARGEST_ECCENTRICITY
-from frbcli.film.volume_data import AREA, COS, GAP, MOUTH, PULL, REMEMBERS, SIN, UNKNOWN
+from frbcli.film.kept_gap import kept_gap
+from frbcli.film.volume_data import (
+    AMBIENT,
+    AREA,
+    CAVITY,
+    COS,
+    GAP,
+    LAW,
+    LEAST_GAP,
+    MOUTH,
+    PULL,
+    REFERENCE,
+    REMEMBERS,
+    SIN,
+    STOPS_FROM,
+    UNKNOWN,
+)
 
 # How a film's grid stands, where the journal is in it, and the parameters of its law.
-# FOLLOWS_X, FOLLOWS_Y, FOLLOWS_XY: the symmetric matrix by which the gap follows the journal.
+# EMPTY: empty_unknown of that law. FOLLOWS_X, FOLLOWS_Y, FOLLOWS_XY: the symmetric matrix by which the gap follows the
+# journal, see kept_gap.
 (
     GRID_TURN,
     GRID_SPEED,
@@ -28,40 +45,25 @@ from frbcli.film.volume_data import AREA, COS, GAP, MOUTH, PULL, REMEMBERS, SIN,
     UNSETTLED,
     LAW_FIRST,
     LAW_SECOND,
+    EMPTY,
     FOLLOWS_X,
     FOLLOWS_Y,
     FOLLOWS_XY,
     GRIDS,
-) = range(11)
+) = range(12)
 SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
-STOPS_FROM = 0.999  # eccentricity from which the film sees a journal come to a stop
 SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
 @njit(cache=True, error_model="numpy")
-def keep_a_gap(grid, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
-    """Displacement and velocity as the film feels them: a journal that sinks into the shell, as far as an elastic
-    contact lets it, comes to a stop before the last of the gap is gone, smoothly, so that the film's force does."""
-    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
-    grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY] = 1.0, 1.0, 0.0
-    if eccentricity <= STOPS_FROM:
-        return d_x, d_y, v_x, v_y
-    n_x, n_y, left = d_x / eccentricity, d_y / eccentricity, LARGEST_ECCENTRICITY - STOPS_FROM
-    way = math.tanh((eccentricity - STOPS_FROM) / left)
-    along, radial = (STOPS_FROM + left * way) / eccentricity, 1.0 - way * way
-    grid[FOLLOWS_X] = radial * n_x * n_x + along * n_y * n_y
-    grid[FOLLOWS_Y] = radial * n_y * n_y + along * n_x * n_x
-    grid[FOLLOWS_XY] = (radial - along) * n_x * n_y
-    return (
-        along * d_x,
-        along * d_y,
-        grid[FOLLOWS_X] * v_x + grid[FOLLOWS_XY] * v_y,
-        grid[FOLLOWS_XY] * v_x + grid[FOLLOWS_Y] * v_y,
-    )
+def follow(grid, v_x, v_y):  # type: ignore[no-untyped-def]
+    """What the film feels of a velocity."""
+    xy = grid[FOLLOWS_XY]
+    return grid[FOLLOWS_X] * v_x + xy * v_y, xy * v_x + grid[FOLLOWS_Y] * v_y
 
 
 @njit(cache=True, error_model="numpy")
@@ -104,7 +106,10 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     """film_numbers of passengers.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
     pressures of the channels over its cells, see cell_channels.py."""
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
-    d_x, d_y, v_x, v_y = keep_a_gap(grid, d_x, d_y, v_x, v_y)
+    d_x, d_y, grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY] = kept_gap(
+        numbers[STOPS_FROM], numbers[LEAST_GAP], d_x, d_y
+    )
+    v_x, v_y = follow(grid, v_x, v_y)
     c, s = math.cos(turn), math.sin(turn)
     x, y = c * d_x + s * d_y, c * d_y - s * d_x
     grid[GRID_X], grid[GRID_Y] = x, y
@@ -113,6 +118,9 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     remembers = numbers[REMEMBERS] != 0.0
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, d_x, d_y, v_x, v_y, omega)
+        grid[EMPTY] = empty_unknown(
+            int(numbers[LAW]), grid[LAW_FIRST], grid[LAW_SECOND], numbers[REFERENCE], numbers[CAVITY], numbers[AMBIENT]
+        )
     drop, rate = numbers[PULL] * spin * spin, 1.0 / g if remembers else 0.0
     cell_states(numbers, cells, grid[LAW_FIRST], grid[LAW_SECOND], drop, w, states)
     balances(
@@ -169,21 +177,27 @@ def cell_numbers(  # type: ignore[no-untyped-def]
 @njit(cache=True, error_model="numpy")
 def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untyped-def]
     """The unknowns w (m, k) follow a correction u of the journal's velocity and those of its channels' pressures,
-    changes (slots,); 1 if the film had not settled."""
+    changes (slots,); 1 if the film had not settled.
+
+    Of a small gap in a short step the oil counts far more than its flow, and a cell's oil is an S over w: steep between
+    empty and full, flat on both sides. From one flat side Newton's method would leap to the other and back for ever; a
+    cell that leaps over all of the steep part stops in its middle, from where it gets to its end directly.
+    """
     m, k = w.shape
+    empty = grid[EMPTY]
     c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
-    u_x, u_y = (
-        grid[FOLLOWS_X] * u_x + grid[FOLLOWS_XY] * u_y,
-        grid[FOLLOWS_XY] * u_x + grid[FOLLOWS_Y] * u_y,
-    )
+    u_x, u_y = follow(grid, u_x, u_y)
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
     grid[GRID_X] += g * x
     grid[GRID_Y] += g * y
     for i in range(m):
         for j in range(k):
+            before = w[i, j]
             w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
             for slot in range(changes.shape[0]):
                 w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
+            if max(before, w[i, j]) > 0.0 and min(before, w[i, j]) < empty:
+                w[i, j] = 0.5 * empty
     return 1 if grid[UNSETTLED] != 0.0 else 0
 
 
