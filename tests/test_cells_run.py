@@ -16,7 +16,6 @@ from frbcli.errors import InputError
 from frbcli.film.cell_states import whirl_share
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.cell_passengers import FOLLOWS_X, FOLLOWS_XY, FOLLOWS_Y, GRIDS, keep_a_gap
 from frbcli.solve.march import advance
 from frbcli.solve.oil import net_flow, oil_defect
 from frbcli.solve.start import first_state, rotor_data
@@ -215,21 +214,3 @@ def test_a_grid_that_turns_with_half_the_speed_finds_the_same_path(cavitation: s
 def test_grid_that_cannot_turn(name: str, settings: list[str]) -> None:
     with pytest.raises(InputError, match=r"film\.grid"):
         make_plan(load_case(name, [*settings, "film.grid=half-speed"]))
-
-
-@pytest.mark.parametrize("eccentricity", [0.5, 0.99919, 0.99921, 0.9996, 1.002])
-def test_a_journal_in_the_shell_keeps_a_gap(eccentricity: float) -> None:
-    grid, c, s = np.zeros(GRIDS), np.cos(0.7), np.sin(0.7)
-
-    def felt(x: float, y: float) -> Array:
-        return np.array(keep_a_gap(np.zeros(GRIDS), x, y, 0.0, 0.0)[:2])
-
-    x, y = eccentricity * c, eccentricity * s
-    moved = np.array(keep_a_gap(grid, x, y, 2.0, -3.0))
-    assert np.hypot(*moved[:2]) <= min(eccentricity * (1.0 + 1e-15), 0.9999)
-    step = 1e-7
-    changes = felt(x + step, y) - felt(x - step, y), felt(x, y + step) - felt(x, y - step)
-    matrix = np.column_stack(changes) / (2.0 * step)
-    follows = np.array([[grid[FOLLOWS_X], grid[FOLLOWS_XY]], [grid[FOLLOWS_XY], grid[FOLLOWS_Y]]])
-    assert follows == pytest.approx(matrix, abs=1e-5)  # no jump in the velocity either
-    assert moved[2:] == pytest.approx(follows @ [2.0, -3.0], abs=1e-12)

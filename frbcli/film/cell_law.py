@@ -51,11 +51,10 @@ def wright_omega(x):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy")
 def empty_unknown(kind, first, second, reference, cavity, ambient):  # type: ignore[no-untyped-def]
-    """w below which a cell holds no oil, and its law goes on with other slopes; -inf for laws without such an end."""
-    ratio = (cavity + ambient) / reference
-    if kind == TWO_PHASE:
-        return second * (2.0 * first - 1.0) - 1.0 - 2.0 * (1.0 - first) * ratio
-    return -1.0 - ratio if kind == PEEKEN else -math.inf
+    """w below which a cell is empty and its oil hardly changes any more; -inf for laws without such an end."""
+    if kind != TWO_PHASE:
+        return -math.inf
+    return second * (2.0 * first - 1.0) - 1.0 - 2.0 * (1.0 - first) * (cavity + ambient) / reference
 
 
 @njit(cache=True, error_model="numpy")
