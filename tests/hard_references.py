@@ -9,7 +9,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from frbcli.analysis.hard_cases import make_reference
+from frbcli.analysis.hard_reference import make_reference
 from frbcli.case.hard import REFERENCES, hard_cases
 
 FILE = Path(__file__).parents[1] / "cases" / "hard" / REFERENCES

@@ -12,24 +12,45 @@ from frbcli.analysis.differences import difference
 from frbcli.analysis.verify import verify
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
-from frbcli.solve.error_budget import BEFORE_WHIRL, FIRST, quiet_until, summed
-from frbcli.solve.march import ERROR_MEMORY
+from frbcli.errors import NotConverged
+from frbcli.scene.plan import make_plan
+from frbcli.scene.stretches import make_stretches
+from frbcli.scene.system import make_system, run_up_profile
+from frbcli.solve import under_way
+from frbcli.solve.error_budget import BEFORE_WHIRL, quiet_until, summed
+from frbcli.solve.fewer_cells import ORDER, FewerCells, fewer_cells, on_fewer_cells
+from frbcli.solve.film_error import FilmErrors
 from frbcli.solve.run import runup
+from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
+from frbcli.solve.step import ERROR_MEMORY, book_error
 
 SHORT_RUN = ("speed.duration=0.3 s", "speed.to=30 Hz", "output.step=1e-3 s")
 
 
-def test_sums_of_local_errors_from_their_fading_sum() -> None:
+def test_sums_of_local_errors_by_spans_of_the_run() -> None:
     """A burst of steps of error 1e-6 every 1e-3 s for 0.2 s: 200 of them, and at most what 0.1 s of memory holds."""
-    times = np.arange(0.0, 1.0, 1e-3)
-    fading = [0.0]
-    for t in times[1:]:
-        fading.append(fading[-1] * np.exp(-1e-3 / ERROR_MEMORY) + (1e-6 if t <= 0.2 else 0.0))
-    largest, whole = summed(np.column_stack([times, fading]), 1.0)
-    assert whole == pytest.approx(200e-6, rel=0.02)
+    numbers, errors = np.zeros(NUMBERS), np.zeros((2, ERROR_SPANS))
+    numbers[RUN_END] = 1.0
+    for t in np.arange(1, 1000) * 1e-3:
+        numbers[TIME] = t
+        book_error(numbers, errors, 1e-3, 1e-6 if t <= 0.2 else 0.0)
+    largest, whole = summed(errors, 1.0)
+    assert whole == pytest.approx(200e-6, rel=0.01)
     assert largest == pytest.approx(1e-6 * ERROR_MEMORY / 1e-3 * (1.0 - np.exp(-2.0)), rel=0.02)
-    assert summed(np.column_stack([times, fading]), 0.1)[1] == pytest.approx(100e-6, rel=0.02)
-    assert summed(FIRST, 1.0) == (0.0, 0.0)
+    assert largest == numbers[ERROR_LARGEST]
+    assert summed(errors, 0.1)[1] == pytest.approx(100e-6, rel=0.05)
+    assert summed(errors, 0.05)[0] < 0.5 * largest
+    assert summed(np.zeros((2, ERROR_SPANS)), 0.0) == (0.0, 0.0)
+
+
+def test_the_stated_error_does_not_depend_on_when_the_run_is_looked_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = load_case("jeffcott", [*SHORT_RUN, "accuracy.tolerance=1e-3"])
+    often = runup(case, tmp_path / "a.h5").error
+    monkeypatch.setattr(under_way, "BUDGET", 7)
+    monkeypatch.setattr(under_way, "BUFFER", 10)
+    assert runup(case, tmp_path / "b.h5").error == often
 
 
 def test_quiet_until_a_whirl_grows() -> None:
@@ -51,6 +72,72 @@ def test_stated_error_bounds_the_true_one(settings: tuple[str, ...], tmp_path: P
         assert run.error["displacement"] < 20.0 * apart.signals["disk_y_m"]
 
 
+STARVING = ("speed.duration=0.2 s", "speed.from=20 Hz", "speed.to=40 Hz", "output.step=1e-3 s")
+
+
+@pytest.mark.parametrize("settings", [(), ("accuracy.mesh=[4, 32]",), ("accuracy.mesh=[8, 64]",)])
+def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tmp_path: Path) -> None:
+    """A film that loses oil; against more than twice the cells of the plan."""
+    run = runup(load_case("jeffcott-two-phase", [*STARVING, *settings]), tmp_path / "run.h5")
+    fine = runup(load_case("jeffcott-two-phase", [*STARVING, "accuracy.mesh=[12, 120]"]), tmp_path / "fine.h5")
+    apart = difference(run, fine)
+    assert 1e-4 < apart.largest < run.error["eccentricity"] < 8.0 * apart.largest
+    assert apart.signals["disk_y_m"] < run.error["displacement"]
+    assert apart.signals["oil_fraction"] < run.error["oil_fraction"]
+    assert 0.5 * run.error["eccentricity"] < run.error["cells"] < run.error["eccentricity"]
+    assert run.cost["error_cpu_s"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "mesh", "fewer"),
+    [
+        ("jeffcott", [6, 48], None),  # no cells
+        ("jeffcott-two-phase", [6, 48], (24, 3)),
+        ("floating-ring", [6, 48], (32, 4)),  # with bores
+        ("floating-ring", [5, 40], (28, 3)),
+        ("jeffcott-two-phase", [3, 12], None),
+    ],
+)
+def test_cells_of_the_comparison(name: str, mesh: list[int], fewer: tuple[int, int] | None) -> None:
+    case = load_case(name, [f"accuracy.mesh={mesh}"])
+    plan = make_plan(case)
+    assert fewer_cells(plan, make_system(case, plan)) == fewer
+
+
+def test_error_of_cells_from_two_runs() -> None:
+    """An error of the order that is taken for granted is found as it is; one run must not end before the other."""
+    case = load_case("rigid-two-phase")
+    system = make_system(case, make_plan(case))
+    exact, bent = (np.zeros((3, 2 * system.rotor.size + 2)) for _ in range(2))
+    bent[1, 0], bent[2, -1] = 1e-2 * system.clearances[0], 3e-3
+    found = FewerCells(2.0, exact + 2.0**ORDER * bent).error(exact + bent, system)
+    assert found is not None
+    assert (found.eccentricity, found.displacement) == pytest.approx((1e-2, 1e-2))
+    assert (found.ring_speed, found.oil_fraction) == pytest.approx((0.0, 3e-3))
+    assert FewerCells(2.0, exact[:2]).error(exact, system) is None
+
+
+def test_a_run_that_does_not_begin_on_fewer_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = load_case("rigid-two-phase")
+    plan = make_plan(case)
+    march = under_way.March(case, plan, make_stretches(case, plan), run_up_profile(case))
+
+    def fails(*_: object) -> object:
+        raise NotConverged("no")
+
+    monkeypatch.setattr(under_way, "make_stretches", fails)
+    assert on_fewer_cells(march, 1.0) is None
+
+
+def test_a_film_that_carries_little_counts_as_little() -> None:
+    times = np.arange(20.0)
+    errors, sizes = np.full(20, 1.0), np.full(20, 1000.0)
+    errors[::2], sizes[::2] = 50.0, 60.0  # every other film is off by all that it carries, which is little
+    assert FilmErrors(times, errors, sizes).relative() == pytest.approx(1e-3)
+    assert FilmErrors(times, errors, np.full(20, 1000.0)).relative() == pytest.approx(50e-3)
+    assert FilmErrors(times, errors, np.zeros(20)).relative() is None
+
+
 def test_parts_that_a_run_has(tmp_path: Path) -> None:
     finite = runup(load_case("jeffcott", SHORT_RUN), tmp_path / "a.h5").error
     short = runup(load_case("jeffcott", [*SHORT_RUN, "film.theory=short"]), tmp_path / "b.h5").error
@@ -59,6 +146,7 @@ def test_parts_that_a_run_has(tmp_path: Path) -> None:
     assert short["model_relative"] == short["film_force_relative"] > 1e-2
     assert 0.0 < finite["coupling"] < 1e-5
     assert finite["modal_reduction"] is None
+    assert (finite["cells"], finite["ring_speed"], finite["oil_fraction"]) == (None, None, None)
     assert finite["quiet_until_s"] == pytest.approx(0.3)
 
 

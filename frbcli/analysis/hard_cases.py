@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 FINISHED, INPUT_ERROR, NOT_CONVERGED, ERROR = "finished", "input-error", "not-converged", "error"
 RUNS = {"runup": runup, "rundown": rundown}
 TESTS = {"rotation": rotation, "squeeze": squeeze, "whirl": whirl}
-MOMENTS = 48  # times at which a run is held to its reference
-DIGITS = 7  # of the numbers that a reference keeps
 OIL_LOST = 1e-3  # share of the oil that may be unaccounted for
 
 Array = NDArray[np.float64]
@@ -41,8 +39,8 @@ class HardResult:
     status: of the run or test, "finished" for a test that converged; "input-error", "error" (a bug), "hung", "died";
     message: why, where there is more to say; events: kinds with names of films; error: the largest deviation of the
     eccentricities from those of the reference until until_s, or the relative one of the force, None without reference;
-    reported: the error that the program itself states for it, None where it states none; problems: what is not as it
-    should be.
+    reported: the error that the program itself states for it, None where it states none; certain: how far the
+    reference may be off, None without; problems: what is not as it should be.
     """
 
     hard: HardCase
@@ -51,6 +49,7 @@ class HardResult:
     events: tuple[str, ...] = ()
     error: float | None = None
     reported: float | None = None
+    certain: float | None = None
     until_s: float | None = None
     cpu_s: float = 0.0
     problems: tuple[str, ...] = ()
@@ -81,8 +80,8 @@ class HardResults:
 
         return pd.DataFrame([
             {"name": r.hard.name, "topic": r.hard.topic, "expected": r.hard.end, "status": r.status, "ok": r.ok,
-             "error": r.error, "reported": r.reported, "until_s": r.until_s, "cpu_s": r.cpu_s,
-             "problems": "; ".join(r.problems)}
+             "error": r.error, "reported": r.reported, "certain": r.certain, "until_s": r.until_s,
+             "cpu_s": r.cpu_s, "problems": "; ".join(r.problems)}
             for r in self.results
         ])  # fmt: skip
 
@@ -111,7 +110,7 @@ def hard_case_result(task: tuple[HardCase, Reference | None]) -> HardResult:
     hard, reference = task
     begun = time.process_time()
     try:
-        result = _compared(hard, _outcome(hard.command, hard.case()), reference)
+        result = _compared(hard, outcome(hard.command, hard.case()), reference)
     except InputError as error:
         result = HardResult(hard, INPUT_ERROR, " ".join(map(str, error.faults)))
     except NotConverged as error:
@@ -122,23 +121,8 @@ def hard_case_result(task: tuple[HardCase, Reference | None]) -> HardResult:
     return replace(result, problems=tuple(problems), cpu_s=time.process_time() - begun)
 
 
-def make_reference(hard: HardCase) -> Reference:
-    """The reference of a hard case, computed with its fine settings."""
-    begun = time.process_time()
-    outcome = _outcome(hard.command, hard.case(fine=True))
-    count = max(1, int(np.searchsorted(outcome.times_s, outcome.until_s, side="right")))
-    kept = np.unique(np.linspace(0, count - 1, MOMENTS).astype(int))
-    values = {name: _rounded(row[kept] if len(outcome.times_s) else row) for name, row in outcome.values.items()}
-    times = _rounded(outcome.times_s[kept]) if len(outcome.times_s) else []
-    return Reference(outcome.status, values, times, outcome.until_s, round(time.process_time() - begun, 1))
-
-
-def _rounded(values: Array) -> list[float]:
-    return [float(f"{value:.{DIGITS}g}") for value in values]
-
-
 @dataclass(frozen=True)
-class _Outcome:
+class Outcome:
     """values: by name, at times_s (n,) of a run, one number each of a test, which has no times; until_s: how far they
     can be compared."""
 
@@ -152,20 +136,21 @@ class _Outcome:
     problems: tuple[str, ...]
 
 
-def _outcome(command: str, case: Case) -> _Outcome:
+def outcome(command: str, case: Case) -> Outcome:
+    """Of a run or a test. Raises what they raise."""
     if command in RUNS:
         with TemporaryDirectory(prefix="frb-hard-") as folder:
             return _run_outcome(RUNS[command](case, Path(folder) / "run.h5"))
     return _test_outcome(TESTS[command](case).results[0])
 
 
-def _run_outcome(run: Run) -> _Outcome:
+def _run_outcome(run: Run) -> Outcome:
     names = [name for name in run.signals if name.startswith("eccentricity")]
     problems = [f"{name} is not finite" for name in run.signals if not np.isfinite(run[name]).all()]
     lost = run.error["oil_balance_relative"]
     if lost is not None and not lost <= OIL_LOST:
         problems.append(f"oil is lost: {lost:.1e} of it")
-    return _Outcome(
+    return Outcome(
         status=run.status,
         message="" if run.status == FINISHED else f"{run.status} at {run.t_end_s:.4g} s",
         values={name: run[name] for name in names},
@@ -177,7 +162,7 @@ def _run_outcome(run: Run) -> _Outcome:
     )
 
 
-def _test_outcome(result: KinematicResult) -> _Outcome:
+def _test_outcome(result: KinematicResult) -> Outcome:
     values: dict[str, Array] = {}
     problems: list[str] = []
     if result.loads is not None:
@@ -186,20 +171,26 @@ def _test_outcome(result: KinematicResult) -> _Outcome:
             problems.append("a load is not finite")
     status = FINISHED if result.status == "ok" else result.status
     reported = None if math.isnan(result.force_error) else result.force_error
-    return _Outcome(status, result.problem, values, np.empty(0), 0.0, (), reported, tuple(problems))
+    return Outcome(status, result.problem, values, np.empty(0), 0.0, (), reported, tuple(problems))
 
 
-def _compared(hard: HardCase, outcome: _Outcome, reference: Reference | None) -> HardResult:
-    result = HardResult(hard, outcome.status, outcome.message, outcome.events, reported=outcome.reported)
-    result = replace(result, problems=outcome.problems)
+def _compared(hard: HardCase, found: Outcome, reference: Reference | None) -> HardResult:
+    result = HardResult(hard, found.status, found.message, found.events, reported=found.reported)
+    result = replace(result, problems=found.problems)
     if reference is None:
         return result
-    if not outcome.values:
-        return replace(result, problems=(*outcome.problems, "nothing to compare with the reference"))
+    if not found.values:
+        return replace(result, problems=(*found.problems, "nothing to compare with the reference"))
+    error, until = apart(found, reference)
+    return replace(result, error=error, until_s=until, certain=reference.change)
+
+
+def apart(found: Outcome, reference: Reference) -> tuple[float, float | None]:
+    """(how far an outcome is from a reference, see HardResult; until which time in s, None for a test)."""
     if not reference.times_s:
-        return replace(result, error=_force_error(outcome.values, reference.values))
-    until = min(outcome.until_s, reference.until_s)
-    return replace(result, error=_deviation(outcome, reference, until), until_s=until)
+        return _force_error(found.values, reference.values), None
+    until = min(found.until_s, reference.until_s)
+    return _deviation(found, reference, until), until
 
 
 def _force_error(values: dict[str, Array], exact: dict[str, list[float]]) -> float:
@@ -208,12 +199,12 @@ def _force_error(values: dict[str, Array], exact: dict[str, list[float]]) -> flo
     return float(np.linalg.norm(off) / np.linalg.norm([exact[name][0] for name in names]))
 
 
-def _deviation(outcome: _Outcome, reference: Reference, until_s: float) -> float:
+def _deviation(found: Outcome, reference: Reference, until_s: float) -> float:
     """Largest deviation at the times of the reference that lie before until_s."""
     times = np.array(reference.times_s)
     shared = times <= until_s
     off = [
-        np.interp(times[shared], outcome.times_s, outcome.values[name]) - np.array(exact)[shared]
+        np.interp(times[shared], found.times_s, found.values[name]) - np.array(exact)[shared]
         for name, exact in reference.values.items()
     ]
     return float(np.max(np.abs(off)))

@@ -59,13 +59,15 @@ class HardCase:
 @dataclass(frozen=True)
 class Reference:
     """What the fine case gave. values: by name, at times_s of a run, and one number each of a kinematic test; until_s:
-    how far a run can be compared; cpu_s: what it cost."""
+    how far a run can be compared; cpu_s: what it cost; change: how far it may be off itself, told by a second one on
+    less of a mesh."""
 
     status: str
     values: dict[str, list[float]]
     times_s: list[float] = field(default_factory=list)
     until_s: float = 0.0
     cpu_s: float = 0.0
+    change: float | None = None
 
 
 def hard_cases(names: Sequence[str] = ()) -> tuple[HardCase, ...]:

@@ -60,7 +60,8 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
 def write_page(found: HardResults, page: Path, introduction: str) -> None:
     """The results as a page of the documentation."""
     rows = "".join(f"| {' | '.join(cells)} |\n" for cells in map(_page_cells, found.results))
-    head = "| case | what is hard | has to end | ended | error | stated | CPU s | cause |\n" + "| --- " * 8 + "|\n"
+    head = "| case | what is hard | has to end | ended | error | certain to | stated | CPU s | cause |\n"
+    head += "| --- " * 9 + "|\n"
     page.write_text(f"{introduction}\n{head}{rows}", encoding="utf-8")
 
 
@@ -87,7 +88,7 @@ def _page_cells(result: HardResult) -> tuple[str, ...]:
     hard = result.hard
     name, what, _, error, stated, cpu_s = _cells(result)
     notes = "; ".join(filter(None, (_cause(result), *result.problems))).replace("|", "\\|")
-    return f"`{name}`", what, hard.end, result.status, error, stated, cpu_s, notes
+    return f"`{name}`", what, hard.end, result.status, error, short_number(result.certain), stated, cpu_s, notes
 
 
 
@@ -110,6 +111,7 @@ def _document(result: HardResult) -> dict[str, Any]:
         "events": result.events,
         "error": result.error,
         "reported": result.reported,
+        "certain": result.certain,
         "until_s": result.until_s,
         "cpu_s": result.cpu_s,
         "ok": result.ok,

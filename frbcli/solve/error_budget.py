@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,12 +15,14 @@ from frbcli.errors import NotConverged
 from frbcli.rotor.reduction import reduction_error
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.plan import Plan
+from frbcli.scene.stretches import Stretch
 from frbcli.scene.system import System
 from frbcli.scene.turbocharger import all_modes, journals, kept_modes
+from frbcli.solve.fewer_cells import FewerCells
 from frbcli.solve.film_error import film_force_errors
-from frbcli.solve.march import ERROR_MEMORY, NEWTON_SHARE
+from frbcli.solve.march import NEWTON_SHARE
 from frbcli.solve.oil import oil_defect
-from frbcli.solve.state import ERROR_LARGEST, Array, State
+from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array, State
 
 # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films (ERROR_MEMORY):
 # that is 2 to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
@@ -33,49 +35,77 @@ LASTING = 3.0
 FILM_REACH, CELL_REACH = 2.0, 3.0
 BEFORE_WHIRL = 0.85  # of the time of its event: a whirl has grown for a while before it is seen
 PARTING = ("onset", "contact")  # from there on two runs differ in phase, however exact they are
-FIRST = np.zeros((1, 2))  # the history of the fading sum of local errors at the beginning of a run
 
 
 def error_budget(
     case: Case,
     plan: Plan,
     system: System,
-    end: float,
-    history: Array,
+    until: float,
+    steps: tuple[float, float],
     times: Array,
     samples: Array,
-    events: Iterable[Mapping[str, Any]] = (),
+    fewer: FewerCells | None = None,
 ) -> dict[str, float | None]:
-    """The error of a run as its JSON has it, beside that of quick_budget. end: time reached, s.
+    """The error of a run as its JSON has it, beside that of quick_budget. until: see quiet_until, s.
 
-    history: (k, 2) time in s and fading sum of the local errors then; times (m,) s, samples (m, 2 n + 1): see
-    film_force_errors; events: of the run. None stands for what the run does not have: see docs/accuracy.md.
+    steps: as summed, until then; times (m,) s, samples (m, 2 n + 1 ...): see film_force_errors; fewer: the same run on
+    fewer cells. None stands for what the run does not have: see docs/accuracy.md.
     """
     films = film_force_errors(plan, system, case, times, samples)
-    until = quiet_until(events, end)
     force, short = films.relative(), plan.theory == "short"
-    fading, whole = summed(history, until)
-    by_films = (FILM_REACH if plan.cells is None else CELL_REACH) * (films.relative(until) or force or 0.0)
+    fading, whole = steps
     quiet = samples[times <= until]
     eccentric, displaced = (_reach(system, quiet, parts) for parts in (_journals(system), _points(system)))
+    by_films = (FILM_REACH if plan.cells is None else CELL_REACH) * (films.relative(until) or force or 0.0)
+    in_films, in_points = by_films * eccentric, by_films * max(eccentric, displaced)
+    cells = None if fewer is None else fewer.error(quiet, system)
+    if cells is not None:
+        in_films, in_points = cells.eccentricity, cells.displacement
     return {
         "film_force_relative": force,
         "model_relative": force if short else None,
         "mesh_relative": None if short else force,
         "coupling": None if plan.coupling in (SEMI, APART) else NEWTON_SHARE * plan.tolerance,
         "modal_reduction": modal_reduction(case, system, samples),
-        "eccentricity": COUNTED * fading + by_films * eccentric,
-        "displacement": LASTING * whole + by_films * max(eccentric, displaced),
+        "cells": None if cells is None else cells.eccentricity,
+        "eccentricity": COUNTED * fading + in_films,
+        "displacement": LASTING * whole + in_points,
+        "ring_speed": COUNTED * fading + cells.ring_speed if cells is not None and system.ring_count else None,
+        "oil_fraction": COUNTED * fading + cells.oil_fraction if cells is not None and system.remembers else None,
         "quiet_until_s": until,
     }
 
 
-def summed(history: Array, until: float) -> tuple[float, float]:
-    """(largest fading sum, sum without fading) of the local errors until a time, from the history of the fading one."""
-    last = min(int(np.searchsorted(history[:, 0], until)), len(history) - 1)
-    times, sums = history[: last + 1, 0], history[: last + 1, 1]
-    # The fading sum E obeys dE = dS - E dt / ERROR_MEMORY.
-    return float(sums.max()), float(sums[-1] + np.trapezoid(sums, times) / ERROR_MEMORY)
+def budget_of_stretches(
+    known: Mapping[str, float | None],
+    stretches: Sequence[Stretch],
+    plan: Plan,
+    until: float,
+    steps: tuple[float, float],
+    times: Array,
+    samples: Array,
+    fewer: FewerCells | None = None,
+) -> dict[str, float | None]:
+    """The largest of each part over the stretches that a run has passed, and of what is known of it beside; otherwise
+    as error_budget."""
+    begins, budgets = [stretch.start for stretch in stretches], [known]
+    for stretch, first, last in zip(stretches, begins, [*begins[1:], math.inf], strict=True):
+        there = (times >= first) & (times < last)
+        less = None if fewer is None else fewer.at(there)
+        budgets.append(
+            error_budget(stretch.case, plan, stretch.system, until, steps, times[there], samples[there], less)
+        )
+    keys = {key: None for budget in budgets for key in budget}
+    values = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
+    return {key: max(found, default=None) for key, found in values.items()}
+
+
+def summed(errors: Array, share: float) -> tuple[float, float]:
+    """(largest fading sum, sum without fading) of the local errors in a share of the time of a run; errors: of State.
+    The span in which that share ends counts in full."""
+    spans = max(1, math.ceil(share * errors.shape[1]))
+    return float(errors[ERRORS_LARGEST, :spans].max()), float(errors[ERRORS_SUM, :spans].sum())
 
 
 def _reach(system: System, samples: Array, parts: Iterable[tuple[Array, float]]) -> float:

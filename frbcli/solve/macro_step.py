@@ -197,7 +197,7 @@ def advance_in_turn(rotor, films, tableau, control, state, budget, out_q, out_v,
         _remember(past, t_new, motions[2], film, torque, given)
         off = _amend(responses, compliance, clearances, given, a)
         done += 1
-        status = count_step(numbers, control, t_new, step, speed, error * tolerance + off * step, largest)
+        status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)
         if status != RUNNING:
             return status, written
         error += off / (abs(speed) + SLOWEST) / tolerance

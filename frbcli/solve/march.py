@@ -19,7 +19,6 @@ from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
 from frbcli.solve.scratch import make_scratch
 from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, start_stage
 from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK
-from frbcli.solve.step import ERROR_MEMORY as ERROR_MEMORY
 from frbcli.solve.step import (
     UNSOLVED,
     begin_past,
@@ -141,7 +140,7 @@ def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil
         keep_past(past, past_now)
         done += 1
         largest = _largest_eccentricity(clearances, pick, q)
-        status = count_step(numbers, control, t_new, step, speed, error * tolerance, largest)
+        status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance, largest)
         if status != RUNNING:
             return status, written
         choose_next(numbers, h, error, order, math.inf)

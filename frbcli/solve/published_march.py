@@ -74,7 +74,7 @@ def advance_published(
         out_oil[before:written] = mean_fraction(parts.film, scratch.thetas[-1])
         done += 1
         largest = float(np.hypot(*(scratch.pick @ state.q))) / parts.clearance
-        status = count_step(numbers, control, t_new, step, speed, error * control.tolerance, largest)
+        status = count_step(numbers, state.errors, control, t_new, step, speed, error * control.tolerance, largest)
         if status != RUNNING:
             return status, written
         choose_next(numbers, h, error, order, math.inf)

@@ -14,6 +14,8 @@ from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.plan import make_plan
 from frbcli.scene.stretches import make_stretches
 from frbcli.scene.system import run_down_profile, run_up_profile
+from frbcli.solve.error_budget import quiet_until
+from frbcli.solve.fewer_cells import on_fewer_cells
 from frbcli.solve.interrupt import held_back
 from frbcli.solve.run_header import header
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
@@ -81,7 +83,7 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
         # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
-        checkpoint(march.error() if status == RUNNING else march.error_so_far())
+        checkpoint(march.error(march.time) if status == RUNNING else march.error_so_far())
     if status == RUNNING:
         return writer.so_far()
     from frbcli.analysis.events import find_events  # scipy.signal takes longer to import than a short run
@@ -91,7 +93,10 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
         ended = STARVED
     so_far = writer.so_far(ended)
     events = [asdict(event) for event in find_events(so_far)]
-    return writer.finish(ended, so_far.cost, march.error(events), events, march.time)
+    until, began = quiet_until(events, march.time), time.process_time()
+    error = march.error(until, on_fewer_cells(march, until))
+    cost = {**so_far.cost, "error_cpu_s": time.process_time() - began}
+    return writer.finish(ended, cost, error, events, march.time)
 
 
 def _earlier(command: str, case: Case, path: Path) -> Run | None:

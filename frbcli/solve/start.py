@@ -20,7 +20,7 @@ from frbcli.solve.cell_passengers import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR,
 from frbcli.solve.passengers import OIL, W_BEFORE, WET, W
 from frbcli.solve.published_state import first_film
 from frbcli.solve.resting import held_rotor, resting_position, ring_speeds
-from frbcli.solve.state import HISTORY, NUMBERS, STEP, STEP_DONE, Array, RotorData, State
+from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
 
@@ -86,11 +86,12 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
     a = accelerations(system, rotation, q, v, settled_forces(system, rotation[1], q, v))
     numbers = np.zeros(NUMBERS)
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
+    numbers[RUN_END] = profile.end
     count = len(system.clearances)
     past = np.zeros((HISTORY, 1 + 2 * count))
     past[:, 0] = FIRST_STEP * np.arange(1 - HISTORY, 1)
     past[:, 1:] = (system.rotor.journals @ v).ravel()
-    return State(numbers, q.copy(), v.copy(), a, past, wet, flows)
+    return State(numbers, q.copy(), v.copy(), a, past, wet, flows, np.zeros((2, ERROR_SPANS)))
 
 
 def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tuple[Array, Array]:

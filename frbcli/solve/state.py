@@ -55,14 +55,17 @@ class Control(NamedTuple):
 
 # Positions in the state's array of numbers; what a run must keep to go on as if it had not stopped.
 (TIME, STEP, ERROR_BEFORE, PIECE, OUTPUTS, STEPS, REJECTED, SOLVES, TURNS, ERROR_NOW, ERROR_LARGEST, LARGEST_EPS,
- INVERSE_G, INVERSE_SPEED, STEP_BEFORE, STEP_DONE, NUMBERS) = range(17)
+ INVERSE_G, INVERSE_SPEED, STEP_BEFORE, STEP_DONE, RUN_END, NUMBERS) = range(18)
+ERRORS_LARGEST, ERRORS_SUM = range(2)
+ERROR_SPANS = 256  # equal ones of the time of a run
 HISTORY = 3  # points of the step before that help to predict the stages of the next
 
 
 class State(NamedTuple):
     """Everything that changes. numbers: (NUMBERS,); q, v, a: (n,) displacement, velocity, acceleration;
     past: (HISTORY, 1 + 2 films) time and journals' velocities at the start, the first stage and the end of the last
-    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see passengers.py."""
+    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see passengers.py;
+    errors: (2, ERROR_SPANS) largest fading sum and plain sum of the local errors of the steps that end in each span."""
 
     numbers: Array
     q: Array
@@ -71,3 +74,4 @@ class State(NamedTuple):
     past: Array
     wet: Array
     flows: Array
+    errors: Array

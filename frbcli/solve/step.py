@@ -15,12 +15,15 @@ from frbcli.solve.state import (
     ERROR_BEFORE,
     ERROR_LARGEST,
     ERROR_NOW,
+    ERRORS_LARGEST,
+    ERRORS_SUM,
     FINISHED,
     HISTORY,
     LARGEST_EPS,
     OUTPUTS,
     PIECE,
     REJECTED,
+    RUN_END,
     RUNNING,
     STEP,
     STEP_BEFORE,
@@ -72,6 +75,17 @@ def write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_q
         written += 1
         numbers[OUTPUTS] += 1
     return written
+
+
+@njit(cache=True, error_model="numpy")
+def book_error(numbers, errors, step, error):  # type: ignore[no-untyped-def]
+    """Add the local error of a step, which is done, to the fading sum of all, and to its span of the run."""
+    spans = errors.shape[1]
+    span = min(int(spans * numbers[TIME] / numbers[RUN_END]), spans - 1)
+    now = numbers[ERROR_NOW] * math.exp(-step / ERROR_MEMORY) + error
+    numbers[ERROR_NOW], numbers[ERROR_LARGEST] = now, max(numbers[ERROR_LARGEST], now)
+    errors[ERRORS_LARGEST, span] = max(errors[ERRORS_LARGEST, span], now)
+    errors[ERRORS_SUM, span] += error
 
 
 @njit(cache=True, error_model="numpy")
@@ -185,7 +199,7 @@ def keep_past(past, past_now):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def count_step(numbers, control, t_new, step, speed, drift, largest):  # type: ignore[no-untyped-def]
+def count_step(numbers, errors, control, t_new, step, speed, drift, largest):  # type: ignore[no-untyped-def]
     """Count a step that is done. drift: what its error adds to that of the run; largest eccentricity at its end.
 
     Returns RUNNING, or CONTACT where a journal has met a shell that does not give way.
@@ -193,8 +207,7 @@ def count_step(numbers, control, t_new, step, speed, drift, largest):  # type: i
     numbers[TIME] = t_new
     numbers[STEPS] += 1
     numbers[TURNS] += abs(speed) * step / (2.0 * math.pi)
-    numbers[ERROR_NOW] = numbers[ERROR_NOW] * math.exp(-step / ERROR_MEMORY) + drift
-    numbers[ERROR_LARGEST] = max(numbers[ERROR_LARGEST], numbers[ERROR_NOW])
+    book_error(numbers, errors, step, drift)
     numbers[LARGEST_EPS] = max(numbers[LARGEST_EPS], largest)
     return CONTACT if control.contact_stiffness == 0.0 and largest >= control.contact_eccentricity else RUNNING
 

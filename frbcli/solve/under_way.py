@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,11 +15,14 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import Plan
-from frbcli.scene.stretches import Stretch
+from frbcli.scene.stretches import Stretch, make_stretches
+from frbcli.scene.system import System
 from frbcli.solve.clearance_step import largest_eccentricity, with_clearances
+from frbcli.solve.control import LONGEST_STEP, control_of
 from frbcli.solve.cosimulation import in_turn, micro_cost
-from frbcli.solve.error_budget import FIRST, error_budget, quick_budget
-from frbcli.solve.film_error import SAMPLES
+from frbcli.solve.error_budget import budget_of_stretches, quick_budget, summed
+from frbcli.solve.fewer_cells import FewerCells
+from frbcli.solve.film_error import sample_count
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.march import advance
 from frbcli.solve.oil import no_oil_comes_in, oil_passed
@@ -28,7 +31,6 @@ from frbcli.solve.run_header import named, ring_names
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import (
     CONTACT,
-    ERROR_NOW,
     FINISHED,
     OUTPUTS,
     REJECTED,
@@ -38,14 +40,12 @@ from frbcli.solve.state import (
     TIME,
     TURNS,
     Array,
-    Control,
     State,
 )
 from frbcli.solve.tableau import METHODS
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
 BUDGET, CELL_BUDGET = 500, 50  # steps between two looks at the clock: some milliseconds
-LONGEST_STEP = 1e-3  # s; a slow rotor still falls, and its shaft still vibrates
 
 
 @dataclass(frozen=True)
@@ -85,11 +85,10 @@ class March:
             self._advance = advance_published
         rows = max(BUFFER, 4 * (int(LONGEST_STEP / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
-        self._oil = np.empty((rows, len(system.remembering)))
-        # States at a few fixed output times, at which the films are solved again on a finer mesh.
-        self._sample_every = max(1, int(profile.end / self._control.output_step) // SAMPLES)
-        self._samples = np.empty((0, 2 * system.rotor.size + 1))
-        self._error_history = FIRST
+        self._oil = np.zeros((rows, len(system.remembering)))
+        # States at some fixed output times, at which the films are solved again and runs compared.
+        self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
+        self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
         self._predicted_cpu_s = expected_cost(case, plan, profile).cpu_s
         self._cpu_s = self._wall_s = 0.0
         self._budget = BUDGET if plan.cells is None else CELL_BUDGET
@@ -108,6 +107,22 @@ class March:
             return CONTACT  # a shell that closes upon the journal
         self._state = with_clearances(before, self._system, self._profile, self._state, self._apart)
         return RUNNING
+
+    @property
+    def plan(self) -> Plan:
+        """What the run follows."""
+        return self._plan
+
+    @property
+    def system(self) -> System:
+        """The current machine."""
+        return self._system
+
+    @property
+    def samples(self) -> Array:
+        """(k, 2 n + 1 + films) states so far at the fixed output times: see film_force_errors, and the mean oil
+        fraction of each film, which is of no meaning where it keeps none."""
+        return self._samples
 
     @property
     def time(self) -> float:
@@ -145,9 +160,8 @@ class March:
         times = (first + np.arange(rows)) * self._control.output_step
         speeds = self._profile.speed(times)
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
-        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept]])
+        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept]])
         self._samples = np.concatenate([self._samples, fresh])
-        self._error_history = np.vstack([self._error_history, self._state.numbers[[TIME, ERROR_NOW]]])
         signals = self._signals(times, speeds, self._q[:rows], self._v[:rows])
         if status == FINISHED and self._current + 1 < len(self._stretches):
             status = self._change()
@@ -172,15 +186,13 @@ class March:
     def snapshot(self) -> dict[str, Array]:
         """All that is needed to go on as if the run had not stopped."""
         clock = np.array([self._cpu_s, self._wall_s])
-        history = {"film_samples": self._samples, "error_history": self._error_history}
-        return {**self._state._asdict(), **history, "clock": clock}
+        return {**self._state._asdict(), "film_samples": self._samples, "clock": clock}
 
     def restore(self, checkpoint: dict[str, Array]) -> None:
         """Take up the state of a checkpoint."""
         self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
         self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
-        self._samples = checkpoint["film_samples"].reshape(-1, 2 * self._system.rotor.size + 1)
-        self._error_history = checkpoint["error_history"].reshape(-1, 2)
+        self._samples = checkpoint["film_samples"].reshape(-1, self._samples.shape[1])
         self._cpu_s, self._wall_s = (float(value) for value in checkpoint["clock"])
 
     def cost(self) -> dict[str, float]:
@@ -189,6 +201,7 @@ class March:
         wall = max(self._wall_s, 1e-9)
         return {
             "cpu_s": self._cpu_s,
+            "error_cpu_s": 0.0,  # told when the run has ended
             "predicted_cpu_s": self._predicted_cpu_s,
             "wall_s": self._wall_s,
             "steps": int(numbers[STEPS]),
@@ -205,20 +218,17 @@ class March:
         """The error of a run that goes on, as far as it costs nothing to know."""
         return quick_budget(self._system, self._state, self._profile.angle(self.time))
 
-    def error(self, events: Iterable[Mapping[str, Any]] = ()) -> dict[str, float | None]:
-        """The error of the run: the largest of its stretches."""
+    def again(self, plan: Plan) -> March:
+        """The same run from its beginning, by another plan. Raises NotConverged if it does not begin."""
+        return March(self._case, plan, make_stretches(self._case, plan), self._profile)
+
+    def error(self, until: float, fewer: FewerCells | None = None) -> dict[str, float | None]:
+        """The error of the run, point by point until a time in s: the largest of its stretches. fewer: the same run on
+        fewer cells."""
+        steps = summed(self._state.errors, until / self._profile.end)
         times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
-        begins = [stretch.start for stretch in self._stretches[: self._current + 1]]
-        budgets = [self.error_so_far()]
-        for stretch, first, last in zip(self._stretches, begins, [*begins[1:], math.inf], strict=False):
-            there = (times >= first) & (times < last)
-            budgets.append(
-                error_budget(
-                    stretch.case, self._plan, stretch.system, self.time, self._error_history, times[there],
-                    self._samples[there], events,
-                )
-            )  # fmt: skip
-        return _largest(budgets)
+        passed = self._stretches[: self._current + 1]
+        return budget_of_stretches(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
 
     def progress(self) -> Progress:
         """For people who wait."""
@@ -236,25 +246,3 @@ class March:
             simulated_ms_per_hour=1e3 * 3600.0 * rate,
             left_s=(end - t) / rate if rate > 0 else math.inf,
         )
-
-
-def _largest(budgets: Sequence[Mapping[str, float | None]]) -> dict[str, float | None]:
-    """The largest value of each key, None where it has none."""
-    keys = {key: None for budget in budgets for key in budget}
-    known = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
-    return {key: max(values, default=None) for key, values in known.items()}
-
-
-def control_of(case: Case, plan: Plan) -> Control:
-    """What the case and its plan allow the time loop to do."""
-    contact = case.contact
-    stiffness = contact.stiffness if contact.policy == "elastic" and contact.stiffness is not None else 0.0
-    return Control(
-        tolerance=plan.tolerance,
-        steps_per_revolution=plan.steps_per_revolution,
-        longest_step=LONGEST_STEP if plan.macro_step is None else min(LONGEST_STEP, plan.macro_step),
-        output_step=case.output.step,
-        contact_eccentricity=contact.eccentricity,
-        contact_stiffness=stiffness,
-        linearised=plan.coupling == "dynamic-static-semi-implicit",
-    )

@@ -35,6 +35,7 @@ CASES: dict[str, float | None] = {
     "turbocharger-heavy": 0.15,
     "turbocharger-car": 0.05,
 }
+STATED = ("eccentricity", "displacement", "ring_speed", "oil_fraction")
 PICTURES = ("jeffcott", "axial-groove", "jeffcott-two-phase")
 IMAGES = Path(__file__).parent.parent.parent / "docs" / "images"
 
@@ -42,7 +43,7 @@ IMAGES = Path(__file__).parent.parent.parent / "docs" / "images"
 @dataclass(frozen=True)
 class Rung:
     """One run of a ladder. error: largest of the eccentricities; signals: largest error of each signal; stated: what
-    the run says of its own error: "eccentricity" and "displacement"."""
+    the run says of its own error, see STATED."""
 
     name: str
     theory: str
@@ -56,7 +57,8 @@ class Rung:
         """What the run says of the error of a signal."""
         single = not any(name.startswith("ring") for name in self.signals)
         of_film = not signal.endswith("_m") or (single and signal.startswith("journal"))
-        return self.stated["eccentricity" if of_film else "displacement"]
+        key = "ring_speed" if signal.endswith("_Hz") else "oil_fraction" if signal.startswith("oil_fraction") else ""
+        return self.stated.get(key, self.stated["eccentricity" if of_film else "displacement"])
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ def cost(name: str, folder: Path) -> Cost:
 
 
 def _rung(item: RungResult) -> Rung:
-    stated = {name: float(item.stated[name] or 0.0) for name in ("eccentricity", "displacement")}
+    stated = {name: float(value) for name in STATED if (value := item.stated[name]) is not None}
     return Rung(
         item.rung.name, item.rung.theory, item.planned, item.cpu_s, item.error.eccentricity_largest,
         dict(item.signals), stated,
