@@ -117,6 +117,20 @@ def test_error_of_cells_from_two_runs() -> None:
     assert FewerCells(2.0, exact[:2]).error(exact, system) is None
 
 
+def test_between_rings_only_lengths_count() -> None:
+    """A journal that is as far out in another direction errs in its place, but not in its eccentricity."""
+    case = load_case("floating-ring")
+    system = make_system(case, make_plan(case))
+    out, n = 0.5 * min(system.clearances), system.rotor.size
+    row, away = np.zeros((1, 2 * n + 3)), np.zeros((1, 2 * n + 3))
+    along, across = (np.linalg.pinv(np.concatenate(system.rotor.journals))[:, [i, 2 + i]].sum(axis=1) for i in (0, 1))
+    row[0, :n], away[0, :n] = out * along, out * across
+    found = FewerCells(2.0, away).error(row, system)
+    assert found is not None
+    assert found.eccentricity == pytest.approx(0.0, abs=1e-12)
+    assert found.displacement > 0.1
+
+
 def test_a_run_that_does_not_begin_on_fewer_cells(monkeypatch: pytest.MonkeyPatch) -> None:
     case = load_case("rigid-two-phase")
     plan = make_plan(case)

@@ -31,7 +31,8 @@ COUNTED = 0.5
 # of all of them.
 LASTING = 3.0
 # A force that is wrong by a share moves its journal by so many shares of the eccentricity; cells on a mesh twice as
-# fine still keep a third of their error.
+# fine still keep a third of their error. Of cells this is too little where errors add up on the way: it is said only
+# where the run was not made on fewer cells.
 FILM_REACH, CELL_REACH = 2.0, 3.0
 BEFORE_WHIRL = 0.85  # of the time of its event: a whirl has grown for a while before it is seen
 PARTING = ("onset", "contact")  # from there on two runs differ in phase, however exact they are
