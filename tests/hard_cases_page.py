@@ -37,8 +37,6 @@ may itself be off, told by a second one with two thirds of its mesh each way and
 kinematic tests 2.6 times the distance of the two, as if errors fell with the 0.8th power of the mesh. **stated**: the
 error that the run or the test itself reports, of the eccentricity or the force. No reference have the cases that whirl
 from the start or end early, `pressed-into-the-shell`, and journals that are moved over time (squeeze and whirl).
-
-A step of the clearance in time is not there yet.
 """
 
 
@@ -47,15 +45,20 @@ def tell(result: HardResult, done: int, whole: int) -> None:
 
 
 def doubtful(found: HardResults) -> str:
-    """Which references are not certain to much less than the errors that they tell."""
-    compared = [r for r in found.results if r.error is not None and r.certain is not None]
-    names = ", ".join(f"`{r.hard.name}`" for r in compared if r.certain > SURE * r.error)
-    if not names:
-        return f"All references are certain to less than {SURE:g} of the errors that they tell.\n"
-    return fill(
-        f"Not certain to less than {SURE:g} of the errors that they tell are the references of {names}: "
-        "there the error is known within a factor only.", 120, break_long_words=False, break_on_hyphens=False,
-    ) + "\n"  # fmt: skip
+    """Which references are not certain to much less than the errors that they tell, and where that matters."""
+    known = [r for r in found.results if r.error is not None and r.certain is not None and r.reported is not None]
+    vague = [r.hard.name for r in known if r.certain > SURE * r.error]
+    open_ones = [r.hard.name for r in known if r.error + r.certain > r.reported]
+    said = [
+        f"Not certain to less than {SURE:g} of the errors that they tell are the references of {_list(vague)}: there the "
+        "error is known within a factor only.",
+        f"The stated error bounds error and uncertainty of the reference together, but in {_list(open_ones)}.",
+    ]
+    return "\n\n".join(fill(text, 120, break_long_words=False, break_on_hyphens=False) for text in said) + "\n"
+
+
+def _list(names: list[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names) or "no case"
 
 
 if __name__ == "__main__":
