@@ -50,8 +50,8 @@ def doubtful(found: HardResults) -> str:
     vague = [r.hard.name for r in known if r.certain > SURE * r.error]
     open_ones = [r.hard.name for r in known if r.error + r.certain > r.reported]
     said = [
-        f"Not certain to less than {SURE:g} of the errors that they tell are the references of {_list(vague)}: there the "
-        "error is known within a factor only.",
+        f"Not certain to less than {SURE:g} of the errors that they tell are the references of {_list(vague)}: there "
+        "the error is known within a factor only.",
         f"The stated error bounds error and uncertainty of the reference together, but in {_list(open_ones)}.",
     ]
     return "\n\n".join(fill(text, 120, break_long_words=False, break_on_hyphens=False) for text in said) + "\n"
