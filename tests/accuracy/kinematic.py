@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 TESTS = {"bearing": "rotation", "bearing-axial-groove": "rotation", "squeeze": "squeeze", "whirl": "whirl"}
 MODELS = ("half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")
 COARSER, FINER = 1.5, 2.0  # of the plan's cells in each direction, and steps
+PERIODS = 1  # of a squeeze or a whirl: finer ones take minutes for each
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ def _course(name: str, model: str) -> tuple[float, float, float]:
     assert motion.eccentricity is not None
     assert motion.frequency is not None
     path = make(motion.eccentricity, motion.frequency, 2.0 * math.pi * (motion.speed or 0.0))
-    periods, peaks, error = round(motion.periods), [], math.nan
+    periods, peaks, error = PERIODS, [], math.nan
     for factor in (1.0, COARSER, FINER):
         around, along = (round(factor * count) for count in plan.cells)
         steps = round(factor * plan.steps)
