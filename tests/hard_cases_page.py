@@ -34,7 +34,7 @@ The command ends with 0 if every case ended as the list says, else with 1. A cas
 (`fine` in the list, kept in `cases/hard/references.json`, made anew by `cd tests && python -m hard_references`), until
 a whirl begins or the run ends; of a kinematic test, that of the force, relative. **certain to**: how far that reference
 may itself be off, told by a second one with two thirds of its mesh each way and twice its tolerance; with cells and in
-kinematic tests 2.6 times the distance of the two, as if errors fell with the 0.8th power of the mesh. **stated**: the
+kinematic tests 3.3 times the distance of the two, as if errors fell with the power 0.66 of the mesh. **stated**: the
 error that the run or the test itself reports, of the eccentricity or the force. No reference have the cases that whirl
 from the start or end early, `pressed-into-the-shell`, and journals that are moved over time (squeeze and whirl).
 """

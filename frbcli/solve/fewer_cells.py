@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SHARE, SHARE_WITH_HOLES = 1 / 2, 2 / 3  # of the cells in each direction; fewer would make holes of another size
 COARSER_BY = 1.2  # times as few around, at least: what is nearer says little
-ORDER = 0.8  # in which errors fall with the cells, at least: that of films that starve
+ORDER = 0.66  # in which errors fall with the cells, at least: that of films that fill again after they starved
 
 
 @dataclass(frozen=True)

@@ -80,10 +80,12 @@ class Ladder:
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU time of a full run, and what its plan said; status: how the run ended, at t_end_s."""
+    """CPU time and film solves of a full run, and what its plan said of both; status: how the run ended, at t_end_s."""
 
     predicted_s: float
+    predicted_solves: int
     real_s: float
+    film_solves: int
     status: str
     t_end_s: float
 
@@ -108,10 +110,11 @@ def cost(name: str, folder: Path) -> Cost:
     kept, case = folder / f"{name}-cost.json", load_case(name)
     if not kept.exists():
         run = runup(case, folder / f"{name}.h5")
-        made = {"real_s": float(run.cost["cpu_s"]), "status": run.status, "t_end_s": run.t_end_s}
+        made: dict[str, Any] = {"real_s": float(run.cost["cpu_s"]), "film_solves": int(run.cost["film_solves"])}
+        made |= {"status": run.status, "t_end_s": run.t_end_s}
         kept.write_text(json.dumps(made), encoding="utf-8")
     predicted = expected_cost(case, make_plan(case), run_up_profile(case))
-    return Cost(predicted.cpu_s, **json.loads(kept.read_text(encoding="utf-8")))
+    return Cost(predicted.cpu_s, predicted.film_solves, **json.loads(kept.read_text(encoding="utf-8")))
 
 
 def _rung(item: RungResult) -> Rung:

@@ -6,11 +6,13 @@ the next time. With cases named, these alone are measured, and the page is left 
 
 from __future__ import annotations
 
+import math
 import statistics
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from accuracy.kinematic import KINEMATIC, Stated, stated
 from accuracy.measured import CASES, PICTURES, Cost, Ladder, Rung, cost, ladder
 
 HERE = Path(__file__).parent
@@ -40,6 +42,7 @@ def page(folder: Path) -> str:
         "SUMMARY": _summary(ladders, costs),
         "FRONTS": "\n".join(_front_table(ladders)),
         "COSTS": "\n".join(_cost_table(costs)),
+        "KINEMATIC": "\n".join(_kinematic_table([row for name in KINEMATIC for row in stated(name, folder)])),
         "PICTURES": "\n\n".join(f"![Error over cost, {name}](images/accuracy-{name}.png)" for name in PICTURES),
     }
     for key, part in parts.items():
@@ -82,18 +85,27 @@ def _front_table(ladders: dict[str, Ladder]) -> Iterator[str]:
 
 
 def _cost_table(costs: dict[str, Cost]) -> Iterator[str]:
-    yield "| case | run | predicted | real | predicted / real | |"
-    yield "| --- | --- | --- | --- | --- | --- |"
+    yield "| case | run | predicted | real | predicted / real | film solves, predicted / counted | |"
+    yield "| --- | --- | --- | --- | --- | --- | --- |"
     for name, found in costs.items():
         factor = found.predicted_s / found.real_s
         verdict = "holds" if 1 / COST_FACTOR <= factor <= COST_FACTOR else "misses"
         yield (
             f"| {name} | {found.status} at {found.t_end_s:.3g} s | {found.predicted_s:.2g} s | {found.real_s:.2g} s | "
-            f"{factor:.2f} | {verdict} |"
+            f"{factor:.2f} | {found.predicted_solves / found.film_solves:.2f} | {verdict} |"
         )
     for name in CASES:
         if name not in costs:
-            yield f"| {name} | | | not measured | | |"
+            yield f"| {name} | | | not measured | | | |"
+
+
+def _kinematic_table(rows: list[Stated]) -> Iterator[str]:
+    yield "| case | model | certain to | true | stated | |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for row in rows:
+        if not math.isnan(row.true):
+            verdict = "holds" if row.true <= row.stated else "misses"
+            yield f"| {row.case} | {row.model} | {row.certain:.1e} | {row.true:.1e} | {row.stated:.1e} | {verdict} |"
 
 
 def _summary(ladders: dict[str, Ladder], costs: dict[str, Cost]) -> str:
