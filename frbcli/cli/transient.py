@@ -132,9 +132,10 @@ def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
 def progress_line(progress: Progress) -> str:
     """One line of at most 80 columns: time, speed, eccentricity, steps per revolution, pace, time left."""
     per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
+    whose, pace = ("its error: ", "") if progress.for_error else ("", f"{progress.simulated_ms_per_hour:.2g} ms/h  ")
     line = (
-        f"{progress.t_s:.3f}/{progress.end_s:g} s  {progress.speed_Hz:5.1f} Hz  eps {progress.eccentricity:5.3f}  "
-        f"{per_turn} steps/rev  {progress.simulated_ms_per_hour:.2g} ms/h  {_clock(progress.left_s)} left"
+        f"{whose}{progress.t_s:.3f}/{progress.end_s:.4g} s  {progress.speed_Hz:5.1f} Hz  "
+        f"eps {progress.eccentricity:5.3f}  {per_turn} steps/rev  {pace}{_clock(progress.left_s)} left"
     )
     return line if len(line) <= COLUMNS else line[: COLUMNS - 1] + "…"
 
@@ -201,6 +202,7 @@ def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
         ),
         ("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each"),
         *_oil_rows(run),
+        ("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes"),
         ("error, time integration", f"{error['time_integration']:.1e}", "of the eccentricity"),
         ("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}"),
         *_error_rows(error),

@@ -7,6 +7,7 @@ how far a run on fewer cells has gone elsewhere holds all of it. It costs 0.3 to
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,9 @@ from frbcli.scene.system import System
 from frbcli.solve.state import RUNNING, Array
 
 if TYPE_CHECKING:
-    from frbcli.solve.under_way import March
+    from frbcli.solve.under_way import March, Progress
+
+    Observer = Callable[[Progress], None]
 
 SHARE, SHARE_WITH_HOLES = 1 / 2, 2 / 3  # of the cells in each direction; fewer would make holes of another size
 COARSER_BY = 1.2  # times as few around, at least: what is nearer says little
@@ -81,9 +84,9 @@ def _parted(one: Array, other: Array, pick: Array, room: float) -> float:
     return float(np.abs(np.subtract(*lengths)).max(initial=0.0)) / room
 
 
-def on_fewer_cells(march: March, until: float) -> FewerCells | None:
+def on_fewer_cells(march: March, until: float, observe: Observer | None = None) -> FewerCells | None:
     """The run of `march` from its beginning to a time in s on fewer cells; None for films that have none, too few, or
-    that do not begin on fewer."""
+    that do not begin on fewer. observe: called some times a second."""
     cells = fewer_cells(march.plan, march.system)
     if cells is None or march.plan.cells is None:
         return None
@@ -94,6 +97,8 @@ def on_fewer_cells(march: March, until: float) -> FewerCells | None:
     status = RUNNING
     while status == RUNNING and other.time <= until:
         status, _ = other.chunk()
+        if observe is not None:
+            observe(other.progress(until))
     return FewerCells(math.sqrt(math.prod(march.plan.cells) / math.prod(cells)), other.samples)
 
 

@@ -94,7 +94,7 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
     so_far = writer.so_far(ended)
     events = [asdict(event) for event in find_events(so_far)]
     until, began = quiet_until(events, march.time), time.process_time()
-    error = march.error(until, on_fewer_cells(march, until))
+    error = march.error(until, on_fewer_cells(march, until, observe))
     cost = {**so_far.cost, "error_cpu_s": time.process_time() - began}
     return writer.finish(ended, cost, error, events, march.time)
 

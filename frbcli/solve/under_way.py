@@ -50,7 +50,8 @@ BUDGET, CELL_BUDGET = 500, 50  # steps between two looks at the clock: some mill
 
 @dataclass(frozen=True)
 class Progress:
-    """What a run tells while it goes on. Times in s, speed in Hz; eccentricity: the largest of all films now."""
+    """What a run tells while it goes on. Times in s, speed in Hz; eccentricity: the largest of all films now;
+    for_error: of the same run again, to tell its error."""
 
     t_s: float
     end_s: float
@@ -60,6 +61,7 @@ class Progress:
     steps_per_revolution: float
     simulated_ms_per_hour: float
     left_s: float
+    for_error: bool = False
 
 
 class March:
@@ -230,10 +232,10 @@ class March:
         passed = self._stretches[: self._current + 1]
         return budget_of_stretches(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
 
-    def progress(self) -> Progress:
-        """For people who wait."""
+    def progress(self, until: float | None = None) -> Progress:
+        """For people who wait. until: s, of a run that is made again to tell the error of another one."""
         numbers = self._state.numbers
-        t, end = self.time, self._profile.end
+        t, end = self.time, self._profile.end if until is None else until
         here = self._system.rotor.journals @ self._state.q / np.array(self._system.clearances)[:, None]
         rate = t / max(self._wall_s, 1e-9)
         return Progress(
@@ -245,4 +247,5 @@ class March:
             steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
             simulated_ms_per_hour=1e3 * 3600.0 * rate,
             left_s=(end - t) / rate if rate > 0 else math.inf,
+            for_error=until is not None,
         )
