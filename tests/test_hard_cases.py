@@ -24,7 +24,7 @@ ENDS = {"finished", "contact", "starved", "not-converged", "input-error"}
 TOPICS = {
     "eccentricity 0.99", "x1 = 0.9999", "Elrod with bores", "supply 4 bar", "starving", "speed zero and reversed",
     "start at rest in the centre", "unbalance 50 g mm", "journal mass to zero", "ring mass to zero",
-    "turbocharger of 100 g at 5000 Hz", "outer gap 40 um", "viscosities 1e4 apart",
+    "turbocharger of 100 g at 5000 Hz", "outer gap 40 um", "viscosities 1e4 apart", "clearance step in time",
 }  # fmt: skip
 
 
