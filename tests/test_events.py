@@ -172,6 +172,7 @@ def test_order_amplitude_is_exact_and_blind_to_the_other_orders() -> None:
     assert len(order_amplitude(motion[:100], 0.5, 4)) == 0
 
 
+@pytest.mark.benchmark
 def test_two_hundred_thousand_samples_take_less_than_half_a_second() -> None:
     run = make_run()
     assert len(run) > 200_000
