@@ -90,9 +90,16 @@ def test_thresholds_are_those_of_linear_stability() -> None:
     assert len(error) == 4
 
 
+def test_a_rotor_that_does_not_turn_has_no_threshold() -> None:
+    course = ["speed.from=0 Hz", "speed.to=0 Hz", "speed.duration=0.01 s", "output.step=1e-4 s"]
+    found = accuracy(load_case("jeffcott", [*course, "accuracy.mesh=[2, 24]"]), theories=["finite"])
+    assert found.complete
+    assert all(np.isnan(item.error.threshold_Hz) for item in (found.reference, *found.ladder))
+
+
 def made(cpu_s: float, error: float) -> RungResult:
     rung = Rung("finite", "half-sommerfeld", (1, 12), 1e-5, "dynamic-static")
-    return RungResult(rung, "finished", cpu_s, RungError(error, error, 1.0, np.nan, np.nan, np.nan))
+    return RungResult(rung, "finished", cpu_s, RungError(error, error, 1.0, np.nan, np.nan))
 
 
 def test_the_front_is_what_nothing_cheaper_beats(found: AccuracyLadder) -> None:

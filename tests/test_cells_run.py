@@ -14,6 +14,7 @@ from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cell_states import whirl_share
+from frbcli.results.store import read_run
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
 from frbcli.solve.march import advance
@@ -21,7 +22,7 @@ from frbcli.solve.oil import net_flow, oil_defect
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import RUNNING, State
 from frbcli.solve.tableau import METHODS
-from frbcli.solve.under_way import control_of
+from frbcli.solve.under_way import Progress, control_of
 
 Array = NDArray[np.float64]
 SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]
@@ -214,3 +215,20 @@ def test_a_grid_that_turns_with_half_the_speed_finds_the_same_path(cavitation: s
 def test_grid_that_cannot_turn(name: str, settings: list[str]) -> None:
     with pytest.raises(InputError, match=r"film\.grid"):
         make_plan(load_case(name, [*settings, "film.grid=half-speed"]))
+
+
+def test_stopped_while_its_error_is_told_it_goes_on(tmp_path: Path) -> None:
+    case = case_of("axial-groove-two-phase", "speed.duration=0.02s", "accuracy.mesh=[6,48]")
+    whole = frbcli.runup(case, tmp_path / "whole.h5")
+
+    def stop(progress: Progress) -> None:
+        if progress.for_error:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        frbcli.runup(case, tmp_path / "run.h5", observe=stop)
+    kept = read_run(tmp_path / "run.h5")
+    assert (kept.status, kept.t_end_s) == ("interrupted", case.speed.duration)
+    resumed = frbcli.runup(case, tmp_path / "run.h5", resume=True)
+    assert (resumed.status, resumed.error) == (whole.status, whole.error)
+    np.testing.assert_array_equal(resumed["eccentricity"], whole["eccentricity"])

@@ -155,6 +155,13 @@ def test_progress_line_says_what_matters() -> None:
         assert word in line
 
 
+def test_progress_says_that_it_is_the_error_s() -> None:
+    line = progress_line(Progress(3.12345, 4.123456, 299.0, 0.998, 123456, 82.3, 1.2e6, 100.0, for_error=True))
+    assert line.startswith("its error: 3.123/4.123 s")
+    assert line.endswith("1:40 left")
+    assert len(line) <= 80
+
+
 @pytest.mark.parametrize(
     ("left", "words"),
     [(0.4, "0:00"), (59.6, "1:00"), (5999.0, "99:59"), (6000.0, "1 h"), (1e6, "11 d"), (np.inf, "?"), (np.nan, "?")],

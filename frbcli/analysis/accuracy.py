@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungError, RungResult
 from frbcli.analysis.differences import difference, onset_speed
-from frbcli.analysis.stability import stability
+from frbcli.analysis.stability import default_speeds, stability
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
@@ -61,18 +60,19 @@ def accuracy(
             watch = None if observe is None else lambda progress: observe(rung, progress)
             return runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch)
 
-        thresholds = _thresholds(case, [fine, coarser, *rungs])
-        result = partial(_result, thresholds)
         exact = run(fine)
-        reference = result(fine, exact, coarser, run(coarser), _tabulating(short, fine), forces_of=exact)
+        reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
         found = []
         for rung in rungs:
             one = run(rung)
             if one.status == INTERRUPTED:
                 break
-            found.append(result(rung, one, fine, exact, _tabulating(short, rung), rung == own))
+            found.append(_result(rung, one, exact, _tabulating(short, rung), rung == own))
+    complete = len(found) == len(rungs)
+    if complete:
+        reference, *found = _with_thresholds(case, reference, coarser, found)
     found.sort(key=lambda item: item.cpu_s)
-    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), len(found) == len(rungs))
+    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete)
 
 
 def planned_rung(plan: Plan) -> Rung:
@@ -107,43 +107,36 @@ def _mesh(own: Rung, factor: float) -> tuple[int, int]:
 
 
 def _result(
-    thresholds: Mapping[Film, float],
-    rung: Rung,
-    run: Run,
-    against: Rung,
-    reference: Run,
-    cpu_s: float,
-    planned: bool = False,
-    forces_of: Run | None = None,
+    rung: Rung, run: Run, reference: Run, cpu_s: float, planned: bool = False, forces_of: Run | None = None
 ) -> RungResult:
     apart = difference(run, reference)
     force = (forces_of or run).error["film_force_relative"]
     onset = onset_speed(run) - onset_speed(reference)
-    threshold = thresholds[_film(rung)] - thresholds[_film(against)]
-    error = RungError(
-        apart.largest, apart.rms, apart.until_s, onset, threshold, math.nan if force is None else float(force)
-    )
+    error = RungError(apart.largest, apart.rms, apart.until_s, onset, math.nan if force is None else float(force))
     work = 1e-6 * float(run.cost["film_solves"]) * solve_us(make_plan(load_case_text(run.case_text)))
     march = float(run.cost["cpu_s"])
     return RungResult(rung, run.status, cpu_s + march, error, planned, apart.signals, run.error, work)
 
 
-Film = tuple[str, tuple[int, int] | None]
+def _with_thresholds(
+    case: Case, reference: RungResult, coarser: Rung, found: Sequence[RungResult]
+) -> Iterator[RungResult]:
+    """The reference and what was found, with the errors of the thresholds of linear stability over all speeds of the
+    case. They depend on theory and mesh alone."""
+    rungs = {(rung.theory, rung.mesh): rung for rung in (coarser, reference.rung, *(item.rung for item in found))}
+    speeds = {film: _threshold(_with_rung(case, rung)) for film, rung in rungs.items()}
 
+    def off(one: Rung, other: Rung) -> float:
+        return speeds[one.theory, one.mesh] - speeds[other.theory, other.mesh]
 
-def _film(rung: Rung) -> Film:
-    """What its linear stability depends on."""
-    return rung.theory, rung.mesh
-
-
-def _thresholds(case: Case, rungs: Sequence[Rung]) -> dict[Film, float]:
-    """Rotor speeds in Hz from which on a whirl grows, by linear stability over all speeds of the case; NaN without one,
-    and for films with cells: those with oil of their own have none, the others take minutes."""
-    return {film: _threshold(_with_rung(case, rung)) for film, rung in {_film(rung): rung for rung in rungs}.items()}
+    for item, other in ((reference, coarser), *((item, reference.rung) for item in found)):
+        yield replace(item, error=replace(item.error, threshold_Hz=off(item.rung, other)))
 
 
 def _threshold(case: Case) -> float:
-    if make_plan(case).cells is not None:
+    """In Hz; NaN without one, and for films with cells: those with oil of their own have none, the others take
+    minutes."""
+    if make_plan(case).cells is not None or not default_speeds(case):
         return math.nan
     found = stability(case).threshold
     return math.nan if found is None else found.speed_Hz

@@ -41,8 +41,8 @@ class RungError:
     eccentricity_rms: float
     until_s: float
     onset_Hz: float
-    threshold_Hz: float
     force_relative: float
+    threshold_Hz: float = math.nan
 
 
 @dataclass(frozen=True)
