@@ -16,6 +16,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.analysis.stability import stability as stability
     from frbcli.analysis.sweep import sweep as sweep
+    from frbcli.case.load import case_from_dict as case_from_dict
     from frbcli.case.load import load_case as load_case
     from frbcli.case.load import load_case_text as load_case_text
     from frbcli.case.schema import Case as Case
@@ -40,6 +41,7 @@ _PUBLIC = {
     "NotConverged": "frbcli.errors",
     "RunFileError": "frbcli.errors",
     "accuracy": "frbcli.analysis.accuracy",
+    "case_from_dict": "frbcli.case.load",
     "compare": "frbcli.analysis.compare",
     "find_events": "frbcli.analysis.events",
     "load_case": "frbcli.case.load",

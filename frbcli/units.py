@@ -61,9 +61,10 @@ def quantity(given: object, unit: str, example: str = "") -> float:
 
     unit: the SI unit expected, e.g. "m", "N*s/m", "K" (temperatures: "100 degC" is 373.15), `SPEED` in revolutions per
     second, `ANGLE` in radians, `TEMPERATURE_DIFFERENCE`, `NUMBER` without unit; example: what a good value looks like.
+    Text in the SI unit itself is exact, other text is to 15 digits.
     Raises ValueFault for anything else than one finite quantity of this kind.
     """
-    remedy = f'Write e.g. "{example}".' if example else f"Write a number in {_readable(unit)}."
+    remedy = f'Write e.g. "{example}".' if example else f"Write a number in {readable(unit)}."
     if isinstance(given, int | float) and not isinstance(given, bool):
         return _finite(given, remedy)
     if not isinstance(given, str):
@@ -98,13 +99,15 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         factors = _TABLES[unit]
         key = re.sub(r"\s+", "", unit_text)
         if key in factors:
-            return _round(number * factors[key])
+            return number if factors[key] == 1.0 else _round(number * factors[key])
         if key == "":
             raise ValueFault("has no unit.", remedy)
         known = ", ".join(name for name in factors if name) if unit != NUMBER else "no unit, or %"
         raise ValueFault(f'has the unit "{unit_text}", which does not fit here.', f"{remedy} Known: {known}.")
     if unit_text == "":
         raise ValueFault("has no unit.", remedy)
+    if unit_text == readable(unit):
+        return number
     return _round(_by_pint(number, unit_text, unit, remedy))
 
 
@@ -118,7 +121,7 @@ def _by_pint(number: float, unit_text: str, unit: str, remedy: str) -> float:
         return float(registry.Quantity(number, unit_text.replace("°C", "degC")).to(unit).magnitude)
     except pint.DimensionalityError:
         raise ValueFault(
-            f'has the unit "{unit_text}", which cannot be turned into {_readable(unit)}.', remedy
+            f'has the unit "{unit_text}", which cannot be turned into {readable(unit)}.', remedy
         ) from None
     except pint.UndefinedUnitError:
         raise ValueFault(f'has the unit "{unit_text}", which is not known.', remedy) from None
@@ -131,7 +134,8 @@ def _round(value: float) -> float:
     return float(f"{value:.15g}")
 
 
-def _readable(unit: str) -> str:
+def readable(unit: str) -> str:
+    """The name of an SI unit as people write it."""
     return "K" if unit == TEMPERATURE_DIFFERENCE else unit
 
 

@@ -15,8 +15,11 @@ A case is one TOML file: rotor, bearings, oil, how the film is computed, the spe
 a whole one, `frb cases jeffcott -o my.toml` copies it, `frb check my.toml` says what is wrong with it and what will be
 modelled, `frb schema > case.schema.json` gives editors the same knowledge.
 
-- A quantity is a text of number and unit, `"35 um"`; a bare number is in the unit of the table below. Any unit of the
-  same kind will do: `"12 mPa*s"`, `"5000 N/mm"`, `"3 g*mm"`, `"18000 rpm"`, `"15 deg"`, `"100 degC"`.
+- A quantity is a text of number and unit, `"35 um"`; a bare number is in the unit of the table below, and `frb check`
+  tells which numbers are bare. Any unit of the same kind will do: `"12 mPa*s"`, `"5000 N/mm"`, `"3 g*mm"`,
+  `"18000 rpm"`, `"15 deg"`, `"100 degC"`.
+- What no usual rotor has is mostly a slip of a unit, and is refused unless the list `confirm` names it:
+  `confirm = ["clearance"]` above all tables, or `--set confirm='["clearance"]'`.
 - Rotor speeds and frequencies are revolutions per second. Pressures are absolute. Angles phi are 0 at the top and count
   counter-clockwise; angles of a displacement count from the x-axis (see [conventions](conventions.md)).
 - `--set bearing.clearance="40 um"` sets one key for one call of any command that takes a case; repeat it for more.
@@ -24,6 +27,9 @@ modelled, `frb schema > case.schema.json` gives editors the same knowledge.
 - An unknown key is a fault, not a remark: every fault of a file is reported at once, with its line and a remedy.
 
 What a run cannot have together is said before anything is computed, with what can be had in its place.
+
+From Python, `frbcli.case_from_dict` takes the same tables as nested dicts and checks them as a file is checked.
+`case.source_text` is the TOML text of any case, also of one that was made or changed in Python; a run keeps it.
 
 This page is written from the schema by `cd tests && python -m case_reference`, and a test keeps it so.
 """
@@ -93,6 +99,8 @@ def _value(entry: dict[str, Any]) -> str:
         return f"`{entry['const']}`"
     if "enum" in entry:
         return ", ".join(f"`{choice}`" for choice in entry["enum"])
+    if "enum" in entry.get("items", {}):
+        return f"list of {_value(entry['items'])}"
     if "prefixItems" in entry:
         return f"[{', '.join(_value(item) for item in entry['prefixItems'])}]"
     forms = entry.get("anyOf", entry.get("oneOf", []))

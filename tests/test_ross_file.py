@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from frbcli.analysis.modes import natural_modes
+from frbcli.case.listing import values
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.case.toml import to_toml
@@ -110,6 +111,7 @@ def test_case_is_whole_without_the_file(tmp_path: Path) -> None:
     (tmp_path / "rotor.toml").unlink()
     assert "rotor.toml" not in case.source_text
     assert load_case_text(case.source_text) == case
+    assert not [value.key for value in values(case) if value.bare]  # what the file has in SI has its unit there
 
 
 def test_json_is_the_same_and_settings_reach_the_file_name(tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def sweep(
     folder = Path(directory).absolute()
     _make(folder / RUNS if keep_runs and method == "runup" else folder)
     log = folder / LOG
-    found = {point.number: point for point in open_log(log, _header(case, settings, method))}
+    found = {point.number: point for point in open_log(log, _header(case, settings, method), case)}
 
     def take(point: SweepPoint) -> None:
         found[point.number] = point

@@ -14,19 +14,22 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.analysis.sweep_task import UNDECIDED, SweepPoint
+from frbcli.case.load import describes
+from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 
 Header = Mapping[str, Any]
 
 
-def open_log(path: Path, header: Header) -> tuple[SweepPoint, ...]:
+def open_log(path: Path, header: Header, case: Case) -> tuple[SweepPoint, ...]:
     """The points that are done already by the log at `path`, which is ready for more afterwards.
 
-    Raises InputError if it is the log of another sweep, or cannot be read or written.
+    header: of the sweep, with the text of its `case`, which the log may have in other words. Raises InputError if it
+    is the log of another sweep, or cannot be read or written.
     """
     try:
         known = path.read_text(encoding="utf-8").split("\n") if path.exists() else []
-        if known and _parsed(known[0]) != json.loads(json.dumps(header)):
+        if known and not _same_sweep(_parsed(known[0]), json.loads(json.dumps(header)), case):
             remedy = "Choose another directory with -o, or remove this one."
             raise _refuse(path, "belongs to another sweep, case or version.", remedy)
         done = {point.number: point for point in map(_point, known[1:]) if point and point.status not in UNDECIDED}
@@ -48,6 +51,13 @@ def append(path: Path, points: Sequence[SweepPoint]) -> None:
     except OSError as error:
         remedy = "Make room; the same sweep then goes on."
         raise _refuse(path, f"cannot be written: {error.strerror}.", remedy) from error
+
+
+def _same_sweep(known: object, header: Header, case: Case) -> bool:
+    if not isinstance(known, dict) or {**known, "case": ""} != {**header, "case": ""}:
+        return False
+    text = known.get("case")
+    return text == header["case"] or (isinstance(text, str) and describes(text, case))
 
 
 def _line(point: SweepPoint) -> str:

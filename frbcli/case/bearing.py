@@ -221,14 +221,19 @@ class _OneOrMany:
 
 def _as_list(given: object) -> object:
     """One table as a list of one; several without names are numbered, for results carry the names."""
-    if isinstance(given, dict):
+    if isinstance(given, dict | Model):
         return [given]
-    if isinstance(given, list) and len(given) > 1:
-        return [
-            {"name": str(number), **table} if isinstance(table, dict) else table
-            for number, table in enumerate(given, start=1)
-        ]
+    if isinstance(given, list | tuple) and len(given) > 1:
+        return [_named(bearing, str(number)) for number, bearing in enumerate(given, start=1)]
     return given
+
+
+def _named(bearing: object, name: str) -> object:
+    if isinstance(bearing, dict):
+        return {"name": name, **bearing}
+    if isinstance(bearing, SingleFilmBearing | FloatingRingBearing) and not bearing.name:
+        return bearing.model_copy(update={"name": name})
+    return bearing
 
 
 Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_as_list), _OneOrMany()]

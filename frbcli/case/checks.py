@@ -12,6 +12,7 @@ from typing import Any
 
 from frbcli.case.film_checks import film_breaches, vogel_breaches
 from frbcli.case.lines import Path
+from frbcli.case.plausible import implausible
 from frbcli.case.schema import ATMOSPHERE, DEFAULT_HOLD, OUTPUT_STEP
 from frbcli.case.tables import Breach, number, table, tables
 from frbcli.units import NUMBER, display
@@ -23,6 +24,7 @@ MOST_SAMPLES = 20_000_000
 
 def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     """Every broken rule of a case's tables."""
+    yield from implausible(data)
     bearings = tables(data, "bearing")
     if data.get("bearing") == []:
         yield Breach(("bearing",), "is empty.", "Add the table [bearing].")

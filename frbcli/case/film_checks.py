@@ -23,7 +23,7 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     """Every broken rule of the film at a path of the case's tables."""
     oil = table(data, "oil")
     diameter, width = number(film, "diameter", "m"), number(film, "width", "m")
-    clearance = _clearance(film, diameter)
+    clearance = warm_clearance(film, diameter)
     if diameter and clearance is not None and not 0 < clearance < THICKEST_FILM * diameter / 2:
         yield _too_thick((*path, "clearance"), clearance, diameter)
     elif diameter and clearance is not None:
@@ -121,7 +121,8 @@ def vogel_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path
         yield Breach(path, problem, "Check eta_0, A and C; the temperature T in eta_0 exp(A / (T + C)) is in kelvin.")
 
 
-def _clearance(film: Mapping[str, Any], diameter: float | None) -> float | None:
+def warm_clearance(film: Mapping[str, Any], diameter: float | None) -> float | None:
+    """The warm radial clearance [m] of a film's table, None where it cannot be read."""
     given = film.get("clearance")
     if not isinstance(given, dict):
         return number(film, "clearance", "m")

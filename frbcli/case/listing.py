@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 from pydantic.fields import FieldInfo
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import Quantity
+from frbcli.case.quantities import unit_of
 from frbcli.case.schema import Case
-from frbcli.units import NUMBER, TEMPERATURE_DIFFERENCE, display
+from frbcli.case.toml import parse
+from frbcli.units import NUMBER, display, readable
 
 # What stands in a case for models that it does not choose.
 _MODEL_SECTIONS = ("penalty", "peeken", "elrod", "two-phase")
@@ -19,52 +20,45 @@ _MODEL_SECTIONS = ("penalty", "peeken", "elrod", "two-phase")
 
 @dataclass(frozen=True)
 class Value:
-    """One value of a case. key: as in the file; value: SI number, text, or whole number; unit: SI, "" for none."""
+    """One value of a case. key: as in the file; value: SI number, text, or whole number; unit: SI, "" for none; bare:
+    whether it was written without its unit, and so taken as SI."""
 
     key: str
     value: float | int | str
     unit: str = ""
     shown: str = ""
+    bare: bool = False
 
 
 def values(case: Case) -> tuple[Value, ...]:
     """Every value of `case` that is set, by itself or by default, in the order of the case file."""
-    return tuple(value for value in _values("", case) if not _is_idle(value.key, case))
+    return tuple(value for value in _values("", case, parse(case.source_text)) if not _is_idle(value.key, case))
 
 
-def _values(prefix: str, model: Model) -> Iterator[Value]:
+def _values(prefix: str, model: Model, written: Any) -> Iterator[Value]:
     for name, field in type(model).model_fields.items():
-        key = f"{prefix}{field.alias or name}"
-        yield from _one(key, getattr(model, name), field)
+        key = field.alias or name
+        here = written.get(key) if isinstance(written, dict) else None
+        yield from _one(f"{prefix}{key}", getattr(model, name), field, here)
 
 
-def _one(key: str, found: Any, field: FieldInfo) -> Iterator[Value]:
+def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value]:
+    """written: the same value in the text of the case, None where it is not there."""
     if found is None or found == () or found == "":
         return
     if isinstance(found, Model):
-        yield from _values(f"{key}.", found)
+        yield from _values(f"{key}.", found, written)
     elif isinstance(found, tuple):
         single = key == "bearing" and len(found) == 1
-        for index, item in enumerate(found):
-            yield from _one(key if single else f"{key}.{index}", item, field)
+        each = written if isinstance(written, list) else [written] * len(found)
+        for index, (item, its_text) in enumerate(zip(found, each, strict=True)):
+            yield from _one(key if single else f"{key}.{index}", item, field, its_text)
     elif isinstance(found, float):
-        unit = _unit(field)
-        shown = display(found, unit)
-        si = "K" if unit == TEMPERATURE_DIFFERENCE else "" if unit == NUMBER else unit
-        yield Value(key, found, si, shown)
+        unit = unit_of(field) or NUMBER
+        si = "" if unit == NUMBER else readable(unit)
+        yield Value(key, found, si, display(found, unit), bool(si) and isinstance(written, int | float))
     else:
         yield Value(key, found, "", str(found))
-
-
-def _unit(field: FieldInfo) -> str:
-    kinds = [part for part in (*field.metadata, *_annotated(field.annotation)) if isinstance(part, Quantity)]
-    return kinds[0].unit
-
-
-def _annotated(annotation: Any) -> Iterator[Any]:
-    for part in get_args(annotation):
-        yield part
-        yield from _annotated(part)
 
 
 def _is_idle(key: str, case: Case) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,13 @@ from pydantic import ValidationError
 from frbcli.case import lines
 from frbcli.case.checks import Breach, breaches
 from frbcli.case.faults import objections, with_nearest_kinds
+from frbcli.case.model import Model
 from frbcli.case.ross import with_rotor_file
 from frbcli.case.schema import Case
 from frbcli.case.settings import with_setting
 from frbcli.case.shipped import find_shipped, nearest, shipped_names
-from frbcli.case.toml import TomlFault, parse, to_toml
+from frbcli.case.text import as_tables
+from frbcli.case.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.errors import Fault, InputError
 
 LARGEST_FILE = 262_144  # bytes; a case has some thousand
@@ -49,15 +51,64 @@ def load_case_text(
     except TomlFault as error:
         raise InputError(source, (error.fault,)) from None
     data, overridden, faults = _apply(data, settings)
-    data = data if "name" in data else {"name": _printable(name), **data}
-    data, unread = with_rotor_file(data, Path(folder))
-    case, found = _validate(data)
-    found = [*unread, *found]
+    case, data, found = _checked(data, name, folder)
     if found:
         faults += _located(found, data, overridden, text)
     if faults or case is None:
-        raise InputError(source, tuple(sorted(faults, key=lambda fault: (fault.line or LARGEST_FILE, fault.key))))
+        raise _refused(source, faults)
     return case.with_source_text(to_toml(data))
+
+
+def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Path = ".") -> Case:
+    """The case in tables that have the keys of a case file, checked as a file is.
+
+    data: nested mappings and sequences; quantities are numbers in SI or text with a unit; a table may also be a model
+    of `frbcli.case`; what is None is not given. name: what the case is called if the data do not say; folder: where a
+    rotor file is sought. Raises InputError with every fault of the data.
+    """
+    try:
+        tables = _plain(data)
+    except TomlFault as error:
+        raise InputError(name, (error.fault,)) from None
+    if not isinstance(tables, dict):
+        raise InputError(name, (Fault("data", "", None, "is no dict.", "Give a table of the case's tables."),))
+    case, tables, found = _checked(tables, name, folder)
+    if found or case is None:
+        raise _refused(name, _located(found, tables, (), ""))
+    return case
+
+
+def describes(text: str, case: Case) -> bool:
+    """Whether `text`, perhaps of an older version, is of the machine and the run of `case`, however it is written."""
+    try:
+        return case.same_run(Case.model_validate(parse(text)))
+    except (TomlFault, ValidationError):
+        return False
+
+
+def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case | None, dict[str, Any], list[Breach]]:
+    """The case in `data`, None if there is none; its tables, with name and rotor file; everything that is wrong."""
+    data = data if "name" in data else {"name": _printable(name), **data}
+    data, unread = with_rotor_file(data, Path(folder))
+    case, found = _validate(data)
+    return case, data, [*unread, *found]
+
+
+def _refused(source: str, faults: Sequence[Fault]) -> InputError:
+    return InputError(source, tuple(sorted(faults, key=lambda fault: (fault.line or LARGEST_FILE, fault.key))))
+
+
+def _plain(value: Any, path: lines.Path = ()) -> Any:
+    """`value` as a file would give it: tables, lists, text and numbers. Raises TomlFault."""
+    if len(path) > DEEPEST:
+        raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as a case file has it."))
+    if isinstance(value, Model):
+        return as_tables(value)
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, (*path, str(key))) for key, item in value.items() if item is not None}
+    if isinstance(value, list | tuple):
+        return [_plain(item, (*path, number)) for number, item in enumerate(value)]
+    return value.tolist() if hasattr(value, "tolist") else value  # numbers and arrays of numpy
 
 
 def _read(path: Path) -> str | None:
@@ -130,9 +181,12 @@ def _located(found: Sequence[Breach], data: dict[str, Any], overridden: Sequence
     for breach in found:
         from_setting = any(breach.path[: len(path)] == path for path in overridden)
         line = None if from_setting else known.get(breach.path)
-        key = ".".join(map(str, breach.path))
-        faults.append(Fault(key, _shown(data, breach.path), line, breach.problem, breach.remedy))
+        faults.append(Fault(_dotted(breach.path), _shown(data, breach.path), line, breach.problem, breach.remedy))
     return faults
+
+
+def _dotted(path: lines.Path) -> str:
+    return ".".join(map(str, path))
 
 
 def _shown(data: Any, path: lines.Path) -> str:

@@ -6,11 +6,12 @@ A value that does not fit raises ValueFault, which says what is wrong and what t
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from pydantic import AfterValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity
@@ -79,6 +80,19 @@ class Quantity:
             "examples": [self.example],
         }
         return {"description": "a plain number" if bare else f"a quantity in {unit}", "anyOf": [number, text]}
+
+
+def unit_of(field: FieldInfo) -> str | None:
+    """The SI unit of the quantities in a field, `NUMBER` for plain numbers; None if it holds none."""
+    kinds = (part for part in (*field.metadata, *_annotated(field.annotation)) if isinstance(part, Quantity))
+    first = next(kinds, None)
+    return None if first is None else first.unit
+
+
+def _annotated(annotation: Any) -> Iterator[Any]:
+    for part in get_args(annotation):
+        yield part
+        yield from _annotated(part)
 
 
 @dataclass(frozen=True)

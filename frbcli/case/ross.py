@@ -24,6 +24,8 @@ HEAVY = ("PointMass", "GearElement", "GearElementTVMS", "CouplingElement")  # ha
 UNMODELLED = ("axial_force", "torque")
 
 KEY = ("rotor", "file")
+UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m^3", "youngs_modulus": "Pa",
+         "position": "m", "mass": "kg", "polar_inertia": "kg*m^2", "diametral_inertia": "kg*m^2"}  # fmt: skip
 
 
 class _Fault(Exception):
@@ -92,7 +94,13 @@ def _rotor(data: Mapping[str, Any]) -> tuple[list[dict[str, Any]], list[dict[str
     positions = list(itertools.accumulate((element.number("L") for element in shaft), initial=0.0))
     cylinders = [cylinder for element in shaft for cylinder in _cylinders(element)]
     disks = [_disk(_Element(name, element), positions) for name, kind, element in elements if kind in DISK]
-    return [_joined(alike) for alike in _runs(cylinders)], disks
+    shaft_tables = [_joined(alike) for alike in _runs(cylinders)]
+    return [_with_units(section) for section in shaft_tables], [_with_units(disk) for disk in disks]
+
+
+def _with_units(found: dict[str, Any]) -> dict[str, Any]:
+    """A table as people write it: what the file has in SI is told from a number whose unit was forgotten."""
+    return {key: f"{value!r} {UNITS[key]}" if key in UNITS else value for key, value in found.items()}
 
 
 class _Element:

@@ -50,6 +50,7 @@ CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; the films
 STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
 
+Confirmation = Literal["surface-speed", "gap-growth", "clearance"]
 Theory = Literal["auto", "short", "finite"]
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
 
@@ -212,11 +213,19 @@ class Output(Model):
     step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = OUTPUT_STEP
 
 
+_UNCOMPUTED = {"name": "", "title": "", "confirm": ()}
+
+
 class Case(Model):
     """One machine and one run, as the user wrote them."""
 
     name: Label = Field(default="", description="short name for results; the file's name if not given")
     title: Label = ""
+    confirm: tuple[Confirmation, ...] = Field(
+        default=(),
+        description="what is meant although no usual rotor has it, and refused if not confirmed: the surface of a "
+        "journal faster than 500 m/s, a clearance that changes by more than half as turning parts grow, one below 1 um",
+    )
     given_rotor: Rotor | None = Field(
         default=None, alias="rotor", description="must be given, but for a case with [motion]"
     )
@@ -233,18 +242,34 @@ class Case(Model):
     contact: Contact = Contact()
     accuracy: Accuracy = Accuracy()
     output: Output = Output()
-    _source_text: str = PrivateAttr("")
+    _read: tuple[str, dict[str, Any]] | None = PrivateAttr(None)  # a text, and the values that were read from it
 
     @property
     def source_text(self) -> str:
-        """The case as TOML text, all overrides included; loading it gives this case again."""
-        return self._source_text
+        """The case as TOML text, all overrides included; loading it gives this case again.
+
+        It is the text that the case was read from, as long as that describes it: one made or changed in Python has a
+        text made from its values.
+        """
+        if self._read is not None and self._read[1] == self.__dict__:
+            return self._read[0]
+        from frbcli.case.text import as_text  # it knows the models
+
+        return as_text(self)
 
     def with_source_text(self, text: str) -> Case:
-        """This case, which came from `text`."""
+        """This case, which was read from `text`."""
         case = self.model_copy()
-        case._source_text = text
+        case._read = (text, dict(case.__dict__))
         return case
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all values are equal, wherever they came from."""
+        return isinstance(other, Case) and self.__dict__ == other.__dict__
+
+    def same_run(self, other: Case) -> bool:
+        """Whether `other` is the same machine and run: equal in all that is computed from, so not in its labels."""
+        return self.model_copy(update=_UNCOMPUTED) == other.model_copy(update=_UNCOMPUTED)
 
     @property
     def rotor(self) -> Rotor:

@@ -36,6 +36,9 @@ def command(case: Case, terminal: Terminal) -> None:
     listed = values(case)
     rows = [(value.key, _in_si(value.value, value.unit), value.shown if value.unit else "") for value in listed]
     terminal.table(f"{case.name}: {case.title}".rstrip(": "), ("key", "SI", "reads"), rows)
+    bare = [value for value in listed if value.bare]
+    for value in bare:
+        terminal.say(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
     films = operating_points(case)
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
@@ -64,6 +67,7 @@ def command(case: Case, terminal: Terminal) -> None:
             "title": case.title,
             "status": "ok",
             "values": [{"key": value.key, "value": value.value, "unit": value.unit} for value in listed],
+            "bare_numbers": [{"key": value.key, "value": value.value, "unit": value.unit} for value in bare],
             "films": [
                 {
                     "film": film.name,

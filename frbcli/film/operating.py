@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 LAMINAR_BELOW = 2300.0  # (3.3)
+RING_SPEED = 0.3  # of the rotor's, as table A.1 has it: what a floating ring reaches at most
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,12 @@ from frbcli.case.schema import Case
 from frbcli.film.operating import (
     BRASS,
     LAMINAR_BELOW,
+    RING_SPEED,
     STEEL,
     reynolds_number,
     ring_rotation_strains,
     shaft_rotation_strain,
 )
-
-RING_SPEED = 0.3  # of the rotor's, as table A.1 has it: what a floating ring reaches at most
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
+from frbcli.case.load import describes
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run, RunWriter, check_output, read_run
@@ -104,7 +105,7 @@ def _earlier(command: str, case: Case, path: Path) -> Run | None:
     if not path.exists():
         return None
     run = read_run(path)
-    if (run.command, run.case_text) != (command, case.source_text):
+    if run.command != command or not describes(run.case_text, case):
         name = run.case_name or "unnamed"
         problem = f"holds a {run.command} of another case ({name}) or of this one with other keys."
         remedy = "Give the case and the --set of that run, or another --output."
