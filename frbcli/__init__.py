@@ -8,14 +8,11 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
+from frbcli.version import __version__
+
 if TYPE_CHECKING:  # so that types are known where they are checked
-    from frbcli.analysis.accuracy import accuracy as accuracy
-    from frbcli.analysis.compare import compare as compare
     from frbcli.analysis.events import find_events as find_events
-    from frbcli.analysis.modes import natural_modes as natural_modes
     from frbcli.analysis.spectrum import waterfall as waterfall
-    from frbcli.analysis.stability import stability as stability
-    from frbcli.analysis.sweep import sweep as sweep
     from frbcli.case.load import case_from_dict as case_from_dict
     from frbcli.case.load import load_case as load_case
     from frbcli.case.load import load_case_text as load_case_text
@@ -26,12 +23,16 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.errors import InputError as InputError
     from frbcli.errors import NotConverged as NotConverged
     from frbcli.errors import RunFileError as RunFileError
+    from frbcli.linear.modes import natural_modes as natural_modes
+    from frbcli.linear.stability import stability as stability
     from frbcli.results.store import read_run as read_run
+    from frbcli.runs.run import rundown as rundown
+    from frbcli.runs.run import runup as runup
     from frbcli.scene.plan import make_plan as make_plan
-    from frbcli.solve.run import rundown as rundown
-    from frbcli.solve.run import runup as runup
+    from frbcli.studies.accuracy import accuracy as accuracy
+    from frbcli.studies.compare import compare as compare
+    from frbcli.studies.sweep.sweep import sweep as sweep
 
-__version__ = "0.1.0"
 
 _PUBLIC = {
     "Case": "frbcli.case.schema",
@@ -40,23 +41,23 @@ _PUBLIC = {
     "InputError": "frbcli.errors",
     "NotConverged": "frbcli.errors",
     "RunFileError": "frbcli.errors",
-    "accuracy": "frbcli.analysis.accuracy",
+    "accuracy": "frbcli.studies.accuracy",
     "case_from_dict": "frbcli.case.load",
-    "compare": "frbcli.analysis.compare",
+    "compare": "frbcli.studies.compare",
     "find_events": "frbcli.analysis.events",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",
-    "natural_modes": "frbcli.analysis.modes",
+    "natural_modes": "frbcli.linear.modes",
     "read_run": "frbcli.results.store",
-    "rotation": "frbcli.solve.kinematic",
-    "rundown": "frbcli.solve.run",
-    "runup": "frbcli.solve.run",
+    "rotation": "frbcli.bearing_tests.kinematic",
+    "rundown": "frbcli.runs.run",
+    "runup": "frbcli.runs.run",
     "shipped_cases": "frbcli.case.shipped",
-    "squeeze": "frbcli.solve.kinematic",
-    "stability": "frbcli.analysis.stability",
-    "sweep": "frbcli.analysis.sweep",
-    "whirl": "frbcli.solve.kinematic",
+    "squeeze": "frbcli.bearing_tests.kinematic",
+    "stability": "frbcli.linear.stability",
+    "sweep": "frbcli.studies.sweep.sweep",
+    "whirl": "frbcli.bearing_tests.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
 }
 

@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from textwrap import fill
 
-from frbcli.analysis.hard_cases import HardResult, HardResults, run_hard_cases
 from frbcli.cli.hard import write_page
+from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 PAGE = Path(__file__).parents[1] / "docs" / "hard-cases.md"
 SURE = 0.3  # of an error that a reference may be off by itself, for the error to be well known

@@ -9,8 +9,8 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from frbcli.analysis.hard_reference import make_reference
 from frbcli.case.hard import REFERENCES, hard_cases
+from frbcli.studies.hard.reference import make_reference
 
 FILE = Path(__file__).parents[1] / "cases" / "hard" / REFERENCES
 

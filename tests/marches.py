@@ -10,16 +10,16 @@ from films import system_of
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from frbcli.film.bearing import RectangularBearing, evaluate, make_film
-from frbcli.film.table import Mesh
+from frbcli.film.rectangles.bearing import RectangularBearing, evaluate, make_film
+from frbcli.film.rectangles.table import Mesh
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
+from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.system import System
-from frbcli.solve.march import advance
-from frbcli.solve.start import rotor_data, state_at
 from frbcli.solve.state import OUTPUTS, RUNNING, Control, State
 from frbcli.solve.tableau import METHODS
+from frbcli.solve.time_loop import advance
 
 Array = NDArray[np.float64]
 

@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.analysis.accuracy import accuracy, ladder, planned_rung
-from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungError, RungResult
-from frbcli.analysis.stability import stability
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
+from frbcli.linear.stability import stability
 from frbcli.plot.accuracy import accuracy_figure
+from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
-from frbcli.solve.run import runup
+from frbcli.studies.accuracy import accuracy, ladder, planned_rung
+from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
 
 QUICK = ("speed.duration=0.4 s", "speed.from=20 Hz", "speed.to=60 Hz", "output.step=2e-4 s", "accuracy.mesh=[4, 48]")
 UNTIL = 0.1

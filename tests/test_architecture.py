@@ -16,7 +16,7 @@ import frbcli
 
 PACKAGE = Path(frbcli.__file__).parent
 PROJECT = PACKAGE.parent
-ROW = re.compile(r"^\| `([a-z]+)(?:/|\.py)` \|.*\| ([^|]*) \|$", re.MULTILINE)
+ROW = re.compile(r"^\| `([a-z_]+)(?:/|\.py)` \|.*\| ([^|]*) \|$", re.MULTILINE)
 
 # Libraries that have one room, so that they can be exchanged there.
 LIBRARY_ROOMS = {
@@ -36,7 +36,7 @@ def documented_dependencies() -> dict[str, set[str]]:
     rows = dict(ROW.findall((PROJECT / "docs" / "architecture.md").read_text(encoding="utf-8")))
     rooms = set(rows)
     direct = {
-        room: rooms if "everything" in text else {word for word in re.findall(r"[a-z]+", text) if word in rooms}
+        room: rooms if "everything" in text else {word for word in re.findall(r"[a-z_]+", text) if word in rooms}
         for room, text in rows.items()
     }
     for _ in rooms:  # as many rounds as the longest chain can have

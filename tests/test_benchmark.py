@@ -24,11 +24,11 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, BilinearForm, ElementQuad2, LinearForm, MeshQuad
 
 from frbcli.case.load import load_case
-from frbcli.film.bearing import RectangularBearing
+from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.results.store import Run
+from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
-from frbcli.solve.run import runup
 
 pytestmark = pytest.mark.benchmark
 
@@ -173,7 +173,7 @@ def test_film_evaluations_against_the_naive_way() -> None:
     """One force with all derivatives against five naive forces: one and four for a finite-difference Jacobian."""
     from numba import njit
 
-    from frbcli.film.kernel import film_force
+    from frbcli.film.rectangles.film_force import film_force
 
     @njit
     def many(film, count):  # type: ignore[no-untyped-def]

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.analysis.sweep import Workers
 from frbcli.case.bearing import CircumferentialGroove, SingleFilmBearing
 from frbcli.case.load import case_from_dict, describes, load_case, load_case_text
 from frbcli.case.rotor import RigidRotor
@@ -20,7 +19,8 @@ from frbcli.case.shipped import shipped_names
 from frbcli.case.toml import parse
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import read_run
-from frbcli.solve.run import runup
+from frbcli.runs.run import runup
+from frbcli.studies.sweep.sweep import Workers
 
 RIGID: dict[str, Any] = {
     "rotor": {"kind": "rigid", "mass": 6.1, "unbalance": 3e-6},

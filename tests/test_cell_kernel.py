@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from frbcli.film.balance import Balance, Storage
-from frbcli.film.block_cyclic import ENTRIES, solve_ring
+from frbcli.film.cavitation.compiled import cell_law, law_code, wright_omega
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
@@ -16,14 +15,15 @@ from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cell_balances import FLOWS, SIDES, balances
-from frbcli.film.cell_law import cell_law, law_code, wright_omega
-from frbcli.film.cell_newton import film_newton
-from frbcli.film.cell_states import STATES, cell_states
+from frbcli.film.cells.balances import FLOWS, SIDES, balances
+from frbcli.film.cells.block_cyclic import ENTRIES, solve_ring
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.grid import volume_grid
+from frbcli.film.cells.newton_step import film_newton
+from frbcli.film.cells.plain.balance import Balance, Storage
+from frbcli.film.cells.plain.film import Motion, VolumeFilm
+from frbcli.film.cells.states import STATES, cell_states
 from frbcli.film.gap import Hole, Section, gap_height
-from frbcli.film.volume_data import volume_films
-from frbcli.film.volume_grid import volume_grid
-from frbcli.film.volumes import Motion, VolumeFilm
 
 LAWS: dict[str, Law] = {
     "sommerfeld": Sommerfeld(),

@@ -13,16 +13,16 @@ import frbcli
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.cell_states import whirl_share
+from frbcli.film.cells.states import whirl_share
 from frbcli.results.store import read_run
+from frbcli.runs.march import Progress, control_of
+from frbcli.runs.oil import net_flow, oil_defect
+from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.march import advance
-from frbcli.solve.oil import net_flow, oil_defect
-from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import RUNNING, State
 from frbcli.solve.tableau import METHODS
-from frbcli.solve.under_way import Progress, control_of
+from frbcli.solve.time_loop import advance
 
 Array = NDArray[np.float64]
 SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]

@@ -13,28 +13,28 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from frbcli.analysis.stability import stability
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.balance import Motion
-from frbcli.film.cell_balances import CHANNELS_NET
-from frbcli.film.channels import Channel, channel_resistance, with_channels
-from frbcli.film.volume_data import FLOW_SCALE, volume_films
-from frbcli.film.volumes import VolumeFilm
+from frbcli.film.cells.balances import CHANNELS_NET
+from frbcli.film.cells.channels import Channel, channel_resistance, with_channels
+from frbcli.film.cells.data import FLOW_SCALE, volume_films
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.linear.stability import stability
+from frbcli.runs.march import control_of
+from frbcli.runs.oil import net_flow, oil_defect
+from frbcli.runs.run import runup
+from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.march import advance
+from frbcli.solve.films import OIL, PASSED, W, begin_stage, make_work
 from frbcli.solve.micro_step import _solve_films
-from frbcli.solve.oil import net_flow, oil_defect
-from frbcli.solve.passengers import OIL, PASSED, W, begin_stage, make_work
-from frbcli.solve.run import runup
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
-from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import RUNNING, State
 from frbcli.solve.tableau import METHODS
-from frbcli.solve.under_way import control_of
+from frbcli.solve.time_loop import advance
 
 Array = NDArray[np.float64]
 COUPLED = ("bearing.channels=coupled", "accuracy.mesh=[5,32]", "output.step=1e-4")

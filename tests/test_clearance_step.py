@@ -13,16 +13,16 @@ import frbcli
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.linear.resting import resting_position
 from frbcli.rotor.excitation import speed_profile
+from frbcli.runs.march import March
+from frbcli.runs.oil import net_flow
 from frbcli.scene.clearance_steps import case_at
 from frbcli.scene.plan import make_plan
-from frbcli.scene.stretches import Stretch, make_stretches
+from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import make_system, run_up_profile
-from frbcli.solve.oil import net_flow
-from frbcli.solve.passengers import OIL
-from frbcli.solve.resting import resting_position
+from frbcli.solve.films import OIL
 from frbcli.solve.state import FINISHED, RUNNING, State
-from frbcli.solve.under_way import March
 
 Array = NDArray[np.float64]
 STEADY = ["speed.from=60Hz", "speed.to=60Hz", "speed.duration=0.4s", "rotor.unbalance=0 kg*m", "output.step=0.5ms"]

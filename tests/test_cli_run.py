@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from frbcli.cli.main import run as frb
 from frbcli.cli.transient import progress_line
 from frbcli.results.store import Run, read_run
-from frbcli.solve.under_way import Progress
+from frbcli.runs.march import Progress
 
 ROOT = Path(__file__).parents[1]
 PNG = b"\x89PNG"
@@ -172,7 +172,7 @@ def test_time_left_is_told_in_few_columns(left: float, words: str) -> None:
 
 def frb_process(*words: str, often: bool = False, **options: Any) -> subprocess.Popen[bytes]:
     """frb in a process of its own; often: with many checkpoints."""
-    hurry = "import frbcli.solve.run as r; r.CHECKPOINT_EVERY_s, r.CHECKPOINT_SHARE = 0.05, 1.0;" if often else ""
+    hurry = "import frbcli.runs.run as r; r.CHECKPOINT_EVERY_s, r.CHECKPOINT_SHARE = 0.05, 1.0;" if often else ""
     code = f"import sys; {hurry} from frbcli.cli.main import main; main()"
     environment = os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "100", "TERM": "xterm"}
     return subprocess.Popen([sys.executable, "-c", code, *words], env=environment, **options)

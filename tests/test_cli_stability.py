@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from frbcli.analysis.stability import stability
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
+from frbcli.linear.stability import stability
 
 
 def test_command_emits_the_points_asked_for(

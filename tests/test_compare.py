@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 from synthetic_run import Rotor, as_run, signals
 
-from frbcli.analysis.compare import Comparison, Deviation, Variant, compare, deviation, make_variants
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.compare import comparison_figure
 from frbcli.results.store import Run, read_run
-from frbcli.solve import under_way
-from frbcli.solve.run import runup
-from frbcli.solve.under_way import Progress
+from frbcli.runs import march
+from frbcli.runs.march import Progress
+from frbcli.runs.run import runup
+from frbcli.studies.compare import Comparison, Deviation, Variant, compare, deviation, make_variants
 
 QUICK = ("speed.duration=0.4 s", "speed.from=20 Hz", "speed.to=120 Hz", "output.step=2e-4 s", "accuracy.mesh=[4, 48]")
 HALF, FULL = "half-sommerfeld", "sommerfeld"
@@ -155,7 +155,7 @@ def test_a_directory_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_ends_the_comparison_with_the_run_under_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(under_way, "BUDGET", 60)
+    monkeypatch.setattr(march, "BUDGET", 60)
     seen: list[str] = []
 
     def observe(variant: Variant, _: Progress) -> None:

@@ -10,22 +10,22 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from frbcli.analysis.compare import compare
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.runs.cosimulation import in_turn, micro_cost
+from frbcli.runs.march import control_of
+from frbcli.runs.run import runup
+from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system, run_up_profile
-from frbcli.solve.cosimulation import in_turn, micro_cost
 from frbcli.solve.macro_step import advance_in_turn
-from frbcli.solve.march import advance
 from frbcli.solve.micro_step import MICRO_STEPS, parabola
-from frbcli.solve.run import runup
-from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import FINISHED, STEPS, State
 from frbcli.solve.tableau import METHODS
-from frbcli.solve.under_way import control_of
+from frbcli.solve.time_loop import advance
+from frbcli.studies.compare import compare
 
 Array = NDArray[np.float64]
 

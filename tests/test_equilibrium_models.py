@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from frbcli import load_case, rotation
+from frbcli.bearing_tests import resting
+from frbcli.bearing_tests.plan import kinematic_plan
+from frbcli.bearing_tests.resting import resting_displacement
+from frbcli.bearing_tests.steady_film import film_force
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.volumes import Motion
-from frbcli.scene.kinematic import kinematic_plan
-from frbcli.solve import film_at_rest
-from frbcli.solve.film_at_rest import resting_displacement
-from frbcli.solve.steady_film import film_force
+from frbcli.film.cells.plain.film import Motion
 
 DATA = Path(__file__).parent / "data"
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}
@@ -121,8 +121,8 @@ def test_elrods_load_falls_with_the_supply_pressure_to_nothing() -> None:
 
 
 def test_load_beyond_all_that_the_film_carries_names_the_largest(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(film_at_rest, "COARSE_CELLS", (24, 8))
-    monkeypatch.setattr(film_at_rest, "STARTS", (0.6, 0.95))
+    monkeypatch.setattr(resting, "COARSE_CELLS", (24, 8))
+    monkeypatch.setattr(resting, "STARTS", (0.6, 0.95))
     case = load_case("bearing-axial-groove", ["accuracy.mesh=[8, 24]"])
     with pytest.raises(NotConverged, match=r"largest film force found is .* N, at an eccentricity of 0\.95"):
         resting_displacement(case, kinematic_plan(case, "reynolds"), 1e9, 40.0 * math.pi)

@@ -8,21 +8,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.analysis.differences import difference
-from frbcli.analysis.verify import verify
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
+from frbcli.runs import march
+from frbcli.runs.cell_errors import ORDER, FewerCells
+from frbcli.runs.error_budget import BEFORE_WHIRL, quiet_until, summed
+from frbcli.runs.fewer_cells import fewer_cells, on_fewer_cells
+from frbcli.runs.film_error import FilmErrors
+from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
-from frbcli.scene.stretches import make_stretches
+from frbcli.scene.segments import make_stretches
 from frbcli.scene.system import make_system, run_up_profile
-from frbcli.solve import under_way
-from frbcli.solve.error_budget import BEFORE_WHIRL, quiet_until, summed
-from frbcli.solve.fewer_cells import ORDER, FewerCells, fewer_cells, on_fewer_cells
-from frbcli.solve.film_error import FilmErrors
-from frbcli.solve.run import runup
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
+from frbcli.studies.differences import difference
+from frbcli.studies.verify import verify
 
 SHORT_RUN = ("speed.duration=0.3 s", "speed.to=30 Hz", "output.step=1e-3 s")
 
@@ -48,8 +49,8 @@ def test_the_stated_error_does_not_depend_on_when_the_run_is_looked_at(
 ) -> None:
     case = load_case("jeffcott", [*SHORT_RUN, "accuracy.tolerance=1e-3"])
     often = runup(case, tmp_path / "a.h5").error
-    monkeypatch.setattr(under_way, "BUDGET", 7)
-    monkeypatch.setattr(under_way, "BUFFER", 10)
+    monkeypatch.setattr(march, "BUDGET", 7)
+    monkeypatch.setattr(march, "BUFFER", 10)
     assert runup(case, tmp_path / "b.h5").error == often
 
 
@@ -134,13 +135,13 @@ def test_between_rings_only_lengths_count() -> None:
 def test_a_run_that_does_not_begin_on_fewer_cells(monkeypatch: pytest.MonkeyPatch) -> None:
     case = load_case("rigid-two-phase")
     plan = make_plan(case)
-    march = under_way.March(case, plan, make_stretches(case, plan), run_up_profile(case))
+    run = march.March(case, plan, make_stretches(case, plan), run_up_profile(case))
 
     def fails(*_: object) -> object:
         raise NotConverged("no")
 
-    monkeypatch.setattr(under_way, "make_stretches", fails)
-    assert on_fewer_cells(march, 1.0) is None
+    monkeypatch.setattr(march, "make_stretches", fails)
+    assert on_fewer_cells(run, 1.0) is None
 
 
 def test_a_film_that_carries_little_counts_as_little() -> None:

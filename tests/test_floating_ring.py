@@ -13,19 +13,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from frbcli.analysis.compare import compare
-from frbcli.analysis.ring_speed import concentric_ratios
-from frbcli.analysis.stability import stability
 from frbcli.case.listing import values
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
+from frbcli.linear.ring_speed import concentric_ratios
+from frbcli.linear.stability import stability
 from frbcli.results.store import Run
+from frbcli.runs.run import runup
 from frbcli.scene.films import channel_pulls
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
-from frbcli.solve.resting import held_rotor, resting_position, ring_speeds
-from frbcli.solve.run import runup
+from frbcli.studies.compare import compare
 
 Array = NDArray[np.float64]
 

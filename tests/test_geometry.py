@@ -11,17 +11,22 @@ import pytest
 from volume_films import ROTATION, polar_motion, section_of
 
 from frbcli import load_case
+from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
 from frbcli.cli.main import run
 from frbcli.errors import InputError
-from frbcli.film.balance import Motion
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
-from frbcli.film.frame import path_seen_from, seen_from, turned
+from frbcli.film.cells.frame import path_seen_from, seen_from, turned
+from frbcli.film.cells.grid import fitted_grid, volume_grid
+from frbcli.film.cells.openings import hole_area
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.plain.loads import Loads, loads
+from frbcli.film.cells.plain.transient import march
+from frbcli.film.cells.supply import supplied, supply_share
 from frbcli.film.gap import AxialGroove, Hole, Lobes, Section, gap_height, graded_ring, smallest_gap
-from frbcli.film.loads import Loads, loads
-from frbcli.film.openings import hole_area
 from frbcli.film.operating import (
     BRASS,
     STEEL,
@@ -32,11 +37,6 @@ from frbcli.film.operating import (
     shaft_rotation_strain,
     thermal_strain,
 )
-from frbcli.film.supply import supplied, supply_share
-from frbcli.film.transient import march
-from frbcli.film.volume_grid import fitted_grid, volume_grid
-from frbcli.film.volumes import VolumeFilm
-from frbcli.scene.kinematic import KinematicPlan, kinematic_plan
 from frbcli.scene.operating import operating_points
 
 TURN = 2.0 * math.pi

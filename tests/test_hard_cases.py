@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.analysis.hard_cases import HardResults, hard_case_result, run_hard_cases
-from frbcli.analysis.hard_worker import DIED, HUNG, Worker
 from frbcli.case.hard import HardCase, Reference, hard_cases, references
 from frbcli.case.load import load_case_text
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
+from frbcli.studies.hard.cases import HardResults, hard_case_result, run_hard_cases
+from frbcli.studies.hard.worker import DIED, HUNG, Worker
 
 ALL = hard_cases()
 QUICK = [hard for hard in ALL if hard.quick]
@@ -77,7 +77,7 @@ def test_a_message_without_the_cause_is_seen() -> None:
 
 
 def test_a_signal_that_is_no_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    import frbcli.analysis.hard_cases as module
+    import frbcli.studies.hard.cases as module
 
     def broken(case: object, path: Path) -> object:
         run = real(case, path)
@@ -91,7 +91,7 @@ def test_a_signal_that_is_no_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_bug_is_a_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    import frbcli.analysis.hard_cases as module
+    import frbcli.studies.hard.cases as module
 
     def breaks(*_: object) -> object:
         raise ZeroDivisionError("somewhere")

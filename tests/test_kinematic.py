@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from frbcli import load_case, rotation, squeeze, whirl
-from frbcli.film.bearing import evaluate, make_film
+from frbcli.bearing_tests.journal_path import whirl_path
+from frbcli.bearing_tests.kinematic import KinematicResult
+from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.loads import loads
-from frbcli.film.supply import supplied
-from frbcli.film.table import Mesh
-from frbcli.film.volumes import VolumeFilm, fitted_grid, reference_pressure
-from frbcli.scene.kinematic import kinematic_plan
-from frbcli.solve.journal_path import whirl_path
-from frbcli.solve.kinematic import KinematicResult
+from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.plain.loads import loads
+from frbcli.film.cells.supply import supplied
+from frbcli.film.rectangles.bearing import evaluate, make_film
+from frbcli.film.rectangles.table import Mesh
 
 SQUEEZE = list(csv.DictReader((Path(__file__).parent / "data" / "squeeze-forces.csv").read_text().splitlines()))
 AT = "motion={eccentricity=0.6, angle='-60 deg', speed='20 Hz'}"

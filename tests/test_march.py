@@ -28,7 +28,7 @@ from marches import (
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag
 
-from frbcli.film.bearing import evaluate
+from frbcli.film.rectangles.bearing import evaluate
 from frbcli.rotor.excitation import speed_profile
 from frbcli.rotor.linear import LinearRotor, planar
 from frbcli.rotor.rigid import rigid_rotor

@@ -12,10 +12,10 @@ from scipy.integrate import simpson
 from frbcli.rotor.excitation import speed_profile
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
-from frbcli.solve.march import advance
-from frbcli.solve.start import rotor_data
+from frbcli.runs.start import rotor_data
 from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME
 from frbcli.solve.tableau import METHODS
+from frbcli.solve.time_loop import advance
 
 # --- the course of a march ---
 

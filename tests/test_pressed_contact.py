@@ -9,17 +9,17 @@ import pytest
 from numpy.typing import NDArray
 
 from frbcli.case.load import load_case
-from frbcli.film.cell_law import ELROD, PEEKEN, TWO_PHASE, cell_law, empty_unknown
-from frbcli.film.cell_states import FRACTION
-from frbcli.film.kept_gap import gap_limits, kept_gap
-from frbcli.film.volume_data import COS, GAP, LEAST_GAP, SIN, STOPS_FROM
+from frbcli.film.cavitation.compiled import ELROD, PEEKEN, TWO_PHASE, cell_law, empty_unknown
+from frbcli.film.cells.data import COS, GAP, LEAST_GAP, SIN, STOPS_FROM
+from frbcli.film.cells.states import FRACTION
+from frbcli.film.contact_gap import gap_limits, kept_gap
+from frbcli.runs.march import March
 from frbcli.scene.plan import make_plan
-from frbcli.scene.stretches import Stretch
+from frbcli.scene.segments import Stretch
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.cell_passengers import EMPTY, UNSETTLED, cell_numbers, move_cells
-from frbcli.solve.passengers import make_work
+from frbcli.solve.cell_films import EMPTY, UNSETTLED, cell_numbers, move_cells
+from frbcli.solve.films import make_work
 from frbcli.solve.state import FINISHED, RUNNING
-from frbcli.solve.under_way import March
 
 Array = NDArray[np.float64]
 BASE = "axial-groove-two-phase"

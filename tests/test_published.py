@@ -11,13 +11,12 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
+from frbcli.bearing_tests.kinematic import KinematicResult, rotation
 from frbcli.case.load import load_case
 from frbcli.errors import InputError
-from frbcli.film.balance import Motion
-from frbcli.film.bearing import RectangularBearing
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.direct import direct_force
+from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import artificial_diffusion, assemble
@@ -27,8 +26,9 @@ from frbcli.film.published.loads import published_loads
 from frbcli.film.published.plain import terms
 from frbcli.film.published.ring import make_ring, solve_ring
 from frbcli.film.published.unknown import make_unknowns, pressures_of, unknowns_of
-from frbcli.film.table import Mesh
-from frbcli.solve.kinematic import KinematicResult, rotation
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.table import Mesh
+from frbcli.film.rectangles.untabulated import direct_force
 
 OMEGA = 2.0 * math.pi * 120.0  # at 4 s of the run-up of chapter 6
 CASE = """
@@ -264,7 +264,7 @@ def test_diffusion_along_the_stream_only_creates_less(tmp_path: Path) -> None:
 
 
 def test_moved_journals_are_refused(tmp_path: Path) -> None:
-    from frbcli.scene.kinematic import kinematic_plan
+    from frbcli.bearing_tests.plan import kinematic_plan
 
     path = tmp_path / "case.toml"
     path.write_text(CASE, encoding="utf-8")

@@ -15,22 +15,22 @@ import frbcli
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.balance import Motion
+from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.unknown import unknowns_of
+from frbcli.runs.march import control_of
+from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.march import advance
-from frbcli.solve.published_equations import FilmEquations, film_equations, make_room, residual
-from frbcli.solve.published_march import advance_published
-from frbcli.solve.published_stage import solve_stage
-from frbcli.solve.published_state import film_layers, oil_created, unknowns_in
+from frbcli.solve.published.equations import FilmEquations, film_equations, make_room, residual
+from frbcli.solve.published.stage import solve_stage
+from frbcli.solve.published.state import film_layers, oil_created, unknowns_in
+from frbcli.solve.published.time_loop import advance_published
 from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
-from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import FINISHED, RUNNING, Control, State
 from frbcli.solve.tableau import METHODS
-from frbcli.solve.under_way import control_of
+from frbcli.solve.time_loop import advance
 
 Array = NDArray[np.float64]
 SHORT = ["speed.from=30Hz", "speed.to=30Hz", "speed.duration=0.02s", "output.step=0.5ms", "accuracy.mesh=[4,14]"]

@@ -11,11 +11,12 @@ import pytest
 from volume_films import motion_of, polar_motion, reference_rows, section_of
 
 from frbcli.errors import InputError
-from frbcli.film.balance import Motion
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cells.openings import hole_area
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.plain.loads import force as volume_force
 from frbcli.film.gap import AxialGroove, Hole, Lobes, Section
-from frbcli.film.loads import force as volume_force
-from frbcli.film.openings import hole_area
 from frbcli.film.quadratic.film import Cavitation, PenaltyReading, QuadraticFilm, quadratic_film
 from frbcli.film.quadratic.force import quadratic_force
 from frbcli.film.quadratic.mesh import quadratic_mesh
@@ -24,7 +25,6 @@ from frbcli.film.quadratic.penalty import penalty_scales, solve_penalty
 from frbcli.film.quadratic.plain import PlainQuadraticFilm
 from frbcli.film.quadratic.ring import COLUMN, ROW, factorise, make_ring
 from frbcli.film.quadratic.ring_solve import solve
-from frbcli.film.volumes import VolumeFilm, fitted_grid, reference_pressure
 
 Array = np.ndarray
 RADIUS, WIDTH = 12.5e-3, 20e-3

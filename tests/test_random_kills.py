@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import frbcli.solve.run as solve_run
+import frbcli.runs.run as solve_run
 from frbcli.case.load import load_case
 from frbcli.results.store import Run, read_run
-from frbcli.solve import under_way
-from frbcli.solve.run import runup
+from frbcli.runs import march
+from frbcli.runs.run import runup
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ MACHINES = [
 ]
 
 
-def march(machine: Machine, path: Path) -> None:
+def go_on(machine: Machine, path: Path) -> None:
     """Go on with the run, with a checkpoint after each look at the clock."""
     solve_run.CHECKPOINT_EVERY_s, solve_run.CHECKPOINT_SHARE = 0.0, 1.0
     runup(load_case(machine.base, machine.settings), path, resume=True)
@@ -61,8 +61,8 @@ def test_killed_at_random_times_it_resumes_to_equal_results(
     machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The error that a run states is read at each look at the clock: all have to look at the same steps.
-    monkeypatch.setattr(under_way, "BUDGET", machine.budget)
-    monkeypatch.setattr(under_way, "CELL_BUDGET", machine.budget)
+    monkeypatch.setattr(march, "BUDGET", machine.budget)
+    monkeypatch.setattr(march, "CELL_BUDGET", machine.budget)
     case = load_case(machine.base, machine.settings)
     runup(case, tmp_path / "first.h5")  # compiled or loaded, then it is quick
     begun = time.monotonic()
@@ -73,7 +73,7 @@ def test_killed_at_random_times_it_resumes_to_equal_results(
     while killed < machine.kills:
         path, reached = tmp_path / f"{killed}.h5", 0.0
         while killed < machine.kills and not (path.exists() and read_run(path).status == "finished"):
-            process = context.Process(target=march, args=(machine, path))
+            process = context.Process(target=go_on, args=(machine, path))
             process.start()
             process.join(chance.uniform(0.0, pace))
             killed += process.is_alive()

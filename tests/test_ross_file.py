@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from frbcli.analysis.modes import natural_modes
 from frbcli.case.listing import values
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.case.toml import to_toml
 from frbcli.errors import Fault, InputError
+from frbcli.linear.modes import natural_modes
 
 STEEL = {"name": "Steel", "rho": 7810.0, "E": 211e9, "G_s": 81.2e9, "color": "#525252"}
 

@@ -17,10 +17,10 @@ from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.store import Run, read_run
-from frbcli.solve import run as run_module
-from frbcli.solve import under_way
-from frbcli.solve.run import rundown, runup
-from frbcli.solve.under_way import Progress
+from frbcli.runs import march
+from frbcli.runs import run as run_module
+from frbcli.runs.march import Progress
+from frbcli.runs.run import rundown, runup
 
 SHORT = ("film.theory=short", "speed.duration=0.4 s", "speed.to=120 Hz")
 WAVY = (*SHORT, "speed.from=60 Hz", "rotor.unbalance=60 g*mm")  # much moves, and the critical speed is near
@@ -56,7 +56,7 @@ def interrupt_after(calls: int) -> Callable[[Progress], None]:
 @pytest.fixture
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Looks at the clock so often that a short run has many of them."""
-    monkeypatch.setattr(under_way, "BUDGET", 60)
+    monkeypatch.setattr(march, "BUDGET", 60)
 
 
 # --- what a run holds ---
@@ -127,8 +127,8 @@ def test_elastic_contact_lets_the_run_finish(tmp_path: Path) -> None:
 
 
 def test_a_tolerance_that_cannot_be_met_ends_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    control_of = under_way.control_of  # no case may ask for so much
-    monkeypatch.setattr(under_way, "control_of", lambda case, plan: control_of(case, plan)._replace(tolerance=1e-60))
+    control_of = march.control_of  # no case may ask for so much
+    monkeypatch.setattr(march, "control_of", lambda case, plan: control_of(case, plan)._replace(tolerance=1e-60))
     run = runup(short_case(), tmp_path / "run.h5")
     assert run.status == "not-converged"
     assert run.t_end_s < 0.4

@@ -11,17 +11,17 @@ import pytest
 import frbcli
 from frbcli.case.load import load_case
 from frbcli.errors import InputError
-from frbcli.film.balance import Motion
-from frbcli.film.bearing import evaluate
 from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cells.grid import fitted_grid
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.plain.loads import force
+from frbcli.film.cells.steady_force import film_at
 from frbcli.film.grid import Array
-from frbcli.film.kernel import FilmData
-from frbcli.film.loads import force
-from frbcli.film.source_film import SourceFilm
-from frbcli.film.steady_force import film_at
-from frbcli.film.table import Mesh
-from frbcli.film.volume_grid import fitted_grid
-from frbcli.film.volumes import VolumeFilm
+from frbcli.film.penalty_table.film import SourceFilm
+from frbcli.film.rectangles.bearing import evaluate
+from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.rectangles.table import Mesh
 from frbcli.scene.films import film_places, source_film
 from frbcli.scene.plan import make_plan
 from frbcli.scene.section import film_section

@@ -12,16 +12,16 @@ import pytest
 from films import system_of
 
 import frbcli
-from frbcli.analysis.stability import Stability, eigenvalues, stability
 from frbcli.case.load import load_case
 from frbcli.errors import InputError, NotConverged
-from frbcli.film.bearing import evaluate, make_film
-from frbcli.film.direct import direct_force
-from frbcli.film.table import Mesh
+from frbcli.film.rectangles.bearing import evaluate, make_film
+from frbcli.film.rectangles.table import Mesh
+from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.linear.resting import resting_position
+from frbcli.linear.stability import Stability, eigenvalues, stability
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
-from frbcli.solve.resting import resting_position
 
 EQUILIBRIUM = Path(__file__).parent / "data" / "equilibrium.csv"
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from frbcli import load_case, rotation
-from frbcli.scene.kinematic import kinematic_plan
-from frbcli.solve.film_history import History, film_course
-from frbcli.solve.journal_path import squeeze_path, whirl_path
-from frbcli.solve.kinematic import KinematicResult
+from frbcli.bearing_tests.history import History, film_course
+from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
+from frbcli.bearing_tests.kinematic import KinematicResult
+from frbcli.bearing_tests.plan import kinematic_plan
 
 FREQUENCY, PERIOD, STEPS, PERIODS = 10.0, 0.1, 100, 3
 STEP_MS = 1e3 * PERIOD / STEPS

@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 
 from frbcli import Case, InputError, load_case, read_run, runup, stability, sweep
-from frbcli.analysis.sweep import LOG, SweepPoint, Workers, write_table
-from frbcli.analysis.sweep_points import grid, product, read_list, split_values
-from frbcli.analysis.sweep_task import Task, solve
-from frbcli.analysis.sweep_workers import DIED, solved
 from frbcli.cli.main import run as frb
 from frbcli.plot.sweep import can_draw, sweep_figure
+from frbcli.studies.sweep.points import grid, product, read_list, split_values
+from frbcli.studies.sweep.sweep import LOG, SweepPoint, Workers, write_table
+from frbcli.studies.sweep.task import Task, solve
+from frbcli.studies.sweep.workers import DIED, solved
 
 SHORT = ["film.theory=short", "speed.duration=0.3 s", "speed.to=250 Hz"]
 VISCOSITIES = ["8 mPa*s", "12 mPa*s"]
@@ -310,7 +310,7 @@ def test_a_cluster_that_is_not_there_is_wrong_input(
     case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("frbcli.analysis.sweep_workers.CONNECT_WITHIN_s", 0.5)
+    monkeypatch.setattr("frbcli.studies.sweep.workers.CONNECT_WITHIN_s", 0.5)
     with pytest.raises(InputError, match="cannot be reached"):
         sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, workers=Workers("dask", scheduler="tcp://127.0.0.1:9"))
 

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from frbcli.analysis.modes import film_springs, natural_modes
-from frbcli.analysis.stability import RestingFilm, eigenvalues
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
+from frbcli.linear.modes import film_springs, natural_modes
+from frbcli.linear.stability import RestingFilm, eigenvalues
 from frbcli.plot.modes import modes_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor

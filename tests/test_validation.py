@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 from validation import chapter6, chapter6_rows, chapter_7, chapter_7_page, measures, validate
 
+from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.load import load_case
 from frbcli.case.shipped import shipped_names
-from frbcli.scene.kinematic import kinematic_plan
+from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
-from frbcli.solve.run import runup
 
 PRINTED = {row["id"]: row for row in validate.printed_rows()}
 

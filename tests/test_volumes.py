@@ -11,8 +11,6 @@ import pytest
 from volume_films import CLEARANCE, RADIUS, ROTATION, Row, law_of, motion_of, polar_motion, reference_rows, section_of
 
 from frbcli.errors import NotConverged
-from frbcli.film import newton
-from frbcli.film.balance import Balance, Motion, Storage
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
@@ -20,10 +18,12 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.plain import newton
+from frbcli.film.cells.plain.balance import Balance, Motion, Storage
+from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.plain.loads import Torque, estimate, loads
+from frbcli.film.cells.plain.steady import SteadyFilm, steady_film
 from frbcli.film.gap import Section
-from frbcli.film.loads import Torque, estimate, loads
-from frbcli.film.steady import SteadyFilm, steady_film
-from frbcli.film.volumes import VolumeFilm, fitted_grid, reference_pressure
 
 ROWS = reference_rows()
 PRESSURE_ERROR, TORQUE_ERROR = 1e-2, 5e-3

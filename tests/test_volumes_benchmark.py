@@ -18,16 +18,16 @@ from numba import njit
 from test_benchmark import NaiveFilm, report
 from volume_films import AMBIENT, CLEARANCE, RADIUS, ROTATION, VISCOSITY, WIDTH, section_of
 
-from frbcli.film.bearing import RectangularBearing
-from frbcli.film.block_cyclic import ENTRIES
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cell_balances import FLOWS, SIDES
-from frbcli.film.cell_newton import film_newton
-from frbcli.film.cell_states import FRACTION, STATES, cell_states
-from frbcli.film.volume_data import COS, FIRST, GAP, SECOND, SIN, volume_films
-from frbcli.film.volumes import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.balances import FLOWS, SIDES
+from frbcli.film.cells.block_cyclic import ENTRIES
+from frbcli.film.cells.data import COS, FIRST, GAP, SECOND, SIN, volume_films
+from frbcli.film.cells.newton_step import film_newton
+from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.states import FRACTION, STATES, cell_states
+from frbcli.film.rectangles.bearing import RectangularBearing
 
 pytestmark = pytest.mark.benchmark
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
-from frbcli.film.elimination import eliminate, plan_elimination
+from frbcli.film.cells.plain.elimination import eliminate, plan_elimination
 
 
 def ring(around: int, along: int) -> tuple[np.ndarray, np.ndarray]:

@@ -11,19 +11,19 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 from volume_films import AMBIENT, ROTATION, polar_motion, section_of
 
-from frbcli.film.balance import Motion
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.grid import fitted_grid, volume_grid
+from frbcli.film.cells.openings import hole_area
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm, reference_pressure
+from frbcli.film.cells.plain.loads import loads
+from frbcli.film.cells.plain.transient import march
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_height
-from frbcli.film.loads import loads
-from frbcli.film.openings import hole_area
 from frbcli.film.section_faults import runs_dry, section_faults
-from frbcli.film.transient import march
-from frbcli.film.volume_grid import fitted_grid, volume_grid
-from frbcli.film.volumes import VolumeFilm, reference_pressure
 
 ECCENTRICITY, OMEGA, SUPPLY = 0.6, 200.0, 1.3e5
 LEADING, TRAILING = math.radians(-60.0), math.radians(-40.0)  # of a slot over the whole width

@@ -11,17 +11,17 @@ import pytest
 from volume_films import AMBIENT, CLEARANCE, RADIUS, VISCOSITY, WIDTH, section_of
 
 from frbcli.errors import NotConverged
-from frbcli.film.balance import Motion
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.grid import volume_grid
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm, reference_pressure
+from frbcli.film.cells.plain.loads import force, loads
+from frbcli.film.cells.plain.transient import Method, Moment, march, total_balance
 from frbcli.film.gap import Section
-from frbcli.film.loads import force, loads
-from frbcli.film.transient import Method, Moment, march, total_balance
-from frbcli.film.volume_grid import volume_grid
-from frbcli.film.volumes import VolumeFilm, reference_pressure
 
 FREQUENCY, LARGEST_ECCENTRICITY = 10.0, 0.6
 SQUEEZE_ERROR = 3e-2
@@ -192,7 +192,7 @@ def test_step_that_does_not_converge_is_taken_in_halves(monkeypatch: pytest.Monk
     moments = list(march(film, whirl, np.array([0.0, 1e-3]), method="euler"))
     assert [moment.time for moment in moments] == [1e-3]
     assert rates[:3] == pytest.approx([1e3, 2e3, 4e3])
-    monkeypatch.setattr("frbcli.film.transient.MOST_HALVINGS", 1)
+    monkeypatch.setattr("frbcli.film.cells.plain.transient.MOST_HALVINGS", 1)
     with pytest.raises(NotConverged, match="too long"):
         list(march(film, whirl, np.array([0.0, 1e-3]), method="euler"))
 

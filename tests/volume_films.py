@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from frbcli.film.balance import Motion
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
@@ -16,6 +15,7 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.gap import AxialGroove, Section
 
 Row = dict[str, str]

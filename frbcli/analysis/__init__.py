@@ -1,1 +1,1 @@
-"""What can be learned from a run."""
+"""What the signals of a run say: spectra, orders, events. Computes no film and launches no run."""

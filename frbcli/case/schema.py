@@ -40,6 +40,7 @@ from frbcli.case.quantities import (
     Viscosity,
 )
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
+from frbcli.case.text import as_text
 from frbcli.errors import Fault, InputError
 from frbcli.units import NUMBER
 
@@ -253,9 +254,7 @@ class Case(Model):
         """
         if self._read is not None and self._read[1] == self.__dict__:
             return self._read[0]
-        from frbcli.case.text import as_text  # it knows the models
-
-        return as_text(self)
+        return as_text(self, self.name, [bearing.name for bearing in self.bearings])
 
     def with_source_text(self, text: str) -> Case:
         """This case, which was read from `text`."""

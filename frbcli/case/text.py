@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 from frbcli.case.model import Model
 from frbcli.case.quantities import unit_of
 from frbcli.case.toml import to_toml
 from frbcli.units import NUMBER, display, quantity, readable
 
-if TYPE_CHECKING:
-    from frbcli.case.schema import Case
 
-
-def as_text(case: Case) -> str:
-    """TOML text of everything that is set in `case`; loading it gives `case` again."""
-    tables = {"name": case.name, **as_tables(case)}
+def as_text(case: Model, name: str, bearing_names: Sequence[str]) -> str:
+    """TOML text of everything that is set in the Case `case` of this name; loading it gives the case again."""
+    tables = {"name": name, **as_tables(case)}
     bearings = tables.get("bearing", [])
     if len(bearings) > 1:
-        for table, bearing in zip(bearings, case.bearings, strict=True):
-            table["name"] = bearing.name  # a file without names would number them
+        for table, bearing_name in zip(bearings, bearing_names, strict=True):
+            table["name"] = bearing_name  # a file without names would number them
     elif bearings:
         tables["bearing"] = bearings[0]
     return to_toml(tables)

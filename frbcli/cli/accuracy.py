@@ -13,8 +13,8 @@ from frbcli.cli.runs import OUTPUT, SECONDS, here
 from frbcli.cli.transient import live_lines, progress_line
 
 if TYPE_CHECKING:
-    from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungError, RungResult
     from frbcli.case.schema import Case
+    from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
 
 COLUMNS = ("", "film", "tol.", "CPU", "max", "rms", "onset", "thr.", "force")
 EXPLANATION = (
@@ -46,8 +46,8 @@ def command(
     terminal: Terminal,
 ) -> int:
     """Run CASE up on a ladder of theories, meshes and tolerances against a fine reference: error over cost."""
-    from frbcli.analysis.accuracy import accuracy
     from frbcli.plot.style import check_picture
+    from frbcli.studies.accuracy import accuracy
 
     target = output or here(case.name, "-accuracy.png")
     check_picture(target)

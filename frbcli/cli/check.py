@@ -25,10 +25,10 @@ TURNING_TOLD = 0.02  # of the gap
 @output_options
 def command(case: Case, terminal: Terminal) -> None:
     """Validate CASE; show its SI values and the plan: what will be modelled, what is left out, and why."""
+    from frbcli.bearing_tests.plan import kinematic_plan
     from frbcli.case.listing import values
     from frbcli.scene.cost import expected_cost
     from frbcli.scene.expected_error import expected_error
-    from frbcli.scene.kinematic import kinematic_plan
     from frbcli.scene.operating import operating_points
     from frbcli.scene.plan import make_plan
     from frbcli.scene.system import run_up_profile

@@ -13,8 +13,8 @@ from frbcli.cli.transient import exit_code, live_lines, progress_line
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
-    from frbcli.analysis.compare import Comparison, VariantResult
     from frbcli.case.schema import Case
+    from frbcli.studies.compare import Comparison, VariantResult
 
 COLUMNS = ("films", "crit.", "onset", "ratio", "max", "rms", "err.", "CPU")
 COUPLING_COLUMNS = ("coupling", "onset", "max", "ms/step", "micro", "ms/h", "CPU")
@@ -58,9 +58,9 @@ def command(
 
     Without --cavitation, --theory and --coupling it is compared with all models without a state, which cost little.
     """
-    from frbcli.analysis.compare import compare
+    from frbcli.bearing_tests.plan import TESTS
     from frbcli.plot.style import check_picture
-    from frbcli.scene.kinematic import TESTS
+    from frbcli.studies.compare import compare
 
     target = output or here(case.name, "-compare.png")
     if test in TESTS:
@@ -94,8 +94,8 @@ def _kinematic(
     terminal: Terminal,
 ) -> int:
     """A kinematic test with several models; their films all have finite length."""
+    from frbcli.bearing_tests.plan import COMPARED
     from frbcli.cli.kinematic import run_test
-    from frbcli.scene.kinematic import COMPARED
 
     if set(theory) - {"finite"}:
         problem = f"is not for a {test}, which solves the whole film."

@@ -7,10 +7,10 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from frbcli.analysis.hard_cases import HardResult, HardResults, run_hard_cases
 from frbcli.case.hard import HardCase, hard_cases
 from frbcli.cli.common import Terminal, short_number
 from frbcli.cli.transient import live_lines
+from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
 COLUMNS = ("case", "what is hard", "end", "error", "stated", "CPU s")

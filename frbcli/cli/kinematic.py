@@ -14,8 +14,8 @@ from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import NotConverged
 
 if TYPE_CHECKING:
+    from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
     from frbcli.case.schema import Case
-    from frbcli.solve.kinematic import KinematicResult, KinematicTest
 
 BAR = 1e5
 FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.", "CPU")
@@ -51,8 +51,8 @@ def run_test(
     compared: bool = False,
 ) -> int | None:
     """Run a test, tell it, draw it; its exit code. compared: the document is that of `frb compare`."""
+    from frbcli.bearing_tests import kinematic
     from frbcli.plot.style import check_picture
-    from frbcli.solve import kinematic
 
     target = output or here(case.name, f"-{test}.png")
     if picture:

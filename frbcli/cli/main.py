@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 import click
 
-from frbcli import __version__
 from frbcli.cli.common import Terminal
 from frbcli.errors import Fault, FrbError, InputError, NotConverged
+from frbcli.version import __version__
 
 # name: (module, one line of help); the module is imported when its command is called
 COMMANDS = {

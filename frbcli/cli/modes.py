@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from frbcli.analysis.modes import Mode, Modes
     from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
+    from frbcli.linear.modes import Mode, Modes
 
 LONGEST_TABLE = 13  # rows for people
 TOLD = 3  # slowest modes of each direction
@@ -42,7 +42,7 @@ def emit_modes(
     terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], picture: Path | None
 ) -> None:
     """Table, picture and JSON of the rotor, free and on springs of a stiffness in N/m, at speeds in Hz."""
-    from frbcli.analysis.modes import natural_modes
+    from frbcli.linear.modes import natural_modes
     from frbcli.plot.modes import modes_figure
     from frbcli.plot.style import save_figure
 

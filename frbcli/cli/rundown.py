@@ -20,6 +20,6 @@ if TYPE_CHECKING:
 @output_options
 def command(case: Case, output: Path | None, resume: bool, picture: bool, verify: bool, terminal: Terminal) -> int:
     """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture beside it."""
-    from frbcli.solve.run import rundown
+    from frbcli.runs.run import rundown
 
     return transient("rundown", rundown, case, output, resume, picture, verify, terminal)

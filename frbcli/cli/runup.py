@@ -20,6 +20,6 @@ if TYPE_CHECKING:
 @output_options
 def command(case: Case, output: Path | None, resume: bool, picture: bool, verify: bool, terminal: Terminal) -> int:
     """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
-    from frbcli.solve.run import runup
+    from frbcli.runs.run import runup
 
     return transient("runup", runup, case, output, resume, picture, verify, terminal)

@@ -17,8 +17,8 @@ from frbcli.cli.runs import OUTPUT
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from frbcli.analysis.stability import RestingFilm, Stability, StabilityPoint
     from frbcli.case.schema import Case
+    from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
 
 LONGEST_TABLE = 20  # rows for people; JSON and the picture have every speed
 MODES = 2  # the slowest oscillating motions, shown with frequency and damping
@@ -65,9 +65,9 @@ def command(
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
-    from frbcli.analysis.modes import natural_modes
-    from frbcli.analysis.stability import stability
     from frbcli.errors import NotConverged
+    from frbcli.linear.modes import natural_modes
+    from frbcli.linear.stability import stability
     from frbcli.plot.campbell import campbell_figure
     from frbcli.plot.style import check_picture, save_figure
 
@@ -121,7 +121,7 @@ def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
 
 def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     """Stiffness of the bearings and speed in Hz at which the modes of a turbocharger's rotor are of interest."""
-    from frbcli.analysis.modes import film_springs
+    from frbcli.linear.modes import film_springs
 
     if found.case.rotor.kind != "turbocharger":
         return []

@@ -16,7 +16,7 @@ from frbcli.errors import Fault, InputError
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from frbcli.analysis.sweep import Sweep, SweepPoint
+    from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
 LONGEST_TABLE = 40  # points for people; the table's file and JSON have all
 
@@ -54,8 +54,8 @@ def command(
 
     The same command goes on with a sweep that was broken off.
     """
-    from frbcli.analysis.sweep import Workers, check_table_format, sweep, write_table
     from frbcli.case.load import load_case
+    from frbcli.studies.sweep.sweep import Workers, check_table_format, sweep, write_table
 
     fixed, axes = _axes(settings)
     case = load_case(source, fixed)
@@ -77,7 +77,7 @@ def command(
 
 def _axes(settings: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, ...]]]:
     """Settings of one value, which hold for all points, and the values of the other keys."""
-    from frbcli.analysis.sweep_points import split_values
+    from frbcli.studies.sweep.points import split_values
 
     fixed: list[str] = []
     axes: dict[str, tuple[str, ...]] = {}
@@ -96,7 +96,7 @@ def _axes(settings: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, ...]
 
 
 def _points(axes: Mapping[str, Sequence[str]], list_file: Path | None) -> Sequence[Mapping[str, str]]:
-    from frbcli.analysis.sweep_points import grid, product, read_list
+    from frbcli.studies.sweep.points import grid, product, read_list
 
     if list_file is None:
         if not axes:

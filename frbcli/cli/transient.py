@@ -16,8 +16,8 @@ from frbcli.cli.runs import OUTPUT, beside, here
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.results.store import Run
-    from frbcli.solve.run import Observer
-    from frbcli.solve.under_way import Progress
+    from frbcli.runs.march import Progress
+    from frbcli.runs.run import Observer
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
@@ -91,7 +91,7 @@ def transient(
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     """What a finer run says, told and as part of the JSON document."""
-    from frbcli.analysis.verify import verify
+    from frbcli.studies.verify import verify
 
     with live_lines(terminal) as show:
         found = verify(case, run, None if show is None else lambda progress: show(f"again\n{progress_line(progress)}"))

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.accuracy_ladder import AccuracyLadder, Rung, RungResult
 from frbcli.plot.signals import CAVITATION_NAMES
 from frbcli.plot.style import BLACK, COLOURS, GREY, legend_below, new_figure, styled
+from frbcli.studies.ladder import AccuracyLadder, Rung, RungResult
 
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
 SMALLEST = 1e-16  # stands for no deviation at all

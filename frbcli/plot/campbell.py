@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from frbcli.analysis.stability import Stability, StabilityPoint, Threshold
+from frbcli.linear.stability import Stability, StabilityPoint, Threshold
 from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 
 Values = NDArray[np.float64]

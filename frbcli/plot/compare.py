@@ -7,11 +7,11 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.compare import Comparison, Variant
 from frbcli.analysis.signals import films, joined
 from frbcli.plot.signals import CAVITATION_NAMES, thin, times
 from frbcli.plot.style import COLOURS, new_figure, styled
 from frbcli.results.store import Run
+from frbcli.studies.compare import Comparison, Variant
 
 Line = Any  # a line style of matplotlib: a name, or an offset and lengths of dashes
 

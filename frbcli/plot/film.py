@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
+from frbcli.bearing_tests.steady_film import FilmField
 from frbcli.plot.signals import CAVITATION_NAMES
 from frbcli.plot.style import COLOURS, GREY, LEVEL_MAP, new_figure, styled
-from frbcli.solve.kinematic import KinematicResult, KinematicTest
-from frbcli.solve.steady_film import FilmField
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
+from frbcli.bearing_tests.kinematic import KinematicTest
 from frbcli.plot.film import BAR, LINES, name_of
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
-from frbcli.solve.kinematic import KinematicTest
 
 HEIGHT = 5.4
 

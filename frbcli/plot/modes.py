@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.modes import SHOWN, Mode, Modes
+from frbcli.linear.modes import SHOWN, Mode, Modes
 from frbcli.plot.style import BLACK, BLUE, GREY, ORANGE, VERMILION, new_figure, styled
 from frbcli.units import display
 

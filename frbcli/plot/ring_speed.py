@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from frbcli.analysis.ring_speed import concentric_ratios
 from frbcli.analysis.signals import joined, points, ring_speed
 from frbcli.case.load import load_case_text
 from frbcli.errors import InputError
+from frbcli.linear.ring_speed import concentric_ratios
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.signals import heading
 from frbcli.plot.style import GREY, legend_below, new_figure, styled

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from frbcli.analysis.sweep import Sweep, SweepPoint
 from frbcli.plot.style import BLUE, LEVEL_MAP, VERMILION, new_figure, styled
+from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
 Values = NDArray[np.float64]
 

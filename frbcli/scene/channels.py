@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from frbcli.case.bearing import Bores, CircumferentialGroove, FloatingRingBearing, RingFilm
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.film.channels import Channel, Mouth, channel_resistance
-from frbcli.film.volumes import VolumeFilm
+from frbcli.film.cells.channels import Channel, Mouth, channel_resistance
+from frbcli.film.cells.plain.film import VolumeFilm
 
 MIDDLE = 0.5
 INLETS = "a groove around one end of the outer film, or an end in an oil bath"

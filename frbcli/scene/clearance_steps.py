@@ -1,7 +1,7 @@
 """Clearances that change in steps during a run: when, to what, and what the case is then.
 
 Warming, wear, or a test of the program itself: from one moment on the gap is wider or narrower. The rotor keeps its
-place and its velocity, a film that keeps its oil keeps it (solve/clearance_step.py); what the gap does while it
+place and its velocity, a film that keeps its oil keeps it (runs/clearance_step.py); what the gap does while it
 changes is left out.
 """
 

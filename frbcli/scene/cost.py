@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.film.table import Mesh
+from frbcli.film.rectangles.table import Mesh
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
@@ -42,7 +42,7 @@ CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows w
 CELL_COUNT, CELL_POWER = 288, 1.4  # 48 x 6
 # Of the time of a solve on cells; others: 1.
 LAW_FACTORS = {"sommerfeld": 0.7, "half-sommerfeld": 0.7, "reynolds": 0.8, "two-phase": 1.2, "peeken": 1.2}
-LONGEST_STEP_s = 1e-3  # of a run, see solve/under_way.py
+LONGEST_STEP_s = 1e-3  # of a run, see runs/march.py
 MICRO_STEPS = 2.0  # of a film in a macro step of a co-simulation
 TABLE_POINTS = 400  # of the speed profile
 

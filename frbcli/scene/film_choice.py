@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.film.rectangles.table import Mesh
 from frbcli.film.section_faults import starves
-from frbcli.film.table import Mesh
 from frbcli.scene.films import film_places
 from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
 from frbcli.scene.section import film_section

@@ -17,13 +17,13 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL, STANDS
+from frbcli.film.cells.grid import VolumeGrid, volume_grid
+from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.gap import Section, ends_at_ambient, graded_ring
 from frbcli.film.grid import Array
-from frbcli.film.source_film import SourceFilm
-from frbcli.film.table import Mesh
-from frbcli.film.volume_data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL, STANDS
-from frbcli.film.volume_grid import VolumeGrid, volume_grid
-from frbcli.film.volumes import VolumeFilm
+from frbcli.film.penalty_table.film import SourceFilm
+from frbcli.film.rectangles.table import Mesh
 from frbcli.scene.channels import coupled, mouths_in_outer_film, pull
 from frbcli.scene.section import film_section
 

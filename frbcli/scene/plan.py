@@ -12,8 +12,8 @@ from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRin
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.film.rectangles.table import Mesh
 from frbcli.film.section_faults import starves
-from frbcli.film.table import Mesh
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.coupling import REMEMBERING, plan_coupling

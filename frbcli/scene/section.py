@@ -6,8 +6,8 @@ import math
 
 from frbcli.case.bearing import AxialGrooves, Bores, CircumferentialGroove, FilmGeometry, Pocket
 from frbcli.case.schema import Case
-from frbcli.film.bearing import RectangularBearing
 from frbcli.film.gap import AxialGroove, Hole, Lobes, Section
+from frbcli.film.rectangles.bearing import RectangularBearing
 
 TWO_PI = 2.0 * math.pi
 

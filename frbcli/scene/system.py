@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 from frbcli.case.bearing import AxialGrooves, FilmGeometry, SingleFilmBearing
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
-from frbcli.film.bearing import FilmForce, RectangularBearing, evaluate, make_film
-from frbcli.film.channels import with_channels
+from frbcli.film.cells.channels import with_channels
+from frbcli.film.cells.data import AREA, MOUTH, REMEMBERS, UNKNOWN, VolumeFilms, volume_films
+from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.gap import AxialGroove
 from frbcli.film.grid import Array
-from frbcli.film.kernel import FilmData
+from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.published.film import PublishedFilm, published_force
-from frbcli.film.source_film import SourceFilm
-from frbcli.film.steady_force import steady_force
-from frbcli.film.table import Mesh
-from frbcli.film.volume_data import AREA, MOUTH, REMEMBERS, UNKNOWN, VolumeFilms, volume_films
-from frbcli.film.volumes import VolumeFilm
+from frbcli.film.rectangles.bearing import FilmForce, RectangularBearing, evaluate, make_film
+from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.rectangles.table import Mesh
 from frbcli.rotor.excitation import SpeedProfile, speed_profile
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor

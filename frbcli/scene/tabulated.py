@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.film.table import Mesh
+from frbcli.film.rectangles.table import Mesh
 from frbcli.scene.coupling import REMEMBERING
 from frbcli.scene.films import film_places, is_plain
 

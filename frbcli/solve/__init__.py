@@ -1,1 +1,1 @@
-"""Time integration: joins rotor and films. Depends on: scene, film, rotor, results, errors."""
+"""The time loop: advances rotor and films together. Knows neither cases nor files."""

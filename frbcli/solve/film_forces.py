@@ -1,6 +1,6 @@
 """What the films say in one iteration of a stage, compiled: forces, derivatives, and how they follow the journals.
 
-As in passengers.py, the type of the films decides which kind is meant when the loop is compiled.
+As in films.py, the type of the films decides which kind is meant when the loop is compiled.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from typing import Any
 
 from numba.extending import overload
 
-from frbcli.film.kernel import film_force
-from frbcli.solve.cell_channels import follow_journals, join, set_law, set_pressures
-from frbcli.solve.cell_passengers import GRID_X, GRID_Y, cell_numbers, move_cells, sheared
-from frbcli.solve.passengers import Work, have_cells
+from frbcli.film.rectangles.film_force import film_force
+from frbcli.solve.cell_films import GRID_X, GRID_Y, cell_numbers, move_cells, sheared
+from frbcli.solve.channels import follow_journals, join, set_law, set_pressures
+from frbcli.solve.films import Work, have_cells
 from frbcli.solve.state import Array
 
 

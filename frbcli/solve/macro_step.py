@@ -15,9 +15,9 @@ from numba import njit
 
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.dense import solve_dense
+from frbcli.solve.films import make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.micro_step import films_follow, parabola
-from frbcli.solve.passengers import make_work, write_oil
 from frbcli.solve.ring_spin import spin_up
 from frbcli.solve.scratch import make_scratch
 from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, start_stage

@@ -11,8 +11,8 @@ from numba import njit
 
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import move_film
+from frbcli.solve.films import accept_films, begin_stage
 from frbcli.solve.journal_newton import NEWTON_LIMIT, forces
-from frbcli.solve.passengers import accept_films, begin_stage
 from frbcli.solve.ring_spin import set_speeds
 from frbcli.solve.stage import FORCE, X_0, U, lagrange
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE

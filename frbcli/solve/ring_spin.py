@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from frbcli.solve.cell_passengers import GRID_SPEED, GRID_TURN
+from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.stage import FORCE, OMEGA, X_0, Q, U, V
 from frbcli.solve.state import GRID, SLIP, SUM

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.load import load_case, load_case_text
 from frbcli.errors import InputError, NotConverged
-from frbcli.solve.kinematic import rotation
 
 Array = NDArray[np.float64]
 

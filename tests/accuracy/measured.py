@@ -7,15 +7,15 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from frbcli.analysis.accuracy import accuracy
-from frbcli.analysis.accuracy_ladder import RungResult
 from frbcli.case.load import load_case
 from frbcli.plot.accuracy import accuracy_figure
 from frbcli.plot.style import save_figure
+from frbcli.runs.run import runup
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import run_up_profile
-from frbcli.solve.run import runup
+from frbcli.studies.accuracy import accuracy
+from frbcli.studies.ladder import RungResult
 
 # How long the ladder of a case is followed, in s; None: the whole run. Finer meshes and tolerances of expensive cases
 # cost up to a hundred times as much as the run itself.

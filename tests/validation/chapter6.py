@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from frbcli.bearing_tests.kinematic import KinematicResult, rotation
 from frbcli.case.load import load_case
 from frbcli.results.store import Run
-from frbcli.solve.kinematic import KinematicResult, rotation
 from validation.measures import SETTLED_s, WINDOW_s, first_event, kept_runup, rise
 
 LOOSE = "accuracy.target=3e-3"  # half the cost of the default

@@ -21,8 +21,8 @@ from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.results.store import Run, read_run
+from frbcli.runs.run import rundown, runup
 from frbcli.scene.films import film_places
-from frbcli.solve.run import rundown, runup
 
 HALF = ("film.cavitation=half-sommerfeld",)
 TWO_PHASE = ("film.cavitation=two-phase", "film.two-phase.steepness=0.9")

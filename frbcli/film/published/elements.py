@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from frbcli.film.ends import PREFACTOR, STEEPNESS
+from frbcli.film.cells.ends import PREFACTOR, STEEPNESS
 from frbcli.film.gap import Lobes
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import Elements

@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.errors import NotConverged
-from frbcli.film.balance import Motion
-from frbcli.film.bearing import FilmForce
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.gap import Section, gap_height, gap_rate
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import Gap
@@ -19,6 +18,7 @@ from frbcli.film.published.law import Step, make_step
 from frbcli.film.published.newton import NONE, Equations, Newton, Point
 from frbcli.film.published.solution import FilmState, PublishedSolution, Response
 from frbcli.film.quadratic.mesh import quadratic_mesh
+from frbcli.film.rectangles.bearing import FilmForce
 
 AROUND, ALONG = 20, 10  # elements of a section, figure 6.2
 

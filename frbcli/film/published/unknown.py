@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from frbcli.film.ends import PREFACTOR, STEEPNESS
+from frbcli.film.cells.ends import PREFACTOR, STEEPNESS
 from frbcli.film.grid import Array
 from frbcli.film.published.law import Step, oil_fraction, step_pressure
 from frbcli.film.quadratic.mesh import QuadraticMesh

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.film.cells.openings import hole_area, wrapped
 from frbcli.film.gap import Hole, Section
 from frbcli.film.grid import Array
-from frbcli.film.openings import hole_area, wrapped
 
 ROOM = 1.3  # to the next given pressure, in half extents of the box from its middle: with less it stays a box
 

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.film.cells.openings import hole_area, wrapped
 from frbcli.film.gap import Hole, Section, groove_pressure
 from frbcli.film.grid import Array
-from frbcli.film.openings import hole_area, wrapped
 from frbcli.film.quadratic.bores import Box, hole_box, rounded
 
 TURN = 2.0 * np.pi

@@ -6,7 +6,7 @@ import math
 
 from numba import njit
 
-from frbcli.film.cell_law import wright_omega
+from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.quadratic.film import DIMENSIONLESS_PENALTY
 from frbcli.film.quadratic.operator import subtract_flow, working_matrices
 from frbcli.film.quadratic.ring import factorise

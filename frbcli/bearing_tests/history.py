@@ -1,0 +1,226 @@
+"""A film while its journal is moved: squeeze (4.47) and whirl (4.48), (4.49)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.bearing_tests.journal_path import Path
+from frbcli.bearing_tests.plan import KinematicPlan, make_law
+from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.cells.frame import path_seen_from, turned
+from frbcli.film.cells.plain.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.plain.loads import Loads, estimate, loads
+from frbcli.film.cells.plain.transient import march
+from frbcli.film.cells.supply import supplied, supply_share
+
+Array = NDArray[np.float64]
+
+PROBE = math.pi  # phi of the probe and of the gap that is told: the bottom of the bearing
+PROBE_WIDTH = 0.25  # of the bearing's width from the end z = 0
+
+
+@dataclass(frozen=True)
+class History:
+    """A film over time, n moments. displacement: (n, 2) over the clearance; force: (n, 2) N on the journal;
+    probe_pressure: (n,) Pa absolute at the probe; gap_ratio: (n,) H there."""
+
+    time_s: Array
+    displacement: Array
+    force: Array
+    probe_pressure: Array
+    gap_ratio: Array
+
+
+@dataclass(frozen=True)
+class Course:
+    """What a moved film went through: its history; field and loads at the moment of the largest force, and the
+    estimated relative error of that force; cost; why it ended early, or nothing."""
+
+    history: History
+    field: FilmField
+    loads: Loads
+    force_error: float
+    unknowns: int
+    iterations: int
+    problem: str
+
+
+@dataclass(frozen=True)
+class _Moment:
+    """motion: seen from the surface that the supply is in, as the solution is; displacement, loads: in the lab."""
+
+    time: float
+    motion: Motion
+    displacement: tuple[float, float]
+    solution: VolumeSolution
+    loads: Loads
+    probe: float
+    gap: float
+
+
+def film_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> Course:
+    """The film along a path from a full one at times[0]. times: (n,) s, n at least 2.
+
+    A film that does not converge ends the course with a problem; NotConverged is raised if that is at once.
+    """
+    path = path_seen_from(path, plan.turning)
+    film = _film(case, plan, path, times)
+    moments, problem = _moments(case, plan, film, path, times)
+    worst = max(moments, key=_size)
+    if plan.remembers:
+        error, spent = _error_of_course(case, plan, path, times[: len(moments) + 1], moments)
+    else:
+        error, spent = _error_of_moment(case, plan, path, times, worst)
+    return Course(
+        history=_history(moments),
+        field=_field(plan, film, worst),
+        loads=worst.loads,
+        force_error=error,
+        unknowns=int(np.count_nonzero(~film.grid.fixed)),
+        iterations=spent + sum(moment.solution.iterations for moment in moments),
+        problem=problem,
+    )
+
+
+def _moments(case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array) -> tuple[list[_Moment], str]:
+    """Those until the film does not converge, and why it does not. Raises NotConverged if there are none."""
+    moments: list[_Moment] = []
+    try:
+        for time, motion, solution in _solutions(case, plan, film, path, times):
+            moments.append(_moment(case, plan, film, time, motion, solution))
+    except NotConverged as failure:
+        if not moments:
+            raise
+        return moments, f"stopped at {moments[-1].time:.4g} s: {failure}"
+    return moments, ""
+
+
+def _error_of_course(
+    case: Case, plan: KinematicPlan, path: Path, times: Array, moments: list[_Moment]
+) -> tuple[float, int]:
+    """Of the largest force of every period, the worst one over the largest of all, from the same course on half the
+    cells each way in half the steps, NaN if that does not converge; and the iterations that it took."""
+    coarser = _coarser(plan)
+    film = _film(case, coarser, path, times)
+    try:
+        coarse, problem = _moments(case, coarser, film, path, _every_second(times))
+    except NotConverged:
+        return math.nan, 0
+    spent = sum(moment.solution.iterations for moment in coarse)
+    if problem:
+        return math.nan, spent
+    fine_peaks, coarse_peaks = _peaks(case, times, moments), _peaks(case, times, coarse)
+    largest = max(fine_peaks.values())
+    pairs = [(peak, coarse_peaks[n]) for n, peak in fine_peaks.items() if n in coarse_peaks]
+    worst = max(abs(fine - less) for fine, less in pairs)  # first order: the steps keep the oil as Euler's do
+    return (worst / largest if largest > 0.0 else math.nan), spent
+
+
+def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, worst: _Moment) -> tuple[float, int]:
+    """Of the largest force of a film without a state: from a mesh twice as coarse, or twice as fine if it is modal."""
+    force = worst.loads.force
+    if plan.modal:
+        finer = modal_force(plan, worst.motion)
+        return (math.dist(finer, force) / math.hypot(*finer) if any(finer) else math.nan), 0
+    film = _film(case, _coarser(plan), path, times)
+    try:
+        solution = _lawful(case, plan, film, worst.motion, worst.time).steady(worst.motion)
+    except NotConverged:
+        return math.nan, 0
+    coarse = turned(loads(film, worst.motion, solution).force, plan.turning * worst.time)
+    return estimate(force, coarse, film.law.order), solution.iterations
+
+
+def _coarser(plan: KinematicPlan) -> KinematicPlan:
+    around, along = plan.cells
+    return replace(plan, cells=(around // 2, max(along // 2, 2)))
+
+
+def _every_second(times: Array) -> Array:
+    return np.append(times[:-1:2], times[-1])
+
+
+def _peaks(case: Case, times: Array, moments: list[_Moment]) -> dict[int, float]:
+    """The largest force in N of each period."""
+    assert case.motion is not None
+    assert case.motion.frequency is not None
+    peaks: dict[int, float] = {}
+    for moment in moments:
+        period = math.floor((moment.time - times[0]) * case.motion.frequency)
+        peaks[period] = max(peaks.get(period, 0.0), _size(moment))
+    return peaks
+
+
+def _size(moment: _Moment) -> float:
+    return math.hypot(*moment.loads.force)
+
+
+def _solutions(
+    case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array
+) -> Iterator[tuple[float, Motion, VolumeSolution]]:
+    """Of each time after the first; in the middle of its step where the film has a state of its own."""
+    if plan.remembers:
+        supply = (lambda time: supply_share(time, plan.ramp)) if plan.ramp else None
+        moments = march(film, path, times, supply=supply)
+        yield from ((moment.time, moment.motion, moment.solution) for moment in moments)
+        return
+    w = film.full()
+    for time in times[1:]:
+        motion = path(time)
+        solution = _lawful(case, plan, film, motion, float(time)).steady(motion, w)
+        w = solution.w
+        yield float(time), motion, solution
+
+
+def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFilm:
+    """Cells that serve every moment: equal ones around; half of them along where the section is half the film."""
+    around, along = plan.cells
+    along = along // 2 if plan.section.far == "symmetry" else along
+    fastest = max((path(t) for t in times), key=lambda motion: motion.rate)
+    grid = fitted_grid(plan.section, (0.0, 0.0), around, along)
+    return VolumeFilm(plan.section, grid, make_law(case, plan, 0.0), reference_pressure(plan.section, fastest))
+
+
+def _lawful(case: Case, plan: KinematicPlan, film: VolumeFilm, motion: Motion, time: float) -> VolumeFilm:
+    """The film with supply and law of this moment: the penalty model's depends on the eccentricity."""
+    film = supplied(film, supply_share(time, plan.ramp)) if plan.ramp else film
+    if plan.cavitation != "penalty":
+        return film
+    return VolumeFilm(film.section, film.grid, make_law(case, plan, math.hypot(*motion.d)), film.scales.reference)
+
+
+def _moment(
+    case: Case, plan: KinematicPlan, film: VolumeFilm, time: float, motion: Motion, solution: VolumeSolution
+) -> _Moment:
+    angle = plan.turning * time
+    found = loads(film, motion, solution, motion.omega + 2.0 * plan.turning, case.film.cavitation_factor)
+    found = replace(found, force=turned(found.force, angle))
+    if plan.modal:
+        found = replace(found, force=modal_force(plan, motion, COARSE_MODAL_MESH))
+    place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
+    probe = pressure_at(film_field(film, motion, solution), PROBE - angle, place)
+    gap = float(film.gap(motion.d, np.array([PROBE - angle]))[0])
+    return _Moment(time, motion, turned(motion.d, angle), solution, found, probe, gap)
+
+
+def _field(plan: KinematicPlan, film: VolumeFilm, moment: _Moment) -> FilmField:
+    """In the lab."""
+    field = film_field(film, moment.motion, moment.solution)
+    return replace(field, phi=field.phi + plan.turning * moment.time)
+
+
+def _history(moments: list[_Moment]) -> History:
+    return History(
+        time_s=np.array([moment.time for moment in moments]),
+        displacement=np.array([moment.displacement for moment in moments]),
+        force=np.array([moment.loads.force for moment in moments]),
+        probe_pressure=np.array([moment.probe for moment in moments]),
+        gap_ratio=np.array([moment.gap for moment in moments]),
+    )

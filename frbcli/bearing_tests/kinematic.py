@@ -1,0 +1,229 @@
+"""Kinematic bearing tests (section 4.2.2): the journal is moved as the case says, and the film answers."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.bearing_tests.history import History, film_course
+from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
+from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
+from frbcli.bearing_tests.published import published_moment, resting_in_published
+from frbcli.bearing_tests.resting import resting_displacement
+from frbcli.bearing_tests.steady_film import FilmField, film_moment
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.cells.plain.film import Motion
+from frbcli.film.cells.plain.loads import Loads
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+OK, NOT_CONVERGED = "ok", "not-converged"
+FEWEST_TIMES = 8
+
+
+@dataclass(frozen=True)
+class KinematicResult:
+    """What one cavitation model says. status: "ok" | "not-converged", then problem says why.
+
+    displacement: (2,) over the clearance; loads, field: None if there is no solution; force_error: estimated, relative
+    to the force, NaN if not known; history: None for a rotation. Of a squeeze or a whirl, displacement, loads and field
+    are those of the moment of the largest force, and so is the error; with a law that keeps oil it is the worst of the
+    largest forces of the periods.
+    """
+
+    cavitation: str
+    status: str
+    displacement: tuple[float, float]
+    loads: Loads | None
+    sommerfeld_number: float
+    force_error: float
+    field: FilmField | None
+    history: History | None
+    cpu_s: float
+    unknowns: int
+    newton_iterations: int
+    plan: KinematicPlan
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class KinematicTest:
+    """A test, "rotation", "squeeze" or "whirl", with one result per cavitation model, in their order."""
+
+    case: Case
+    test: str
+    results: tuple[KinematicResult, ...]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per model for a rotation; for a squeeze or a whirl one per model and moment."""
+        import pandas as pd
+
+        if self.test == "rotation":
+            return pd.DataFrame([_row(result) for result in self.results])
+        return pd.concat([_table(result) for result in self.results], ignore_index=True)
+
+
+def rotation(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
+    """A journal that turns at a displacement, or rests under a load; () stands for the case's own model.
+
+    Raises InputError if the case does not fit; a model that does not converge is a result with that status.
+    """
+    return _test(case, cavitations, "rotation", _rotation)
+
+
+def squeeze(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
+    """A journal that moves up and down (4.47) for the periods of the case; see rotation."""
+    return _test(case, cavitations, "squeeze", _course)
+
+
+def whirl(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
+    """A journal that moves on a circle (4.48), (4.49) for the periods of the case; see rotation."""
+    return _test(case, cavitations, "whirl", _course)
+
+
+def _test(
+    case: Case, cavitations: Sequence[str], test: str, solve: Callable[[Case, KinematicPlan], KinematicResult]
+) -> KinematicTest:
+    names = dict.fromkeys(cavitations or (case.film.cavitation,))
+    plans = [kinematic_plan(case, name, test) for name in names]
+    return KinematicTest(case, test, tuple(solve(case, plan) for plan in plans))
+
+
+def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
+    assert case.motion is not None
+    motion, begun = case.motion, time.process_time()
+    omega = 2.0 * math.pi * (motion.speed or 0.0)
+    displacement, start = (math.nan, math.nan), None
+    try:
+        if motion.load is not None:
+            if plan.published:
+                found, start = resting_in_published(case, plan, motion.load, omega)
+            else:
+                found = resting_displacement(case, plan, motion.load, omega)
+            displacement, velocity = (float(found[0]), float(found[1])), (0.0, 0.0)
+        else:
+            e, angle = motion.eccentricity or 0.0, motion.angle
+            along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
+            displacement = (e * along[0], e * along[1])
+            turn = e * 2.0 * math.pi * motion.whirl_speed
+            rates = [motion.eccentricity_rate * a + turn * b for a, b in zip(along, across, strict=True)]
+            velocity = (rates[0], rates[1])
+        lasting = Motion(displacement, velocity, omega)
+        if plan.published:
+            moment = published_moment(case, plan, lasting, start)
+        else:
+            moment = film_moment(case, plan, lasting, plan.cells)
+    except NotConverged as problem:
+        return _failed(plan, displacement, begun, str(problem))
+    return KinematicResult(
+        cavitation=plan.cavitation,
+        status=OK,
+        displacement=displacement,
+        loads=moment.loads,
+        sommerfeld_number=_sommerfeld_number(plan, moment.loads, omega),
+        force_error=moment.force_error,
+        field=moment.field,
+        history=None,
+        cpu_s=time.process_time() - begun,
+        unknowns=moment.unknowns,
+        newton_iterations=moment.iterations,
+        plan=plan,
+    )
+
+
+def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
+    assert case.motion is not None
+    motion, begun = case.motion, time.process_time()
+    assert motion.eccentricity is not None
+    assert motion.frequency is not None
+    omega = 2.0 * math.pi * (motion.speed or 0.0)
+    make = squeeze_path if plan.test == "squeeze" else whirl_path
+    path = make(motion.eccentricity, motion.frequency, omega)
+    count = max(round(motion.periods * plan.steps), FEWEST_TIMES)
+    times = np.linspace(0.0, motion.periods / motion.frequency, count + 1)
+    try:
+        course = film_course(case, plan, path, times)
+    except NotConverged as problem:
+        return _failed(plan, (math.nan, math.nan), begun, str(problem))
+    worst = int(np.argmax(np.hypot(*course.history.force.T)))
+    x, y = course.history.displacement[worst]
+    return KinematicResult(
+        cavitation=plan.cavitation,
+        status=NOT_CONVERGED if course.problem else OK,
+        displacement=(float(x), float(y)),
+        loads=course.loads,
+        sommerfeld_number=_sommerfeld_number(plan, course.loads, omega),
+        force_error=course.force_error,
+        field=course.field,
+        history=course.history,
+        cpu_s=time.process_time() - begun,
+        unknowns=course.unknowns,
+        newton_iterations=course.iterations,
+        plan=plan,
+        problem=course.problem,
+    )
+
+
+def _failed(plan: KinematicPlan, displacement: tuple[float, float], begun: float, problem: str) -> KinematicResult:
+    spent = time.process_time() - begun
+    nan = math.nan
+    return KinematicResult(
+        plan.cavitation, NOT_CONVERGED, displacement, None, nan, nan, None, None, spent, 0, 0, plan, problem
+    )
+
+
+def _sommerfeld_number(plan: KinematicPlan, loads: Loads, omega: float) -> float:
+    """So (3.14); NaN where nothing turns."""
+    section = plan.section
+    scale = 2.0 * section.radius * section.bearing_width * section.viscosity * abs(omega)
+    return (section.clearance / section.radius) ** 2 * math.hypot(*loads.force) / scale if scale > 0.0 else math.nan
+
+
+def _row(result: KinematicResult) -> dict[str, Any]:
+    row: dict[str, Any] = {"cavitation": result.cavitation, "status": result.status}
+    row |= {"displacement_x": result.displacement[0], "displacement_y": result.displacement[1]}
+    loads = result.loads
+    if loads is not None:
+        row |= {
+            "force_x_N": loads.force[0],
+            "force_y_N": loads.force[1],
+            "sommerfeld_number": result.sommerfeld_number,
+            "torque_journal_N_m": loads.torque.journal,
+            "torque_shell_N_m": loads.torque.shell,
+            "p_max_Pa": loads.p_max,
+            "p_min_Pa": loads.p_min,
+            "oil_fraction": loads.oil_fraction,
+            "oil_defect_relative": loads.oil.defect_relative,
+            "force_error_relative": result.force_error,
+        }
+    return row | {"cpu_s": result.cpu_s}
+
+
+def _table(result: KinematicResult) -> pd.DataFrame:
+    import pandas as pd
+
+    history = result.history
+    if history is None:
+        return pd.DataFrame({"cavitation": [result.cavitation], "status": [result.status]})
+    return pd.DataFrame(
+        {
+            "cavitation": result.cavitation,
+            "status": result.status,
+            "time_s": history.time_s,
+            "displacement_x": history.displacement[:, 0],
+            "displacement_y": history.displacement[:, 1],
+            "force_x_N": history.force[:, 0],
+            "force_y_N": history.force[:, 1],
+            "probe_pressure_Pa": history.probe_pressure,
+            "gap_ratio": history.gap_ratio,
+        }
+    )

@@ -1,0 +1,208 @@
+"""The plan of a kinematic bearing test (section 4.2.2): which section of the film is solved, which law, which cells."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from frbcli.bearing_tests.faults import bearing_faults, motion_faults
+from frbcli.case.bearing import Bores, SingleFilmBearing
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.peeken import Peeken
+from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
+from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.gap import Section, ends_at_ambient
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.section_faults import section_faults, starves
+from frbcli.scene.plan import Decision
+from frbcli.scene.section import film_rectangle, film_section
+
+TESTS = ("rotation", "squeeze", "whirl")
+MODELS = ("half-sommerfeld", "sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")
+COMPARED = tuple(model for model in MODELS if model != "sommerfeld")  # where nothing else is said
+REMEMBERING = ("peeken", "elrod", "two-phase")  # oil is kept from one moment to the next; the others have no state
+
+# around, along; of a section that is half the film half as many along
+STEADY_CELLS, FINE_CELLS = (128, 32), (240, 60)
+MOVING_CELLS = (64, 16)
+FINE_TARGET = 2e-4
+STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its force, hangs on the step
+FEWEST_CELLS = (12, 3)
+TWO_PI = 2.0 * math.pi
+
+PUBLISHED_ELEMENTS = (20, 10)
+PUBLISHED_FILM = Decision(
+    "film", "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
+)
+DIFFUSIONS = {
+    "consistent": "artificial, added both around and along as published (4.42): carries oil in from the edges",
+    "streamline": "artificial (4.42), around only",
+    "none": "no artificial diffusion: the steep step may keep the film from converging",
+}
+
+
+@dataclass(frozen=True)
+class KinematicPlan:
+    """What will be modelled. section: of the film, copied section.copies times; rectangle: the bearing of the accurate
+    modal film, None where grooves or bores are cut out; cells: (around, along); steps: per period; rate: reference
+    speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning: rad/s of the surface that
+    the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11)."""
+
+    test: str
+    cavitation: str
+    section: Section
+    rectangle: RectangularBearing | None
+    cells: tuple[int, int]
+    steps: int
+    rate: float
+    decisions: tuple[Decision, ...]
+    turning: float = 0.0
+    ramp: float = 0.0
+    published: bool = False  # whether the two-phase model is in its published form, on quadratic elements
+
+    @property
+    def remembers(self) -> bool:
+        """Whether the film has a state of its own."""
+        return self.cavitation in REMEMBERING
+
+    @property
+    def modal(self) -> bool:
+        """Whether the pressure is that of the modal film."""
+        return self.rectangle is not None and self.cavitation in ("sommerfeld", "half-sommerfeld")
+
+
+def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotation") -> KinematicPlan:
+    """Plan a kinematic test of a case for one cavitation model (None: that of the case).
+
+    Raises InputError naming everything that the case lacks for it or that this version does not model.
+    """
+    cavitation = cavitation or case.film.cavitation
+    _refuse(case, cavitation, test)
+    bearing = case.bearings[0]
+    assert isinstance(bearing, SingleFilmBearing)
+    assert case.motion is not None
+    section = film_section(case, bearing)
+    if problems := section_faults(section):
+        faults = (Fault("bearing", "", None, f"cannot be solved: {p.problem}.", p.remedy) for p in problems)
+        raise InputError(case.name or "case", tuple(faults))
+    rectangle = film_rectangle(bearing, section)
+    closed = cavitation in ("sommerfeld", "half-sommerfeld") and bearing.ends == "free-to-air"
+    if closed:
+        section = ends_at_ambient(section)
+    decisions = [_gap_decision(section, bearing), *_lobe_decision(section)]
+    published = cavitation == "two-phase" and case.film.two_phase.form == "published"
+    decisions.append(PUBLISHED_FILM if published else _film_decision(cavitation, rectangle is not None))
+    if closed:
+        reason = f"{cavitation} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
+        decisions.append(Decision("ends", "ambient pressure", reason))
+    conserving = cavitation in ("elrod", "two-phase") and not published
+    if conserving and starves(section):
+        reason = f"{cavitation} conserves oil, and none comes in: the ends are free to air and p_sup is not above p_cav"
+        decisions.append(Decision("supply", "starves", f"{reason}; the film loses oil and load"))
+    cells, why = _elements(case) if published else _cells(case, test)
+    choice = "elements" if published else "cells"
+    decisions.append(Decision(choice, f"{cells[0]} x {cells[1]}", f"around x along; {why}"))
+    if test != "rotation":
+        decisions.append(Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"))
+    if published:
+        kind = case.film.two_phase.diffusion
+        decisions.append(Decision("diffusion", kind, DIFFUSIONS[kind]))
+    elif cavitation == "two-phase":
+        reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
+        decisions.append(Decision("diffusion", "upwind", reason))
+    rate = TWO_PI * abs(case.motion.speed or case.motion.frequency or case.motion.whirl_speed or 1.0)
+    turning = 0.0
+    if isinstance(bearing.supply, Bores) and bearing.supply.on == "journal":
+        turning = TWO_PI * (case.motion.speed or 0.0)
+        decisions.append(Decision("frame", "of the journal", "the bores turn with it and stand still there"))
+    ramp = getattr(bearing.supply, "ramp", 0.0)
+    return KinematicPlan(
+        test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning, ramp, published
+    )
+
+
+def make_law(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
+    """The law of a film at an eccentricity, on which the penalty model's steepness (3.32) depends."""
+    film, section = case.film, plan.section
+    if plan.cavitation == "reynolds":
+        return Reynolds()
+    if plan.cavitation == "penalty":
+        exponent = steepness_exponent(eccentricity)
+        if film.penalty.pressure == "absolute":
+            return Penalty(PREFACTOR, exponent * section.pressure_scale / section.ambient_pressure)
+        return Penalty(0.5 * PREFACTOR * plan.rate, 2.0 * exponent / plan.rate)
+    if plan.cavitation == "peeken":
+        return Peeken(film.peeken.bunsen)
+    if plan.cavitation == "elrod":
+        modulus = film.elrod.bulk_modulus
+        return Elrod() if modulus is None else Elrod(modulus / section.pressure_scale)
+    if plan.cavitation == "two-phase":
+        return TwoPhase(film.two_phase.steepness)
+    return Sommerfeld(clips=plan.cavitation == "half-sommerfeld")
+
+
+def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
+    if case.accuracy.mesh is not None:
+        along, around = case.accuracy.mesh
+        return (max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])), "set in the case"
+    if test != "rotation":
+        return MOVING_CELLS, "equal ones around, for the narrowest gap moves"
+    fine = case.accuracy.target <= FINE_TARGET
+    return FINE_CELLS if fine else STEADY_CELLS, "finer at the narrowest gap"
+
+
+def _elements(case: Case) -> tuple[tuple[int, int], str]:
+    if case.accuracy.mesh is not None:
+        along, around = case.accuracy.mesh
+        return (max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])), "of a section, set in the case"
+    return PUBLISHED_ELEMENTS, "of a section, as published"
+
+
+def _gap_decision(section: Section, bearing: SingleFilmBearing) -> Decision:
+    if section.far == "groove" and section.copies == 2:
+        return Decision("gap", "1 of 2 sections", "a central circumferential groove parts two equal films")
+    if section.far == "symmetry":
+        reason = f"supply {bearing.supply.kind}: the film is symmetric about its middle"
+        return Decision("gap", "half the width", reason)
+    return Decision("gap", "the whole width", f"supply {bearing.supply.kind}: the film is not symmetric")
+
+
+def _lobe_decision(section: Section) -> list[Decision]:
+    lobes = section.lobes
+    if lobes is None:
+        return []
+    machined = 1e6 * section.clearance / (1.0 - lobes.preload)
+    reason = f"clearance {1e6 * section.clearance:.4g} um where they are narrowest, {machined:.4g} um of their bores"
+    return [Decision("lobes", f"{lobes.count}, preload {lobes.preload:g}", reason)]
+
+
+def _film_decision(cavitation: str, rectangular: bool) -> Decision:
+    if cavitation in REMEMBERING:
+        return Decision("film", "finite volumes", f"{cavitation}: conserves oil and keeps it from moment to moment")
+    if rectangular and cavitation in ("sommerfeld", "half-sommerfeld"):
+        return Decision("film", "modal, quadratic elements", f"{cavitation} in a rectangular gap; it has no state")
+    return Decision("film", "finite volumes", f"{cavitation}: has no state, each moment is a steady film of its own")
+
+
+def _refuse(case: Case, cavitation: str, test: str) -> None:
+    faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test), *bearing_faults(case, test)]
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))
+
+
+def _model_faults(case: Case, cavitation: str, test: str) -> list[Fault]:
+    faults = []
+    if cavitation not in MODELS:
+        faults.append(Fault("--cavitation", cavitation, None, "is no model.", f"There are: {', '.join(MODELS)}."))
+    if case.film.theory == "short":
+        problem = "is not for kinematic tests, which solve the whole film."
+        faults.append(Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".'))
+    if test != "rotation" and cavitation == "two-phase" and case.film.two_phase.form == "published":
+        problem = f"is not modelled for a {test} in this version."
+        faults.append(Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".'))
+    return faults

@@ -1,0 +1,117 @@
+"""Kinematic tests of a film in the published two-phase form: one moment of it, and where a journal rests in it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.bearing_tests.plan import KinematicPlan
+from frbcli.bearing_tests.steady_film import FilmField, FilmMoment
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.loads import estimate
+from frbcli.film.gap import gap_height
+from frbcli.film.published.film import PublishedFilm
+from frbcli.film.published.loads import published_loads
+from frbcli.film.published.solution import FilmState, PublishedSolution
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 30
+SETTLED = 1e-5  # force left over, relative to the load
+TOLERATED = 1e-2  # the same where no position is better: with a steep step the force itself is not smoother
+PATIENCE = 5  # positions that are not better
+DERIVATIVES = 1e-2  # a solution that is unsettled by more of its force has none to trust
+GAP_KEPT = 0.7  # a step leaves the narrowest gap this share of it
+GENTLE = 0.9  # x_1 of a step less steep, with which the position is sought first
+STARTS = (0.6, 0.3, 0.85, 0.15)
+ATTITUDE = math.radians(40.0)
+
+
+def published_film(case: Case, plan: KinematicPlan, cells: tuple[int, int]) -> PublishedFilm:
+    """The film of a plan with elements around and along."""
+    two_phase = case.film.two_phase
+    return PublishedFilm(plan.section, TwoPhase(two_phase.steepness), two_phase.diffusion, *cells)
+
+
+def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: FilmState | None = None) -> FilmMoment:
+    """The film for a motion that lasts, its error estimated from half as many elements each way.
+
+    start: of nearly the same motion. Raises NotConverged.
+    """
+    film = published_film(case, plan, plan.cells)
+    solution = film.steady(motion, start)
+    error = math.nan
+    try:
+        coarse = published_film(case, plan, (max(plan.cells[0] // 2, 3), max(plan.cells[1] // 2, 1))).steady(motion)
+        error = max(estimate(_pair(solution), _pair(coarse)), solution.unsettled)
+    except NotConverged:
+        pass
+    unknowns = int(np.count_nonzero(~film.elements.fixed))
+    loads = published_loads(film, solution, factor=case.film.cavitation_factor)
+    return FilmMoment(_field(film, solution), loads, error, unknowns, solution.iterations)
+
+
+def resting_in_published(case: Case, plan: KinematicPlan, load: float, omega: float) -> tuple[Array, FilmState]:
+    """(2,) displacement over the clearance where the film carries a load in N along -y, and the film there.
+
+    omega: in rad/s. Raises NotConverged if no start leads to one.
+    """
+    film, side, problem = published_film(case, plan, plan.cells), math.copysign(1.0, omega), ""
+    gentle = PublishedFilm(plan.section, TwoPhase(GENTLE), case.film.two_phase.diffusion, *plan.cells)
+    for e in STARTS:
+        start = e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)])
+        try:
+            near = _rest(gentle, load, omega, start)[0] if film.law.steepness > GENTLE else start
+            return _rest(film, load, omega, near)
+        except NotConverged as failure:
+            problem = str(failure)
+    raise NotConverged(
+        f"no resting position under {load:g} N from {len(STARTS)} starts; the last one: {problem.rstrip('.')}. "
+        'Give a higher speed or more viscosity, width or supply, a less steep model, or form = "conservative".'
+    )
+
+
+def _rest(film: PublishedFilm, load: float, omega: float, position: Array) -> tuple[Array, FilmState]:
+    """Newton's method with the derivatives that the film gives."""
+    target, slope, least, since = np.array([0.0, load]), np.eye(2), math.inf, 0
+    state: FilmState | None = None
+    best = (position, film.full())
+    for _ in range(ITERATIONS):
+        solution = film.steady(Motion((float(position[0]), float(position[1])), (0.0, 0.0), omega), state)
+        missing = target - solution.response.force
+        left = float(np.hypot(*missing)) / load
+        settled = solution.unsettled < DERIVATIVES
+        slope = solution.response.by_d if settled or least == math.inf else slope
+        since = 0 if left < least else since + 1
+        best, least = ((position, solution.state), left) if since == 0 else (best, least)
+        if left < SETTLED or since == PATIENCE:
+            break
+        step = np.asarray(np.linalg.solve(slope, missing), dtype=np.float64)
+        position = np.asarray(position + _limited(position, step), dtype=np.float64)
+        state = solution.state if settled else None
+    if least < TOLERATED:
+        return best
+    raise NotConverged(f"{least:.1e} of the load is left over at {np.round(best[0], 3)}")
+
+
+def _limited(position: Array, step: Array) -> Array:
+    largest = (1.0 - GAP_KEPT) * (1.0 - float(np.hypot(*position)))
+    return np.asarray(step * min(1.0, largest / max(float(np.hypot(*step)), np.finfo(float).tiny)), dtype=np.float64)
+
+
+def _pair(solution: PublishedSolution) -> tuple[float, float]:
+    return float(solution.response.force[0]), float(solution.response.force[1])
+
+
+def _field(film: PublishedFilm, solution: PublishedSolution) -> FilmField:
+    """At the nodes; those that a bore has moved are drawn where they came from."""
+    mesh, section, pressure = film.mesh, film.section, solution.state.pressure
+    phi, z = mesh.phi[:, 0], mesh.z[0]
+    absolute = section.ambient_pressure + section.pressure_scale * pressure
+    fraction = film.law.fraction(film.over_cavitation(pressure))[0]
+    return FilmField(phi, z, gap_height(section, solution.motion.d, phi), absolute, fraction)

@@ -1,0 +1,140 @@
+"""Where a journal that turns rests in its film under a load."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from contextlib import suppress
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
+from frbcli.bearing_tests.steady_film import film_force
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.cells.plain.film import Motion
+
+Array = NDArray[np.float64]
+
+BAR = 1e5
+ITERATIONS = 40
+SETTLED = 1e-5  # force left over, relative to the load
+NUDGE = 1e-3  # share of the gap by which the position is moved for a derivative
+GAP_KEPT = 0.3  # a step may shrink the narrowest gap to this share of it
+COARSE_CELLS = (80, 20)
+SMALLEST_SHARE = 0.05  # of a step that is tried
+STARTS = (0.6, 0.85, 0.3, 0.95)
+ATTITUDE = math.radians(20.0)
+
+
+def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: float) -> Array:
+    """(2,) displacement over the clearance at which the film carries a load in N along -y, omega in rad/s.
+
+    Sought with few cells first, then with those of the plan. Raises NotConverged if no start leads to one, or
+    if the film cannot carry anything.
+    """
+    if _is_unfed(plan):
+        cavity = plan.section.cavitation_pressure / BAR
+        raise NotConverged(
+            f"no resting position under {load:g} N: in the long run Elrod's film carries 0 N, at any eccentricity. "
+            "Where its pressure is above the cavitation pressure it loses oil at its edges, and none comes in: "
+            f"neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
+            "Raise the supply pressure, or supply it through axial grooves or bores."
+        )
+    target = np.array([0.0, load])
+    position: Array | None = None
+    if plan.rectangle is not None and not plan.modal:
+        position = resting_displacement(case, kinematic_plan(case, "half-sommerfeld"), load, omega)
+    starts = [] if position is None else [position]
+    side = math.copysign(1.0, omega)  # the journal gives way in the sense of rotation
+    starts += [e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)]) for e in STARTS]
+    problems = []
+    for start in starts:
+        try:
+            coarse = start if plan.modal else _newton(case, plan, target, omega, start, COARSE_CELLS)
+            return _newton(case, plan, target, omega, coarse, plan.cells)
+        except NotConverged as problem:
+            problems.append(str(problem))
+    raise NotConverged(
+        f"no resting position under {load:g} N from {len(starts)} starts; the last one: "
+        f"{problems[-1].rstrip('.')}. {_capacity(case, plan, omega)} "
+        "Give a higher speed or more viscosity, width or supply, or a smaller clearance."
+    )
+
+
+def _is_unfed(plan: KinematicPlan) -> bool:
+    """Whether a film by Elrod's model has no load in the long run: it keeps its oil, no edge can push any into it, and
+    there is no groove or hole that it could be carried away from."""
+    section = plan.section
+    if plan.cavitation != "elrod" or section.grooves or section.holes:
+        return False
+    highest = section.far_pressure if section.far == "groove" else 0.0
+    return section.ambient_pressure + max(0.0, highest) <= section.cavitation_pressure
+
+
+def _capacity(case: Case, plan: KinematicPlan, omega: float) -> str:
+    """What the film carries on the way to contact, in words."""
+    side = math.copysign(1.0, omega)
+    forces: dict[float, float] = {}
+    for e in sorted(STARTS):
+        place = (side * e * math.sin(ATTITUDE), -e * math.cos(ATTITUDE))
+        with suppress(NotConverged):
+            force = film_force(case, plan, Motion(place, (0.0, 0.0), omega), COARSE_CELLS)
+            forces[e] = float(np.linalg.norm(force))
+    if not forces:
+        return f"There is no steady film at the eccentricities {', '.join(f'{e:g}' for e in sorted(STARTS))}."
+    highest = max(forces, key=forces.__getitem__)
+    return f"The largest film force found is {forces[highest]:.3g} N, at an eccentricity of {highest:g}."
+
+
+def _newton(
+    case: Case, plan: KinematicPlan, target: Array, omega: float, start: Array, cells: tuple[int, int]
+) -> Array:
+    """Newton's method with derivatives by differences, kept up to date by Broyden's formula while that works."""
+    size = float(np.linalg.norm(target))
+
+    def missing(d: Array) -> Array:
+        return film_force(case, plan, Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega), cells) - target
+
+    position, fresh = start, True
+    residual = missing(position)
+    slope = _differences(missing, position, residual)
+    for _ in range(ITERATIONS):
+        left = float(np.linalg.norm(residual))
+        if left < SETTLED * size:
+            return position
+        step = _limited(position, -np.linalg.solve(slope, residual))
+        share = 1.0
+        while True:
+            following = position + share * step
+            new = missing(following)
+            if np.linalg.norm(new) < left or share < SMALLEST_SHARE:
+                break
+            share *= 0.4
+        if np.linalg.norm(new) >= left and fresh:
+            break
+        moved = following - position
+        poor = np.linalg.norm(new) > 0.3 * left
+        position, change, residual = following, new - residual, new
+        fresh = bool(poor)
+        slope = (
+            _differences(missing, position, residual)
+            if poor
+            else slope + np.outer(change - slope @ moved, moved) / (moved @ moved)
+        )
+    raise NotConverged(f"{np.linalg.norm(residual) / size:.1e} of the load is left over at {np.round(position, 3)}.")
+
+
+def _differences(missing: Callable[[Array], Array], position: Array, residual: Array) -> Array:
+    nudge = NUDGE * (1.0 - float(np.linalg.norm(position)))
+    return np.column_stack([(missing(position + nudge * unit) - residual) / nudge for unit in np.eye(2)])
+
+
+def _limited(position: Array, step: NDArray[np.floating]) -> Array:
+    """A step that leaves the narrowest gap a share of what it was."""
+    limit = 1.0 - GAP_KEPT * (1.0 - np.linalg.norm(position))
+    a, b, c = step @ step, position @ step, position @ position - limit**2
+    share = min(1.0, float((math.sqrt(b * b - a * c) - b) / a)) if a > 0.0 else 1.0
+    limited: Array = np.asarray(share * step, dtype=np.float64)
+    return limited

@@ -1,0 +1,243 @@
+"""The oil balances of the cells of one film with all derivatives, compiled: Balance.residual in one sweep.
+
+Beside the derivatives by w of the cells stand those by the displacement of the journal, so that rotor and film can be
+solved together.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from frbcli.film.cavitation.compiled import wright_omega
+from frbcli.film.cells.axial import BEND
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
+from frbcli.film.cells.data import (
+    ALONG,
+    AMBIENT,
+    AREA,
+    AROUND,
+    ASPECT,
+    CLOSED,
+    COS,
+    FACE_COS,
+    FACE_GAP,
+    FACE_SIN,
+    FAR,
+    FAR_BEND,
+    FAR_PRESSURE,
+    FAR_RISE,
+    FREE,
+    GAP,
+    LENGTH,
+    NEAR,
+    NEAR_BEND,
+    NEAR_RISE,
+    SIN,
+    UNKNOWN,
+)
+from frbcli.film.cells.ends import PREFACTOR, STEEPNESS
+from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE, SOURCE, SOURCE_SLOPE
+
+# Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
+# supply by given cells; what channels of a ring bring net.
+INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, FLOWS = range(6)
+BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
+
+
+@njit(cache=True, error_model="numpy")
+def _end_flow(kind, last, beyond, conductance, bend, groove, length, steepness):  # type: ignore[no-untyped-def]
+    """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance)."""
+    rise, change = last - groove, bend * (last - beyond)
+    by_last, by_beyond = 1.0 + bend, -bend
+    if abs(change) > BEND * abs(rise):
+        side = math.copysign(BEND, change) * math.copysign(1.0, rise) if rise != 0.0 else 0.0
+        change, by_last, by_beyond = side * rise, 1.0 + side, 0.0
+    if kind == FREE:
+        omega = wright_omega(math.log(PREFACTOR * steepness * length / conductance) + steepness * (last + change))
+        slope = conductance * omega / (1.0 + omega)
+        return (
+            conductance / steepness * omega,
+            slope * by_last,
+            slope * by_beyond,
+            omega * omega / (steepness * (1.0 + omega)),
+        )
+    felt = rise + change
+    return conductance * felt, conductance * by_last, conductance * by_beyond, felt
+
+
+@njit(cache=True, error_model="numpy")
+def _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right):  # type: ignore[no-untyped-def]
+    m, k = states.shape[1], states.shape[2]
+    for i in range(m):
+        n = i + 1 if i + 1 < m else 0
+        s, c = ring[FACE_SIN, i], ring[FACE_COS, i]
+        h = ring[FACE_GAP, i] + d_x * s - d_y * c
+        cube, square, half = h * h * h, 3.0 * h * h, 0.5 * omega
+        here, next_ = (1.0, 0.0) if omega >= 0.0 else (0.0, 1.0)
+        for j in range(k):  # through the face after the cell
+            open_, dz = cells[AROUND, i, j], width[0, j]
+            p, p_n = states[PRESSURE, i, j], states[PRESSURE, n, j]
+            t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
+            over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
+            theta = here * (t - over) + next_ * (t_n - over_n) + 0.5 * (over + over_n)
+            fall, carried = open_ * (p - p_n), half * dz
+            flow = cube * fall + carried * h * theta
+            share = 0.5 if t > 1.0 else here
+            share_n = 0.5 if t_n > 1.0 else next_
+            by_own = cube * open_ * states[PRESSURE_SLOPE, i, j] + carried * h * share * states[FRACTION_SLOPE, i, j]
+            by_next = carried * h * share_n * states[FRACTION_SLOPE, n, j] - cube * open_ * states[PRESSURE_SLOPE, n, j]
+            by_gap = g * (square * fall + carried * theta)
+            right[i, j, k] -= flow
+            right[n, j, k] += flow
+            right[i, j, k + 1] -= by_gap * s
+            right[n, j, k + 1] += by_gap * s
+            right[i, j, k + 2] += by_gap * c
+            right[n, j, k + 2] -= by_gap * c
+            stencil[CENTRE, i, j] += by_own
+            stencil[BEHIND, i, j] += by_next
+            stencil[CENTRE, n, j] -= by_next
+            stencil[BEFORE, n, j] -= by_own
+
+
+@njit(cache=True, error_model="numpy")
+def _flow_along(ring, cells, states, d_x, d_y, g, stencil, right):  # type: ignore[no-untyped-def]
+    m, k = states.shape[1], states.shape[2]
+    for i in range(m):
+        s, c = ring[SIN, i], ring[COS, i]
+        h = ring[GAP, i] + d_x * s - d_y * c
+        cube, square = h * h * h, 3.0 * h * h
+        for j in range(k - 1):  # to the cell above
+            fall = cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
+            flow, by_gap = cube * fall, g * square * fall
+            low = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j]
+            high = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j + 1]
+            right[i, j, k] -= flow
+            right[i, j + 1, k] += flow
+            right[i, j, k + 1] -= by_gap * s
+            right[i, j + 1, k + 1] += by_gap * s
+            right[i, j, k + 2] += by_gap * c
+            right[i, j + 1, k + 2] -= by_gap * c
+            stencil[CENTRE, i, j] += low
+            stencil[ABOVE, i, j] -= high
+            stencil[CENTRE, i, j + 1] += high
+            stencil[BELOW, i, j + 1] -= low
+
+
+@njit(cache=True, error_model="numpy")
+def _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil, right):  # type: ignore[no-untyped-def]
+    m, k = states.shape[1], states.shape[2]
+    for i in range(m):
+        s, c = ring[SIN, i], ring[COS, i]
+        h = ring[GAP, i] + d_x * s - d_y * c
+        # how the gap's change depends on the velocities: those turn with the grid
+        s_v, c_v = s + g * spin * c, c - g * spin * s
+        growth = v_x * s - v_y * c
+        for j in range(k):
+            area, theta = cells[AREA, i, j], states[FRACTION, i, j]
+            stored = area * (rate * h * theta - past[i, j] - states[SOURCE, i, j])
+            kept = area * (rate * h * states[FRACTION_SLOPE, i, j] - states[SOURCE_SLOPE, i, j])
+            by_x, by_y = g * area * rate * theta * s, g * area * rate * theta * c
+            if rate == 0.0:
+                stored += area * growth * theta
+                kept += area * growth * states[FRACTION_SLOPE, i, j]
+                by_x, by_y = area * theta * s_v, area * theta * c_v
+            if cells[UNKNOWN, i, j] != 0.0:
+                right[i, j, k] -= stored
+                right[i, j, k + 1] -= by_x
+                right[i, j, k + 2] += by_y
+                stencil[CENTRE, i, j] += kept
+
+
+@njit(cache=True, error_model="numpy")
+def _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right, flows):  # type: ignore[no-untyped-def]
+    m, k = states.shape[1], states.shape[2]
+    steepness = STEEPNESS / numbers[AMBIENT]
+    for i in range(m):
+        s, c = ring[SIN, i], ring[COS, i]
+        h = ring[GAP, i] + d_x * s - d_y * c
+        cube, square = h * h * h, 3.0 * h * h
+        for far in range(2):
+            kind = int(numbers[FAR]) if far == 1 else int(numbers[NEAR])
+            j = k - 1 if far == 1 else 0
+            if kind == CLOSED or cells[UNKNOWN, i, j] == 0.0:
+                continue
+            b = max(j - 1, 0) if far == 1 else min(1, k - 1)
+            rise, bend = (
+                (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
+            )
+            groove = numbers[FAR_PRESSURE] if far == 1 else 0.0
+            unit = numbers[ASPECT] * ring[LENGTH, i] * rise
+            flow, by_last, by_beyond, by_conductance = _end_flow(
+                kind,
+                states[PRESSURE, i, j],
+                states[PRESSURE, i, b],
+                cube * unit,
+                bend,
+                groove,
+                ring[LENGTH, i],
+                steepness,
+            )
+            by_gap = g * by_conductance * square * unit
+            right[i, j, k] -= flow
+            right[i, j, k + 1] -= by_gap * s
+            right[i, j, k + 2] += by_gap * c
+            stencil[CENTRE, i, j] += by_last * states[PRESSURE_SLOPE, i, j]
+            if b > j:
+                stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
+            elif b < j:
+                stencil[BELOW, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
+            flows[ENDS_NET] += flow
+            if flow > 0.0:
+                flows[OUTFLOW] += flow
+            else:
+                flows[INFLOW] -= flow
+
+
+@njit(cache=True, error_model="numpy")
+def _hold_given(cells, stencil, right, flows):  # type: ignore[no-untyped-def]
+    """Cells with a given pressure keep it; what would leave them is their supply."""
+    m, k = cells.shape[1], cells.shape[2]
+    for i in range(m):
+        for j in range(k):
+            if cells[UNKNOWN, i, j] == 0.0:
+                fed = -right[i, j, k]
+                flows[SUPPLY_NET] += fed
+                if fed > 0.0:
+                    flows[INFLOW] += fed
+                else:
+                    flows[OUTFLOW] -= fed
+                for entry in range(5):
+                    stencil[entry, i, j] = 0.0
+                stencil[CENTRE, i, j] = 1.0
+                for side in range(SIDES):
+                    right[i, j, k + side] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def balances(  # type: ignore[no-untyped-def]
+    numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, right, flows
+):
+    """The balances of the cells and their derivatives.
+
+    d: displacement; omega: omega_J + omega_S relative to the grid. Stored are rate H theta - past (m, k); with rate 0,
+    for a film without memory, the gap's own change with the velocity v. g: how far a velocity moves the journal within
+    the stage; spin: angular speed of the grid, which turns v.
+    stencil (ENTRIES, m, k), right (m, k, k + SIDES), its last layers: minus the residual and minus its derivatives by
+    the journal's velocities; flows (FLOWS,).
+    """
+    m, k = past.shape
+    for i in range(m):
+        for j in range(k):
+            for entry in range(5):
+                stencil[entry, i, j] = 0.0
+            for side in range(SIDES):
+                right[i, j, k + side] = 0.0
+    for flow in range(FLOWS):
+        flows[flow] = 0.0
+    _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right)
+    _flow_along(ring, cells, states, d_x, d_y, g, stencil, right)
+    _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil, right)
+    _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right, flows)
+    _hold_given(cells, stencil, right, flows)

@@ -1,0 +1,152 @@
+"""What channels between two films bring to them, and what pressures they take, compiled; see channels.py for the model.
+
+The flow from the outer to the inner end of a channel follows from the mean pressures of the cells at its mouths,
+
+    Q = (p_o - p_i - Delta p) / (R + 1 / k_i + 1 / k_o),    Delta p by (4.27),
+
+with Hagen and Poiseuille's resistance R and the conductances k of the cells of a mouth to the channel. It is taken from
+one film and given to the other one, so that no oil is lost however far the films are from balance.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from frbcli.film.cavitation.compiled import cell_law
+from frbcli.film.cells.balances import CHANNELS_NET, SIDES
+from frbcli.film.cells.block_cyclic import CENTRE
+from frbcli.film.cells.data import (
+    AMBIENT,
+    CAVITY,
+    CLIPS,
+    CONDUCTANCE,
+    EXCHANGE,
+    FILM,
+    FLOW_SCALE,
+    FORCE_SCALE,
+    GROOVE_PRESSURE,
+    INNER,
+    LAW,
+    MOUTH,
+    OUTER,
+    PRESSURE_SCALE,
+    PUSH_X,
+    PUSH_Y,
+    REFERENCE,
+    RESISTANCE,
+    THROWN,
+)
+from frbcli.film.cells.states import PRESSURE, PRESSURE_SLOPE
+
+
+@njit(cache=True, error_model="numpy")
+def exchange(cells, states, channel, stencil, right, flows):  # type: ignore[no-untyped-def]
+    """Add to the balances of a film (see balances) what channels of the pressures channel (m, k) bring to its cells."""
+    m, k = channel.shape
+    for i in range(m):
+        for j in range(k):
+            open_ = cells[EXCHANGE, i, j]
+            if open_ != 0.0:
+                brought = open_ * (channel[i, j] - states[PRESSURE, i, j])
+                right[i, j, k] += brought
+                stencil[CENTRE, i, j] += open_ * states[PRESSURE_SLOPE, i, j]
+                flows[CHANNELS_NET] += brought
+
+
+@njit(cache=True, error_model="numpy")
+def ask_of_channels(cells, right):  # type: ignore[no-untyped-def]
+    """The last layers of right (m, k, k + SIDES + slots) <- derivatives of exchange by the channels' pressures."""
+    m, k, layers = right.shape
+    for i in range(m):
+        for j in range(k):
+            for layer in range(k + SIDES, layers):
+                right[i, j, layer] = 0.0
+            if cells[MOUTH, i, j] != 0.0:
+                right[i, j, k + SIDES - 1 + int(cells[MOUTH, i, j])] = cells[EXCHANGE, i, j]
+
+
+@njit(cache=True, error_model="numpy")
+def mouth_pressure(numbers, cells, first, second, w, mouth, places):  # type: ignore[no-untyped-def]
+    """Mean pressure of the cells of a mouth, by their conductances."""
+    total = 0.0
+    for n in range(places.shape[0]):
+        i, j = places[n, 0], places[n, 1]
+        if i >= 0:
+            p, _, _, _, _, _ = cell_law(
+                int(numbers[LAW]), first, second, w[i, j], numbers[REFERENCE], numbers[CAVITY], numbers[AMBIENT]
+            )
+            total += cells[EXCHANGE, i, j] * p
+    return total / mouth[CONDUCTANCE]
+
+
+@njit(cache=True, error_model="numpy")
+def _entry(mouth):  # type: ignore[no-untyped-def]
+    """Resistance between the cells of a mouth and the channel, Pa s / m^3."""
+    return mouth[PRESSURE_SCALE] / (mouth[FLOW_SCALE] * mouth[CONDUCTANCE])
+
+
+@njit(cache=True, error_model="numpy")
+def channel_pressures(channels, mouths, spins, means):  # type: ignore[no-untyped-def]
+    """means (mouths,) of the pressures at the mouths <- the pressures of the channels' ends, in the units of their
+    films. spins: (films,) speeds of their grids."""
+    for c in range(channels.shape[0]):
+        inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
+        scale, entry = mouths[inner, PRESSURE_SCALE], _entry(mouths[inner])
+        spin = spins[int(mouths[inner, FILM])]
+        fall, resistance = -scale * means[inner] - channels[c, THROWN] * spin * spin, channels[c, RESISTANCE] + entry
+        if outer >= 0:
+            fall += mouths[outer, PRESSURE_SCALE] * means[outer]
+            resistance += _entry(mouths[outer])
+        else:
+            fall += channels[c, GROOVE_PRESSURE]
+        flow = fall / resistance
+        means[inner] += flow * entry / scale
+        if outer >= 0:
+            means[outer] -= flow * _entry(mouths[outer]) / mouths[outer, PRESSURE_SCALE]
+
+
+@njit(cache=True, error_model="numpy")
+def follow_means(channels, mouths, matrix):  # type: ignore[no-untyped-def]
+    """matrix (mouths, n) of changes of the means at the mouths <- those at the channels' ends, as channel_pressures."""
+    for c in range(channels.shape[0]):
+        inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
+        scale, entry = mouths[inner, PRESSURE_SCALE], _entry(mouths[inner])
+        resistance = channels[c, RESISTANCE] + entry
+        if outer >= 0:
+            resistance += _entry(mouths[outer])
+        for n in range(matrix.shape[1]):
+            flow = -scale * matrix[inner, n] / resistance
+            if outer >= 0:
+                flow += mouths[outer, PRESSURE_SCALE] * matrix[outer, n] / resistance
+                matrix[outer, n] -= flow * _entry(mouths[outer]) / mouths[outer, PRESSURE_SCALE]
+            matrix[inner, n] += flow * entry / scale
+
+
+@njit(cache=True, error_model="numpy")
+def mean_changes(cells, states, fields, mouth, places, changes):  # type: ignore[no-untyped-def]
+    """changes (SIDES + slots,) <- those of the mean pressure of a mouth with the layers of fields, see film_newton."""
+    k = fields.shape[1]
+    for layer in range(changes.shape[0]):
+        changes[layer] = 0.0
+    for n in range(places.shape[0]):
+        i, j = places[n, 0], places[n, 1]
+        if i >= 0:
+            share = cells[EXCHANGE, i, j] * states[PRESSURE_SLOPE, i, j] / mouth[CONDUCTANCE]
+            for layer in range(changes.shape[0]):
+                changes[layer] += share * fields[i, j, k + layer]
+
+
+@njit(cache=True, error_model="numpy")
+def push_of_channel(numbers, ring, width, states, fields, slot):  # type: ignore[no-untyped-def]
+    """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
+    m, k = states.shape[1], states.shape[2]
+    clips, x, y = numbers[CLIPS] != 0.0, 0.0, 0.0
+    for i in range(m):
+        p = 0.0
+        for j in range(k):
+            slope = states[PRESSURE_SLOPE, i, j]
+            if not (clips and states[PRESSURE, i, j] + slope * fields[i, j, k] < numbers[CAVITY]):
+                p += width[1, j] * slope * fields[i, j, k + SIDES + slot]
+        x += ring[PUSH_X, i] * p
+        y += ring[PUSH_Y, i] * p
+    return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y

@@ -1,0 +1,153 @@
+"""Films on volumes as arrays for the compiled kernels: all films of a machine beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.cavitation.compiled import law_code
+from frbcli.film.cells.axial import axial_weights, end_slopes
+from frbcli.film.cells.plain.balance import NO_DISTANCE
+from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.contact_gap import gap_limits
+from frbcli.film.gap import gap_height
+from frbcli.film.grid import Array
+from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
+
+ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
+CLOSED, GIVEN, FREE = range(3)
+
+# Numbers of one film. PULL: by which the given pressures fall with the square of the grid's speed, in s; WHIRLING: what
+# FIRST becomes in a half-frequency whirl; STOPS_FROM, LEAST_GAP: see contact_gap.py.
+(
+    ASPECT,
+    REFERENCE,
+    CAVITY,
+    AMBIENT,
+    LAW,
+    FIRST,
+    SECOND,
+    CLIPS,
+    REMEMBERS,
+    NEAR,
+    FAR,
+    FAR_PRESSURE,
+    NEAR_RISE,
+    NEAR_BEND,
+    FAR_RISE,
+    FAR_BEND,
+    FORCE_SCALE,
+    FOLLOWS,
+    PULL,
+    WHIRLING,
+    STOPS_FROM,
+    LEAST_GAP,
+    FILM_NUMBERS,
+) = range(23)
+# Whether the penalty's b (3.32) follows the eccentricity, FIRST and SECOND being those of the centred journal; whether
+# both follow the speed, being those of 1 rad/s; whether the first follows the whirl of the journal.
+STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL = range(4)
+# Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
+# length of the cell; what a unit of pressure on it pushes the journal by.
+SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
+# Layers of cells: area; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where
+# the pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that mouth in
+# its film, 0: none.
+AREA, AROUND, ALONG, GIVEN_PRESSURE, UNKNOWN, EXCHANGE, MOUTH, CELL_LAYERS = range(8)
+# Numbers of a mouth: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s, and a
+# pressure of 1 in Pa; the sum of its cells' conductances.
+FILM, SLOT, FLOW_SCALE, PRESSURE_SCALE, CONDUCTANCE, MOUTH_NUMBERS = range(6)
+# Numbers of a channel: its mouths in the inner and in the outer film, the latter -1 in a groove; its resistance in
+# Pa s / m^3; gauge pressure of the groove in Pa; by what the pressure rises from the inner to the outer end with the
+# square of the ring's speed, in Pa s^2 (4.27).
+INNER, OUTER, RESISTANCE, GROOVE_PRESSURE, THROWN, CHANNEL_NUMBERS = range(6)
+
+
+class VolumeFilms(NamedTuple):
+    """Films of equal numbers of cells m x k. numbers: (films, FILM_NUMBERS); ring: (films, RING_ROWS, m); width:
+    (films, 2, k) cells along the axis and weights of the integral; cells: (films, CELL_LAYERS, m, k). Of coupled
+    channels: channels (channels, CHANNEL_NUMBERS), mouths (mouths, MOUTH_NUMBERS) and their cells, mouth_cells (mouths,
+    n, 2), filled up with -1."""
+
+    numbers: Array
+    ring: Array
+    width: Array
+    cells: Array
+    channels: Array
+    mouths: Array
+    mouth_cells: NDArray[np.int64]
+
+
+def volume_films(
+    films: Sequence[VolumeFilm],
+    follows: Sequence[int] = (),
+    pulls: Sequence[float] = (),
+    whirling: float = 0.0,
+    contact_eccentricity: float = LARGEST_ECCENTRICITY,
+) -> VolumeFilms:
+    """The films as arrays; all have grids of the same shape. follows: what the parameters of their laws do; pulls: in
+    s; whirling: what the laws' first parameter becomes in a whirl, if it follows that; contact_eccentricity: from which
+    on the surfaces touch."""
+    m, k = films[0].grid.shape
+    data = VolumeFilms(
+        np.zeros((len(films), FILM_NUMBERS)),
+        np.zeros((len(films), RING_ROWS, m)),
+        np.zeros((len(films), 2, k)),
+        np.zeros((len(films), CELL_LAYERS, m, k)),
+        np.zeros((0, CHANNEL_NUMBERS)),
+        np.zeros((0, MOUTH_NUMBERS)),
+        np.zeros((0, 0, 2), dtype=np.int64),
+    )
+    for index, film in enumerate(films):
+        _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
+        data.numbers[index, FOLLOWS] = follows[index] if follows else STANDS
+        data.numbers[index, PULL] = pulls[index] if pulls else 0.0
+        data.numbers[index, WHIRLING] = whirling
+        data.numbers[index, STOPS_FROM], data.numbers[index, LEAST_GAP] = gap_limits(contact_eccentricity)
+    return data
+
+
+def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Array) -> None:
+    section, grid, scales, law = film.section, film.grid, film.scales, film.law
+    kind, first, second = law_code(law)
+    near, far = end_slopes(grid.z)
+    centred = (0.0, 0.0)
+    values = {
+        ASPECT: section.aspect,
+        REFERENCE: scales.reference,
+        CAVITY: scales.cavitation,
+        AMBIENT: scales.ambient,
+        LAW: kind,
+        FIRST: first,
+        SECOND: second,
+        CLIPS: float(law.clips),
+        REMEMBERS: float(law.conserves and not law.clips and kind != 0),
+        NEAR: ENDS[section.near],
+        FAR: ENDS[section.far],
+        FAR_PRESSURE: section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0,
+        NEAR_RISE: near.rise,
+        NEAR_BEND: near.bend,
+        FAR_RISE: far.rise,
+        FAR_BEND: far.bend,
+        FORCE_SCALE: section.copies * section.radius * section.width * section.pressure_scale,
+    }
+    for place, value in values.items():
+        numbers[place] = value
+    face = grid.phi[1:]
+    ring[SIN], ring[COS], ring[GAP] = (
+        np.sin(grid.centre),
+        np.cos(grid.centre),
+        gap_height(section, centred, grid.centre),
+    )
+    ring[FACE_SIN], ring[FACE_COS], ring[FACE_GAP] = np.sin(face), np.cos(face), gap_height(section, centred, face)
+    ring[LENGTH] = np.diff(grid.phi)
+    ring[PUSH_X], ring[PUSH_Y] = -np.diff(np.cos(grid.phi)), -np.diff(np.sin(grid.phi))
+    width[0], width[1] = np.diff(grid.z), axial_weights(grid.z, section.far == "symmetry")
+    cells[AREA] = grid.area
+    cells[AROUND] = np.where(grid.around > 0.0, width[0] / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    open_along = np.where(grid.along > 0.0, ring[LENGTH][:, None] / np.maximum(grid.along, NO_DISTANCE), 0.0)
+    cells[ALONG, :, :-1] = section.aspect * open_along
+    cells[GIVEN_PRESSURE], cells[UNKNOWN] = grid.fixed_pressure, np.where(grid.fixed, 0.0, 1.0)

@@ -1,0 +1,110 @@
+"""One step of Newton's method of a film with cells, and what it does per velocity of the journal, compiled."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from frbcli.film.cells.balances import balances
+from frbcli.film.cells.block_cyclic import CENTRE, solve_ring
+from frbcli.film.cells.data import AREA, CAVITY, CLIPS, COS, FORCE_SCALE, GAP, PULL, PUSH_X, PUSH_Y, SIN, UNKNOWN
+from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, law_parameters
+
+
+@njit(cache=True, error_model="numpy")
+def film_loads(numbers, ring, width, states, delta):  # type: ignore[no-untyped-def]
+    """Force on the journal with the changes delta (m, k, k + SIDES): (x, y) after the film's own change, and its
+    derivatives (xx, xy, yx, yy) by the journal's velocities, in N and N s."""
+    m, k = states.shape[1], states.shape[2]
+    cavity, clips = numbers[CAVITY], numbers[CLIPS] != 0.0
+    f_x, f_y, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(m):
+        p, x, y = 0.0, 0.0, 0.0
+        for j in range(k):
+            weight, slope = width[1, j], states[PRESSURE_SLOPE, i, j]
+            here = states[PRESSURE, i, j] + slope * delta[i, j, k]
+            if clips and here < cavity:
+                p += weight * cavity
+            else:
+                p += weight * here
+                x += weight * slope * delta[i, j, k + 1]
+                y += weight * slope * delta[i, j, k + 2]
+        f_x += ring[PUSH_X, i] * p
+        f_y += ring[PUSH_Y, i] * p
+        xx += ring[PUSH_X, i] * x
+        xy += ring[PUSH_X, i] * y
+        yx += ring[PUSH_Y, i] * x
+        yy += ring[PUSH_Y, i] * y
+    scale = numbers[FORCE_SCALE]
+    return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
+
+
+@njit(cache=True, error_model="numpy")
+def imbalance(cells, fields):  # type: ignore[no-untyped-def]
+    """What does not balance in fields (m, k, k + SIDES), see balances, as a rate of the gap in 1/s: the mean over the
+    cells, and the largest."""
+    m, k = fields.shape[0], fields.shape[1]
+    total, area, largest = 0.0, 0.0, 0.0
+    for i in range(m):
+        for j in range(k):
+            left = abs(fields[i, j, k])
+            total += left
+            area += cells[AREA, i, j]
+            largest = max(largest, left / cells[AREA, i, j])
+    return total / area, largest
+
+
+@njit(cache=True, error_model="numpy")
+def damp(cells, rate, stencil):  # type: ignore[no-untyped-def]
+    """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see newton.py."""
+    m, k = stencil.shape[1], stencil.shape[2]
+    for i in range(m):
+        for j in range(k):
+            stencil[CENTRE, i, j] += rate * cells[UNKNOWN, i, j] * cells[AREA, i, j]
+
+
+@njit(cache=True, error_model="numpy")
+def film_newton(  # type: ignore[no-untyped-def]
+    numbers,
+    ring,
+    width,
+    cells,
+    w,
+    d_x,
+    d_y,
+    omega,
+    rate,
+    past,
+    g,
+    v_x,
+    v_y,
+    spin,
+    states,
+    stencil,
+    blocks,
+    fields,
+    flows,
+):
+    """One step of Newton's method of a film from the unknowns w (m, k): fields (m, k, k + SIDES) <- its changes.
+
+    See balances for the arguments; returns film_loads.
+    """
+    first, second = law_parameters(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin)
+    cell_states(numbers, cells, first, second, numbers[PULL] * spin * spin, w, states)
+    balances(
+        numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
+    )
+    solve_ring(stencil, blocks, fields)
+    return film_loads(numbers, ring, width, states, fields)
+
+
+@njit(cache=True, error_model="numpy")
+def store_rates(ring, cells, states, d_x, d_y, g, past, fields, rates):  # type: ignore[no-untyped-def]
+    """rates (m, k) <- of the oil H theta of each cell, by the flows that fields hold the balance of: what cells pass to
+    each other is the same for both, so that no oil is lost however far the balance is from zero."""
+    m, k = rates.shape
+    for i in range(m):
+        h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
+        for j in range(k):
+            rates[i, j] = 0.0
+            if cells[UNKNOWN, i, j] != 0.0:
+                rates[i, j] = h * states[FRACTION, i, j] / g - past[i, j] + fields[i, j, k] / cells[AREA, i, j]

@@ -1,0 +1,212 @@
+"""The oil balance of every cell (3.9), (4.31) on finite volumes: flows through faces, storage, and its derivatives.
+
+Lengths are scaled by R and b, pressures by 12 eta / psi^2: a flow is an area times a rate, in 1/s.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.cavitation.law import CellState
+from frbcli.film.cells.axial import BEND, EndSlope, end_slopes
+from frbcli.film.cells.ends import end_outflow
+from frbcli.film.cells.grid import VolumeGrid
+from frbcli.film.gap import Section, gap_height
+from frbcli.film.grid import Array
+
+NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Motion of the journal relative to the shell.
+
+    d: displacement over the clearance; v: its rate in 1/s; omega: omega_J + omega_S in rad/s.
+    """
+
+    d: tuple[float, float]
+    v: tuple[float, float]
+    omega: float
+
+    @property
+    def rate(self) -> float:
+        """How fast the gap changes, in 1/s: what drives pressure and flow."""
+        return max(0.5 * abs(self.omega), math.hypot(*self.v), 1e-3)
+
+
+class EndFlow(NamedTuple):
+    """Outflow (m,) of the last cells through an end, its derivatives (m,) by their pressure and their neighbours'."""
+
+    out: Array
+    by_last: Array
+    by_next: Array
+
+
+class Conductances(NamedTuple):
+    """What the gap makes of pressures and motion: around (m, k) through the face after each cell, along (m, k - 1),
+    near and far (m,) at the ends; carried (m, k) by the surfaces through the face after each cell."""
+
+    around: Array
+    along: Array
+    near: Array
+    far: Array
+    carried: Array
+
+
+class Storage(NamedTuple):
+    """Oil kept in the cells per area and time, factor theta - past: factor and past are (m, 1) or (m, k), in 1/s."""
+
+    factor: Array
+    past: Array
+
+
+class Stencil(NamedTuple):
+    """Derivatives (m, k) of each cell's balance by w of the cell, and of those before, behind, below and above it."""
+
+    centre: Array
+    before: Array
+    behind: Array
+    below: Array
+    above: Array
+
+
+class Fluxes(NamedTuple):
+    """Oil flows: around (m, k) through the face after each cell, along (m, k - 1), near and far (m,) at the ends."""
+
+    around: Array
+    along: Array
+    near: Array
+    far: Array
+
+    def net_outflow(self) -> Array:
+        """(m, k) outflow of each cell."""
+        net = self.around - np.roll(self.around, 1, axis=0)
+        net[:, :-1] += self.along
+        net[:, 1:] -= self.along
+        net[:, 0] += self.near
+        net[:, -1] += self.far
+        return net
+
+    def turnover(self) -> Array:
+        """(m, k) half of what passes through the faces of each cell, whatever its direction."""
+        size = np.abs(self.around) + np.abs(np.roll(self.around, 1, axis=0))
+        size[:, :-1] += np.abs(self.along)
+        size[:, 1:] += np.abs(self.along)
+        size[:, 0] += np.abs(self.near)
+        size[:, -1] += np.abs(self.far)
+        return 0.5 * size
+
+
+def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conductances:
+    """The conductances of a section. Into a groove or hole the distance counts to its edge."""
+    dphi, dz = np.diff(grid.phi), np.diff(grid.z)
+    face = gap_height(section, motion.d, grid.phi[1:])
+    cube = gap_height(section, motion.d, grid.centre)[:, None] ** 3 * dphi[:, None] * section.aspect
+    around = np.where(grid.around > 0.0, face[:, None] ** 3 * dz / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    along = np.where(grid.along > 0.0, cube / np.maximum(grid.along, NO_DISTANCE), 0.0)
+    first, last = end_slopes(grid.z)
+    near, far = cube[:, 0] * first.rise, cube[:, 0] * last.rise
+    return Conductances(around, along, near, far, 0.5 * motion.omega * face[:, None] * dz[None, :])
+
+
+class Balance:
+    """Balances of the cells of one section for one motion; constant."""
+
+    def __init__(self, section: Section, grid: VolumeGrid, motion: Motion) -> None:
+        self.section, self.grid, self.motion = section, grid, motion
+        self.conductances = conductances(section, grid, motion)
+
+    def fluxes(self, pressure: Array, theta: Array) -> tuple[Fluxes, EndFlow, EndFlow]:
+        """Flows for pressures and oil fractions (m, k), and those at the ends with their derivatives.
+
+        The surfaces carry the oil of a part-filled film as it is in the cell that they come from (upwind), what a full
+        film is compressed by as it is at the face (second order).
+        """
+        c = self.conductances
+        packed = np.maximum(theta - 1.0, 0.0)
+        loose = theta - packed if self.motion.omega >= 0.0 else np.roll(theta - packed, -1, axis=0)
+        carried = c.carried * (loose + 0.5 * (packed + np.roll(packed, -1, axis=0)))
+        around = c.around * (pressure - np.roll(pressure, -1, axis=0)) + carried
+        along = c.along * (pressure[:, :-1] - pressure[:, 1:])
+        first, last = end_slopes(self.grid.z)
+        groove = self.section.far_pressure / self.section.pressure_scale if self.section.far == "groove" else 0.0
+        inwards = slice(None, None, -1)
+        near = self._end(self.section.near, pressure, self.grid.fixed, c.near, 0.0, first)
+        far = self._end(
+            self.section.far, pressure[:, inwards], self.grid.fixed[:, inwards], c.far, groove, last
+        )
+        return Fluxes(around, along, near.out, far.out), near, far
+
+    def _end(
+        self, kind: str, pressure: Array, fixed: NDArray[np.bool_], conductance: Array, groove: float, slope: EndSlope
+    ) -> EndFlow:
+        """pressure, fixed: (m, k) from this end on. A parabola through the last two cells bends the pressure there."""
+        ambient = self.section.ambient_pressure / self.section.pressure_scale
+        last, beyond = pressure[:, 0], pressure[:, min(1, pressure.shape[1] - 1)]
+        rise = last - groove
+        bend = slope.bend * (last - beyond)
+        smooth = np.abs(bend) <= BEND * np.abs(rise)
+        side = BEND * np.sign(bend) * np.sign(rise)
+        felt = last + np.where(smooth, bend, side * rise)
+        out, by_felt = end_outflow(kind, felt, conductance, np.diff(self.grid.phi), groove, ambient)
+        by_felt = np.where(fixed[:, 0], 0.0, by_felt)  # a groove or hole that reaches the end feeds the film only
+        by_last = by_felt * np.where(smooth, 1.0 + slope.bend, 1.0 + side)
+        by_next = by_felt * np.where(smooth, -slope.bend, 0.0)
+        return EndFlow(np.where(fixed[:, 0], 0.0, out), by_last, by_next)
+
+    def residual(self, state: CellState, storage: Storage) -> tuple[Array, Array, Stencil]:
+        """What does not balance in each cell (m, k), the size of its terms (m, k), and the stencil of derivatives by w.
+
+        state: of the law with arrays (m, k), whose slopes are zero and whose values are given in fixed cells.
+        """
+        area, fixed = self.grid.area, self.grid.fixed
+        fluxes, near, far = self.fluxes(state.pressure, state.fraction)
+        kept = storage.factor * state.fraction
+        residual = fluxes.net_outflow() + area * (kept - storage.past - state.source)
+        pull = self._pull(state, near, far)
+        size = pull + fluxes.turnover() + area * (np.abs(kept) + np.abs(storage.past) + state.source)
+        stencil = self._stencil(state, storage, near, far)
+        return np.where(fixed, 0.0, residual), size, stencil
+
+    def _pull(self, state: CellState, near: EndFlow, far: EndFlow) -> Array:
+        """Size of the terms whose differences are the pressure-driven flows: their round-off is the residual's."""
+        c = self.conductances
+        total = c.around + np.roll(c.around, 1, axis=0)
+        total[:, :-1] += c.along
+        total[:, 1:] += c.along
+        total[:, 0] += near.by_last
+        total[:, -1] += far.by_last
+        return total * np.abs(state.pressure)
+
+    def _stencil(self, state: CellState, storage: Storage, near: EndFlow, far: EndFlow) -> Stencil:
+        c, p_w, t_w = self.conductances, state.pressure_slope, state.fraction_slope
+        half = np.where(state.fraction > 1.0, 0.5 * t_w, 0.0)
+        whole = np.where(state.fraction > 1.0, 0.0, t_w)
+        own, other = (half + whole, half) if self.motion.omega >= 0.0 else (half, half + whole)
+        from_cell = c.around * p_w + c.carried * own  # through the face after it, by its own w
+        from_next = c.carried * np.roll(other, -1, axis=0) - c.around * np.roll(p_w, -1, axis=0)  # by w of the next
+        low, high = c.along * p_w[:, :-1], c.along * p_w[:, 1:]
+        centre = from_cell - np.roll(from_next, 1, axis=0)
+        centre += self.grid.area * (storage.factor * t_w - state.source_slope)
+        centre[:, :-1] += low
+        centre[:, 1:] += high
+        centre[:, 0] += near.by_last * p_w[:, 0]
+        centre[:, -1] += far.by_last * p_w[:, -1]
+        below, above = np.zeros_like(p_w), np.zeros_like(p_w)
+        below[:, 1:], above[:, :-1] = -low, -high
+        if p_w.shape[1] > 1:
+            above[:, 0] += near.by_next * p_w[:, 1]
+            below[:, -1] += far.by_next * p_w[:, -2]
+        free = ~self.grid.fixed
+        return Stencil(
+            centre=np.where(free, centre, 1.0),
+            before=free * -np.roll(from_cell, 1, axis=0),
+            behind=free * from_next,
+            below=free * below,
+            above=free * above,
+        )

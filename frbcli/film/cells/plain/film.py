@@ -1,0 +1,175 @@
+"""The Reynolds equation (3.9) with an oil fraction on finite volumes, conservative to round-off, for every law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.errors import NotConverged
+from frbcli.film.cavitation.law import CellState, Law, Scales
+from frbcli.film.cells.grid import VolumeGrid, fitted_grid, volume_grid
+from frbcli.film.cells.plain.balance import Balance, Fluxes, Motion, Storage
+from frbcli.film.cells.plain.newton import Unknowns, solve
+from frbcli.film.gap import Section, gap_height, gap_rate
+from frbcli.film.grid import Array
+
+__all__ = [
+    "Flows",
+    "Motion",
+    "Section",
+    "VolumeFilm",
+    "VolumeGrid",
+    "VolumeSolution",
+    "fitted_grid",
+    "reference_pressure",
+    "volume_grid",
+]
+
+
+DRY = -1e-6  # an oil fraction below this is none
+# A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
+STILL_MOTION, STILL_STEP = 1e-4, 1e-6
+
+
+@dataclass(frozen=True)
+class Flows:
+    """Oil per time in scaled units (R b C, 1/s), by one section: in and out at its ends, grooves and holes; made by the
+    law; stored; fed by grooves and holes net; leaving at the ends net; still: what is too little to count."""
+
+    inflow: float
+    outflow: float
+    source: float
+    stored: float
+    supply: float
+    ends: float
+    still: float
+
+    @property
+    def defect(self) -> float:
+        """What does not balance, over the larger of inflow and outflow; oil that the law makes is such."""
+        size = max(self.inflow, self.outflow, abs(self.stored), self.still)
+        return (self.inflow - self.outflow - self.stored) / size if size > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class VolumeSolution:
+    """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations."""
+
+    w: Array
+    state: CellState
+    iterations: int
+    flows: Flows
+
+
+def reference_pressure(section: Section, motion: Motion) -> float:
+    """A scaled pressure in 1/s of the size that the motion builds up: a good reference of the unknown w."""
+    return motion.rate / section.aspect
+
+
+class VolumeFilm:
+    """A section on a grid with a law. Constant: its methods take and return states."""
+
+    def __init__(self, section: Section, grid: VolumeGrid, law: Law, reference: float) -> None:
+        """reference: scaled pressure in 1/s that one unit of w stands for, see reference_pressure."""
+        self.section, self.grid, self.law = section, grid, law
+        self.scales = Scales(
+            reference,
+            (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale,
+            section.ambient_pressure / section.pressure_scale,
+        )
+        self._unknowns = Unknowns.of(grid)
+
+    def full(self) -> Array:
+        """(m, k) unknown of a full film at the ambient pressure."""
+        return np.full(self.grid.shape, max(0.0, -self.scales.cavitation / self.scales.reference))
+
+    def gap(self, d: tuple[float, float], phi: Array) -> Array:
+        """H (4.4) at the angles phi (n,)."""
+        return gap_height(self.section, d, phi)
+
+    def cells(self, w: Array) -> CellState:
+        """State of the cells with the unknown w (m, k), with the given pressures in grooves and holes."""
+        grid = self.grid
+        state = self.law.cells(w, self.scales)
+        return CellState(
+            pressure=np.where(grid.fixed, grid.fixed_pressure, state.pressure),
+            fraction=np.where(grid.fixed, 1.0, state.fraction),
+            source=np.where(grid.fixed, 0.0, state.source),
+            pressure_slope=np.where(grid.fixed, 0.0, state.pressure_slope),
+            fraction_slope=np.where(grid.fixed, 0.0, state.fraction_slope),
+            source_slope=np.where(grid.fixed, 0.0, state.source_slope),
+        )
+
+    def pressure(self, state: CellState) -> Array:
+        """(m, k) scaled gauge pressure for loads and flows: clipped at p_cav if the law says so (3.29)."""
+        return np.maximum(state.pressure, self.scales.cavitation) if self.law.clips else state.pressure
+
+    def content(self, motion: Motion, w: Array) -> Array:
+        """(m, k) oil in the cells, H theta."""
+        content: Array = gap_height(self.section, motion.d, self.grid.centre)[:, None] * self.cells(w).fraction
+        return content
+
+    def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
+        """Cells whose oil fraction does not change while the journal moves as it does.
+
+        start: (m, k) unknown to begin from, else a full film. Raises NotConverged.
+        """
+        rate = gap_rate(motion.v, self.grid.centre)[:, None]
+        storage = Storage(rate, np.zeros_like(rate))
+        return self._solve(motion, self.full() if start is None else start, storage)
+
+    def step(self, motion: Motion, w: Array, content: Array, dt: float) -> tuple[VolumeSolution, Array]:
+        """One implicit Euler step to the motion at its end.
+
+        content: (m, k) H theta at its start. Returns (solution, content). Raises NotConverged.
+        """
+        return self.keep(motion, w, 1.0 / dt, content / dt)
+
+    def keep(
+        self, motion: Motion, w: Array, rate: float, past: Array, flowing: Motion | None = None
+    ) -> tuple[VolumeSolution, Array]:
+        """One step of any implicit formula: d(H theta)/dt = rate H theta - past with past (m, k) from earlier steps.
+
+        motion: at the end of the step; flowing: motion whose gap the oil flows through, else that at the end; w: (m, k)
+        unknown to begin from. Returns (solution, content). Raises NotConverged.
+        """
+        storage = Storage(rate * gap_height(self.section, motion.d, self.grid.centre)[:, None], past)
+        solution = self._solve(motion if flowing is None else flowing, w, storage)
+        return solution, self.content(motion, solution.w)
+
+    def _solve(self, motion: Motion, w: Array, storage: Storage) -> VolumeSolution:
+        balance = Balance(self.section, self.grid, motion)
+        w, iterations = solve(self._unknowns, lambda x: balance.residual(self.cells(x), storage), w, motion.rate)
+        state = self.cells(w)
+        if np.min(state.fraction) < DRY:
+            raise NotConverged(
+                "the film runs dry: more oil leaves at its free ends than can enter it; raise the supply above the "
+                "cavitation pressure, or let the ends lie in an oil bath"
+            )
+        fluxes, _, _ = balance.fluxes(self.pressure(state), state.fraction)
+        return VolumeSolution(w, state, iterations, self._flows(fluxes, state, storage, motion.rate))
+
+    def _flows(self, fluxes: Fluxes, state: CellState, storage: Storage, rate: float) -> Flows:
+        fixed, area = self.grid.fixed, self.grid.area
+        ends = np.concatenate([fluxes.near, fluxes.far])
+        fed = fluxes.net_outflow()[fixed]  # what leaves a groove net is what it feeds into the film
+        stored = area * (storage.factor * state.fraction - storage.past)
+        return Flows(
+            inflow=float(-ends[ends < 0.0].sum() + fed[fed > 0.0].sum()),
+            outflow=float(ends[ends > 0.0].sum() - fed[fed < 0.0].sum()),
+            source=float((area * state.source)[~fixed].sum()),
+            stored=float(stored[~fixed].sum()),
+            supply=float(fed.sum()),
+            ends=float(ends.sum()),
+            still=float((area * (STILL_MOTION * rate + STILL_STEP * np.abs(storage.past)))[~fixed].sum()),
+        )
+
+    def from_coarser(self, coarse: VolumeFilm, w: Array) -> Array:
+        """(m, k) unknown to begin from on this grid: w of the same film on a coarser one, nearest cells."""
+        grid = coarse.grid
+        angle = grid.phi[0] + np.mod(self.grid.centre - grid.phi[0], 2.0 * np.pi)
+        column = np.clip(np.searchsorted(grid.phi, angle, side="right") - 1, 0, grid.shape[0] - 1)
+        row = np.searchsorted(grid.z, self.grid.height, side="right") - 1
+        near: Array = w[np.ix_(column, row)]
+        return near

@@ -1,0 +1,167 @@
+"""What a film on volumes does to journal and shell, and where its oil goes: forces, torques, pressures, flows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from frbcli.film.cavitation.law import FRONTS
+from frbcli.film.cells.axial import axial_weights
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm, VolumeSolution
+from frbcli.film.gap import gap_height
+from frbcli.film.grid import Array
+
+CavitationFactor = Literal["none", "global", "local"]
+
+
+@dataclass(frozen=True)
+class OilBalance:
+    """Oil through the whole bearing in m^3/s: in and out at ends, grooves and holes; supply, fed net by grooves and
+    holes; ends, leaving net there; what does not balance over the larger of in and out."""
+
+    in_m3_s: float
+    out_m3_s: float
+    supply_m3_s: float
+    ends_m3_s: float
+    defect_relative: float
+
+
+@dataclass(frozen=True)
+class Torque:
+    """Torque of the film in N m by its two terms (3.17): added up on the journal, subtracted on the shell."""
+
+    couette: float
+    poiseuille: float
+
+    @property
+    def journal(self) -> float:
+        """On the journal."""
+        return self.couette + self.poiseuille
+
+    @property
+    def shell(self) -> float:
+        """On the shell, as section 3.2.4 has it: the shear at its surface, in the journal's sense of rotation."""
+        return self.couette - self.poiseuille
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Loads of the whole bearing. force: on the journal in N; p_max, p_min: absolute, Pa; oil_fraction: mean (4.46)."""
+
+    force: tuple[float, float]
+    torque: Torque
+    p_max: float
+    p_min: float
+    oil_fraction: float
+    oil: OilBalance
+
+
+def loads(
+    film: VolumeFilm,
+    motion: Motion,
+    solution: VolumeSolution,
+    slip: float | None = None,
+    factor: CavitationFactor = "none",
+) -> Loads:
+    """All loads of a solution.
+
+    slip: omega_J - omega_S in rad/s, else that of a shell at rest; factor: how missing oil lowers the torque.
+    """
+    pressure = film.pressure(solution.state)
+    ambient = film.section.ambient_pressure
+    scale = film.section.pressure_scale
+    return Loads(
+        force=force(film, pressure),
+        torque=torque(film, motion, solution, motion.omega if slip is None else slip, factor),
+        p_max=ambient + scale * peak(film, pressure),
+        p_min=ambient + scale * float(np.min(pressure)),
+        oil_fraction=oil_fraction(film, solution),
+        oil=oil_balance(film, solution),
+    )
+
+
+def force(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
+    """Force (3.13) in N of scaled gauge pressures (m, k) on the journal, that in grooves too, (4.8) to (4.10)."""
+    grid, section = film.grid, film.section
+    scale = section.copies * section.radius * section.width * section.pressure_scale
+    along = scale * (pressure @ axial_weights(grid.z, section.far == "symmetry"))
+    return float(-along @ np.diff(np.cos(grid.phi))), float(-along @ np.diff(np.sin(grid.phi)))
+
+
+def torque(
+    film: VolumeFilm, motion: Motion, solution: VolumeSolution, slip: float, factor: CavitationFactor = "none"
+) -> Torque:
+    """Torque (3.17) of the film; grooves and holes have none.
+
+    slip: omega_J - omega_S in rad/s. factor: "none"; "global" multiplies by the mean oil fraction (4.46); "local"
+    weighs each place with its own.
+    """
+    grid, section = film.grid, film.section
+    theta = solution.state.fraction if factor == "local" else np.ones(grid.shape)
+    pressure = film.pressure(solution.state)
+    area = section.copies * section.radius * section.width
+    shear = (1.0 - grid.cover) * grid.area * theta / gap_height(section, motion.d, grid.centre)[:, None]
+    weights = axial_weights(grid.z, section.far == "symmetry")
+    face = gap_height(section, motion.d, grid.phi[1:])[:, None] * weights
+    face = face * 0.5 * (theta + np.roll(theta, -1, axis=0))
+    rise = np.roll(pressure, -1, axis=0) - pressure
+    whole = oil_fraction(film, solution) if factor == "global" else 1.0
+    couette = -(section.radius**2) * section.viscosity / section.clearance * slip * area * float(shear.sum())
+    poiseuille = -0.5 * section.clearance * area * section.pressure_scale * float((face * rise).sum())
+    return Torque(whole * couette, whole * poiseuille)
+
+
+def oil_fraction(film: VolumeFilm, solution: VolumeSolution) -> float:
+    """The factor (4.46): mean of theta over the film without grooves and holes."""
+    area = (1.0 - film.grid.cover) * film.grid.area
+    return float((area * solution.state.fraction).sum() / area.sum())
+
+
+def oil_balance(film: VolumeFilm, solution: VolumeSolution) -> OilBalance:
+    """The flows of a solution in m^3/s, by the whole bearing."""
+    section, flows = film.section, solution.flows
+    scale = section.copies * section.radius * section.width * section.clearance
+    return OilBalance(
+        scale * flows.inflow, scale * flows.outflow, scale * flows.supply, scale * flows.ends, flows.defect
+    )
+
+
+def peak(film: VolumeFilm, pressure: Array) -> float:
+    """The largest scaled gauge pressure, between the cells' middles by a parabola in either direction."""
+    grid = film.grid
+    i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
+    highest = float(pressure[i, j])
+    if grid.fixed[i, j]:
+        return highest
+    m, k = grid.shape
+    step = np.diff(grid.phi)
+    before, behind = 0.5 * (step[i - 1] + step[i]), 0.5 * (step[i] + step[(i + 1) % m])
+    around = _vertex(float(pressure[i - 1, j]), highest, float(pressure[(i + 1) % m, j]), before, behind)
+    if j == 0 or k == 1:
+        return around
+    z = grid.height
+    mirrored = j == k - 1
+    above = highest if mirrored else float(pressure[i, j + 1])
+    gap = 2.0 * (1.0 - z[j]) if mirrored else z[j + 1] - z[j]
+    if mirrored and film.section.far != "symmetry":
+        return around
+    along = _vertex(float(pressure[i, j - 1]), highest, above, z[j] - z[j - 1], gap)
+    return around + along - highest
+
+
+def _vertex(low: float, middle: float, high: float, before: float, behind: float) -> float:
+    """Largest value of the parabola through three points at -before, 0, behind, the middle one being the highest."""
+    slope_low, slope_high = (middle - low) / before, (high - middle) / behind
+    bend = (slope_high - slope_low) / (before + behind)
+    slope = slope_low + bend * before
+    return middle if bend >= 0.0 else middle - 0.25 * slope**2 / bend
+
+
+def estimate(fine: tuple[float, float], coarse: tuple[float, float], order: float = FRONTS) -> float:
+    """Relative error of a force from the same one on a mesh twice as coarse, by Richardson's extrapolation."""
+    size = float(np.hypot(*fine))
+    difference = float(np.hypot(fine[0] - coarse[0], fine[1] - coarse[1]))
+    return difference / (2.0**order - 1.0) / size if size > 0.0 else 0.0

@@ -1,0 +1,1 @@
+"""Penalty films without openings, tabulated over eccentricity, direction of motion and speed."""

@@ -1,0 +1,144 @@
+"""A film whose law makes oil where the pressure falls too low, without openings: forces, solved and tabulated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.errors import NotConverged
+from frbcli.film.cavitation.compiled import law_code
+from frbcli.film.cavitation.law import CellState
+from frbcli.film.cavitation.penalty import Penalty
+from frbcli.film.cells.axial import axial_weights
+from frbcli.film.cells.data import BY_ECCENTRICITY_AND_SPEED, STANDS
+from frbcli.film.cells.grid import VolumeGrid, fitted_grid
+from frbcli.film.cells.plain.balance import Balance, Motion, Storage
+from frbcli.film.gap import Section, gap_rate
+from frbcli.film.grid import Array
+from frbcli.film.penalty_table.rows import LIMIT, row_forces
+from frbcli.film.penalty_table.table import slow_speed, source_table, table_numbers
+from frbcli.film.rectangles.film_force import SOURCE, FilmData
+from frbcli.film.rectangles.table import Mesh
+
+CENTRED = 1e-6  # eccentricity that stands for the centre
+
+
+@dataclass(frozen=True)
+class RowEquations:
+    """The balances of the cells at an eccentricity, by pressures above that of cavitation and by velocities.
+
+    stencil: (ENTRIES, m, k) matrix; loads: (3, m, k) net outflow at the cavitation pressure: at rest, and per velocity
+    along and across the line of centres; area: (m, k); push: (2, m) and width: (k,) weights of the force.
+    """
+
+    stencil: Array
+    loads: Array
+    area: Array
+    push: Array
+    width: Array
+
+
+def row_equations(section: Section, grid: VolumeGrid, eccentricity: float) -> RowEquations:
+    """The equations of a section without openings, its ends at given pressures; the line of centres lies along x."""
+    level = (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale
+    zero, one = np.zeros(grid.shape), np.ones(grid.shape)
+    state = CellState(level * one, one, zero, one, zero, zero)
+    outflows = []
+    for v in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)):
+        rate = gap_rate(v, grid.centre)[:, None]
+        balance = Balance(section, grid, Motion((eccentricity, 0.0), v, 0.0))
+        outflow, _, matrix = balance.residual(state, Storage(rate, np.zeros_like(rate)))
+        outflows.append(outflow)
+    return RowEquations(
+        np.array([matrix.centre, matrix.before, matrix.behind, matrix.below, matrix.above]),
+        np.array([outflows[0], outflows[1] - outflows[0], outflows[2] - outflows[0]]),
+        np.ascontiguousarray(grid.area),
+        np.array([-np.diff(np.cos(grid.phi)), -np.diff(np.sin(grid.phi))]),
+        axial_weights(grid.z, section.far == "symmetry"),
+    )
+
+
+@dataclass(frozen=True)
+class SourceFilm:
+    """A section with a penalty whose parameters follow what `follows` says (data.py), on mesh.circumferential x
+    mesh.axial cells. A law that follows the speed of rotation takes the cavitation pressure at all edges."""
+
+    section: Section
+    law: Penalty
+    follows: int
+    mesh: Mesh
+
+    @property
+    def relative(self) -> bool:
+        """Whether the law's pressure follows the speed of rotation."""
+        return self.follows == BY_ECCENTRICITY_AND_SPEED
+
+    @property
+    def numbers(self) -> Array:
+        """Of the table, see table_numbers."""
+        return table_numbers(self.law.steepness, self.relative)
+
+    def forces(self, eccentricity: float, velocities: Array) -> Array:
+        """(d, l, 2) integrals of P (cos Theta, sin Theta) over the section for w (d, l, 2), 1/s or over the speed of
+        rotation, along and across the line of centres; see row_forces. Raises NotConverged."""
+        eccentricity = max(eccentricity, CENTRED)
+        section, along = _half(self.section, self.mesh.axial)
+        grid = fitted_grid(section, (eccentricity, 0.0), self.mesh.circumferential, along)
+        equations = row_equations(section, grid, eccentricity)
+        kind, prefactor, steepness = law_code(self.law)
+        if self.follows != STANDS:
+            steepness *= 10.0 ** (-2.0 * eccentricity)
+        law = np.array([kind, prefactor, steepness])
+        forces = np.empty(velocities.shape)
+        most = row_forces(
+            law,
+            slow_speed(-math.log(1.0 - eccentricity), self.numbers),
+            equations.stencil,
+            equations.loads,
+            equations.area,
+            equations.push,
+            equations.width,
+            np.ascontiguousarray(velocities),
+            forces,
+        )
+        if most == LIMIT or not np.all(np.isfinite(forces)):
+            raise NotConverged(
+                f"the film did not settle at an eccentricity of {eccentricity:.4f} while it was tabulated; "
+                'set film.solution = "cells", or another accuracy.mesh'
+            )
+        return forces
+
+    def force(self, displacement: Array, velocity: Array, omega: float) -> Array:
+        """(2,) force of the whole bearing in N, solved for this motion; SI units. Raises NotConverged."""
+        clearance = self.section.clearance
+        d, v = np.asarray(displacement) / clearance, np.asarray(velocity) / clearance
+        w = v + 0.5 * omega * np.array([d[1], -d[0]])
+        eccentricity = math.hypot(*d)
+        c, s = d / eccentricity if eccentricity > CENTRED else np.array([1.0, 0.0])
+        turn = np.array([[c, s], [-s, c]])
+        rate = max(abs(omega), 1.0) if self.relative else 1.0
+        at = self.forces(eccentricity, (turn @ w / rate)[None, None, :])[0, 0]
+        force: Array = force_scale(self.section) * rate * turn.T @ at
+        return force
+
+    def film(self) -> FilmData:
+        """The film, tabulated, for the time loop. Raises NotConverged."""
+        table = source_table(self.forces, self.numbers)
+        return FilmData(SOURCE, 0, force_scale(self.section), 0.0, 0.0, 0.0, table, self.numbers)
+
+
+def force_scale(section: Section) -> float:
+    """Turns the integral of P over one section into the force of the whole bearing, N s."""
+    return section.copies * section.radius * section.width * section.pressure_scale
+
+
+def _half(section: Section, along: int) -> tuple[Section, int]:
+    """Half of a section that is symmetric about its own middle, and the cells along it."""
+    if section.far == "symmetry":
+        return section, max(2, (along + 1) // 2)
+    if section.far_pressure != 0.0:
+        return section, along
+    half = replace(section, width=0.5 * section.width, copies=2 * section.copies, far="symmetry")
+    return half, max(2, (along + 1) // 2)

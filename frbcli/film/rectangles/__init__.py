@@ -1,0 +1,1 @@
+"""Films whose developed gap is made of rectangles: closed forms, tables, chains between axial grooves."""

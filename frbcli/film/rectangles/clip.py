@@ -1,0 +1,110 @@
+"""The half-Sommerfeld (Guembel) condition (3.29): the pressure below the cavitation pressure is replaced by it.
+
+The clipped pressure is integrated exactly along phi: where a quadratic element changes sign its root is the limit of
+the integral. Forces are then continuously differentiable, and their derivatives are integrals over the same region.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from frbcli.film.grid import Array
+from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, element_lengths, gauss_angles
+
+
+@njit(cache=True, error_model="numpy")
+def force_weights(vertices: Array) -> Array:
+    """(2, 3, m) integrals of each element's shape functions times cos(Theta) and sin(Theta)."""
+    m = vertices.shape[0]
+    lengths, angles = element_lengths(vertices), gauss_angles(vertices)
+    weights = np.zeros((2, 3, m))
+    for e in range(m):
+        for g in range(3):
+            for i in range(3):
+                share = GAUSS_WEIGHTS[g] * lengths[e] * SHAPE[i, g]
+                weights[0, i, e] += share * math.cos(angles[e, g])
+                weights[1, i, e] += share * math.sin(angles[e, g])
+    return weights
+
+
+@njit(cache=True, error_model="numpy")
+def _roots(p0, p1, p2):  # type: ignore[no-untyped-def]
+    """The two crossing points of the quadratic through p0, p1, p2 at 0, 1/2, 1, ascending; 2.0 where there is none."""
+    a, b = 2.0 * (p0 - 2.0 * p1 + p2), -3.0 * p0 + 4.0 * p1 - p2
+    first = second = 2.0
+    scale = abs(p0) + abs(p1) + abs(p2)
+    if abs(a) < 1e-12 * scale:
+        if b != 0.0:
+            first = -p0 / b
+    else:
+        discriminant = b * b - 4.0 * a * p0
+        if discriminant > 0.0:
+            q = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
+            first = q / a
+            if q != 0.0:
+                second = p0 / q
+    if not 0.0 < first < 1.0:
+        first = 2.0
+    if not 0.0 < second < 1.0:
+        second = 2.0
+    return min(first, second), max(first, second)
+
+
+@njit(cache=True, error_model="numpy")
+def clipped_line(fields, level, vertices, lengths, weights, result):  # type: ignore[no-untyped-def]
+    """Integrals over one turn at one axial position, over the region where the pressure fields[0] exceeds the level.
+
+    fields: (r, 2 m) nodal values: the pressure, then its derivatives; result (r, 2) += integrals of (fields[0] - level)
+    and of each derivative times cos(Theta), sin(Theta).
+    """
+    m, r = lengths.shape[0], fields.shape[0]
+    for e in range(m):
+        i0, i1, i2 = 2 * e, 2 * e + 1, (2 * e + 2 if e + 1 < m else 0)
+        p0, p1, p2 = fields[0, i0] - level, fields[0, i1] - level, fields[0, i2] - level
+        if p0 <= 0.0 and p1 <= 0.0 and p2 <= 0.0:
+            continue
+        if p0 >= 0.0 and p1 >= 0.0 and p2 >= 0.0:
+            for c in range(2):
+                w0, w1, w2 = weights[c, 0, e], weights[c, 1, e], weights[c, 2, e]
+                result[0, c] += w0 * p0 + w1 * p1 + w2 * p2
+                for k in range(1, r):
+                    result[k, c] += w0 * fields[k, i0] + w1 * fields[k, i1] + w2 * fields[k, i2]
+            continue
+        cut_element(fields, i0, i1, i2, p0, p1, p2, vertices[e], lengths[e], result)
+
+
+@njit(cache=True, error_model="numpy")
+def cut_element(fields, i0, i1, i2, p0, p1, p2, start_angle, length, result):  # type: ignore[no-untyped-def]
+    """result += integrals over the part of one element where the quadratic through p0, p1, p2 is positive."""
+    first, second = _roots(p0, p1, p2)
+    middle = start_angle + 0.5 * length
+    cos_middle, sin_middle = math.cos(middle), math.sin(middle)
+    start = 0.0
+    for piece in range(3):
+        end = min(1.0, first if piece == 0 else (second if piece == 1 else 1.0))
+        if end <= start:
+            continue
+        for g in range(3):
+            xi = start + (end - start) * GAUSS_POINTS[g]
+            n0, n1, n2 = (1 - xi) * (1 - 2 * xi), 4 * xi * (1 - xi), xi * (2 * xi - 1)
+            pressure = n0 * p0 + n1 * p1 + n2 * p2
+            if pressure <= 0.0:
+                break  # the whole piece lies below the level
+            share = GAUSS_WEIGHTS[g] * (end - start) * length
+            # The angle from the middle is small: its series is exact to round-off and much quicker.
+            a = (xi - 0.5) * length
+            b = a * a
+            cos_a = 1.0 - b / 2.0 * (1.0 - b / 12.0 * (1.0 - b / 30.0 * (1.0 - b / 56.0 * (1.0 - b / 90.0))))
+            sin_a = a * (1.0 - b / 6.0 * (1.0 - b / 20.0 * (1.0 - b / 42.0 * (1.0 - b / 72.0))))
+            cosine = share * (cos_middle * cos_a - sin_middle * sin_a)
+            sine = share * (sin_middle * cos_a + cos_middle * sin_a)
+            result[0, 0] += cosine * pressure
+            result[0, 1] += sine * pressure
+            for k in range(1, fields.shape[0]):
+                value = n0 * fields[k, i0] + n1 * fields[k, i1] + n2 * fields[k, i2]
+                result[k, 0] += cosine * value
+                result[k, 1] += sine * value
+        start = end

@@ -1,0 +1,123 @@
+"""One film as the time loop sees it: force and derivatives from displacement, velocity and angular speed.
+
+All films share one type, FilmData, so that the time loop is compiled once and found in the cache by every later start.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from frbcli.film.grid import Array
+from frbcli.film.penalty_table.table import source_force
+from frbcli.film.rectangles.chain import chain_force
+from frbcli.film.rectangles.fields import fields_force
+from frbcli.film.rectangles.short import short_closed, short_general
+from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, table_force
+
+SHORT, SHORT_GENERAL, TABLE, FIELDS, CHAIN, SOURCE = range(6)
+NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
+
+
+class FilmData(NamedTuple):
+    """One film, ready to be evaluated. Arrays that a kind does not use are empty.
+
+    kind: SHORT | SHORT_GENERAL | TABLE | FIELDS | CHAIN | SOURCE; clipped: half-Sommerfeld (1) or Sommerfeld (0);
+    force_scale: N s, turns the integral of P over one section into the force of the whole bearing;
+    slenderness: (b/R)^2; sigma, level: scaled gauge pressures of supply and cavity, 1/s;
+    table: of force_table (TABLE), field_table (FIELDS), chain_table (CHAIN) or source_table (SOURCE); grid: of
+    field_grid, chain_grid or table_numbers.
+    """
+
+    kind: int
+    clipped: int
+    force_scale: float
+    slenderness: float
+    sigma: float
+    level: float
+    table: Array
+    grid: Array
+
+
+@njit(cache=True, error_model="numpy")
+def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+    """Force of one whole bearing on the journal.
+
+    d: displacement over the clearance (|d| < 1 is the caller's duty); v: its rate in 1/s; omega: omega_J + omega_S in
+    rad/s.
+    Returns the force (x, y) in N, its derivatives by d (xx, xy, yx, yy) in N and by v (xx, xy, yx, yy) in N s: ten
+    numbers.
+    """
+    # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
+    w_x, w_y = v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x
+    if film.kind == CHAIN:
+        return _standing(film, d_x, d_y, w_x, w_y, omega)
+    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
+    c, s = (d_x / eccentricity, d_y / eccentricity) if eccentricity > NEAR_CENTRE else (1.0, 0.0)
+    beyond = eccentricity > LARGEST_ECCENTRICITY
+    eccentricity = min(max(eccentricity, NEAR_CENTRE), LARGEST_ECCENTRICITY)
+    w_r, w_t = c * w_x + s * w_y, c * w_y - s * w_x
+    if film.kind == SHORT:
+        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = short_closed(
+            eccentricity, w_r, w_t, film.slenderness, film.clipped == 1
+        )
+    elif film.kind == SHORT_GENERAL:
+        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = short_general(
+            eccentricity, w_r, w_t, film.slenderness, film.sigma, film.level
+        )
+    elif film.kind == TABLE:
+        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = table_force(film.table, eccentricity, w_r, w_t)
+    elif film.kind == SOURCE:
+        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = source_force(
+            film.table, film.grid, eccentricity, w_r, w_t, omega
+        )
+    else:
+        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = fields_force(
+            film.table, film.grid, eccentricity, w_r, w_t, film.sigma, film.level
+        )
+    if beyond:  # in contact: the film stays as it is at the end of the tables
+        e_r = e_t = 0.0
+    # Turning the displacement by dt turns force and w with it: dF/dt = (J F - dF/dw J w) / eps
+    t_r = (w_rr * w_t - w_rt * w_r - f_t) / eccentricity
+    t_t = (f_r + w_tr * w_t - w_tt * w_r) / eccentricity
+    d_xx, d_xy, d_yx, d_yy = _turned(w_rr, w_rt, w_tr, w_tt, c, s)
+    k_xx, k_xy, k_yx, k_yy = _turned(e_r, t_r, e_t, t_t, c, s)
+    return _with_rotation(
+        film.force_scale, omega, c * f_r - s * f_t, s * f_r + c * f_t, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+    """film_force of a film whose grooves stand still: solved in the frame of the shell."""
+    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
+    if eccentricity > LARGEST_ECCENTRICITY:  # in contact: the film stays as it is just before
+        d_x, d_y = d_x * LARGEST_ECCENTRICITY / eccentricity, d_y * LARGEST_ECCENTRICITY / eccentricity
+    f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy = chain_force(
+        film.table, film.grid, d_x, d_y, w_x, w_y, film.level, film.clipped == 1
+    )
+    return _with_rotation(film.force_scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy)
+
+
+@njit(cache=True, error_model="numpy")
+def _with_rotation(  # type: ignore[no-untyped-def]
+    scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
+):
+    """The ten numbers of film_force from derivatives at fixed w: dw/dd = -(omega/2) J adds to the stiffness."""
+    half = 0.5 * omega
+    return (
+        scale * f_x, scale * f_y,
+        scale * (k_xx - half * d_xy), scale * (k_xy + half * d_xx),
+        scale * (k_yx - half * d_yy), scale * (k_yy + half * d_yx),
+        scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy,
+    )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy")
+def _turned(rr, rt, tr, tt, c, s):  # type: ignore[no-untyped-def]
+    """Q [[rr, rt], [tr, tt]] Q^T with Q the rotation by the angle of (c, s)."""
+    e, f = c * rr - s * tr, c * rt - s * tt
+    g, h = s * rr + c * tr, s * rt + c * tt
+    return e * c - f * s, e * s + f * c, g * c - h * s, g * s + h * c

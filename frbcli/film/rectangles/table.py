@@ -1,0 +1,232 @@
+"""Finite-length films of rectangular gaps, tabulated over the eccentricity.
+
+Where all pressures at the edges equal the cavitation pressure the force of a rectangular film is proportional to |w|
+and depends, in the frame of the line of centres, on the eccentricity and the direction of w alone. That table is made
+from the compiled solver of `modal.py` in some 30 ms before a run starts, and evaluated a few hundred thousand times
+during it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.rectangles.clip import clipped_line, force_weights
+from frbcli.film.rectangles.modal import element_lengths, unit_fields
+
+DEPTH_STEP = 0.1  # step of x = -ln(1 - eps): forces grow at most like exp(2.5 x), interpolated to 1e-5
+LARGEST_ECCENTRICITY = 0.9999  # end of the tables
+DIRECTIONS = 33  # of w, over half a turn; the other half is its mirror image
+LINES = 8  # Gauss points over half the width
+STRETCH = 0.25  # w_t is scaled by (1 - eps)^STRETCH: keeps the force smooth in the direction of w up to contact
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Elements of one film section: `axial` over its width, `circumferential` over the turn (quadratic)."""
+
+    axial: int
+    circumferential: int
+
+
+def eccentricity_axis() -> Array:
+    """(n,) eccentricities of the tables, equidistant in x = -ln(1 - eps)."""
+    end = -math.log(1.0 - LARGEST_ECCENTRICITY)
+    eccentricities: Array = 1.0 - np.exp(-DEPTH_STEP * np.arange(math.ceil(end / DEPTH_STEP) + 1))
+    return eccentricities
+
+
+def half_width_lines(lines: int = LINES) -> tuple[Array, Array]:
+    """Axial positions in [0, 1/2] and the weights that integrate an axially symmetric function over [0, 1]."""
+    points, weights = np.polynomial.legendre.leggauss(lines)
+    return 0.25 * (points + 1.0), 0.5 * weights
+
+
+def ring_contraction(eccentricity: float) -> float:
+    """Contraction of the grid around the narrowest gap that suits one eccentricity, see ring_vertices."""
+    return float(max((1.0 - eccentricity) / (1.0 + eccentricity), 1e-6) ** 0.3)
+
+
+@njit(cache=True, error_model="numpy")
+def clipped_forces(  # type: ignore[no-untyped-def]
+    fields, shapes, weights_z, directions, stretch, stretch_rate, vertices, clipped
+):
+    """(d, 3, 2) force of unit w in each direction, its derivatives by the direction and by the eccentricity.
+
+    fields: (4, k, n) of unit_fields; shapes: (k, l) modes at the axial lines with weights_z (l,); directions: (d,)
+    angles of (w_r, stretch * w_t). Axis 2: components along and across the line of centres.
+    """
+    lengths, weights = element_lengths(vertices), force_weights(vertices)
+    n, lines, modes = fields.shape[2], shapes.shape[1], shapes.shape[0]
+    result = np.zeros((directions.shape[0], 3, 2))
+    unit = np.empty((4, n))
+    line = np.empty((3, n))
+    level = 0.0 if clipped else -1e300
+    for z in range(lines):
+        unit[:] = 0.0
+        for k in range(modes):
+            for f in range(4):
+                for i in range(n):
+                    unit[f, i] += shapes[k, z] * fields[f, k, i]
+        for i in range(n):  # the tangential field of a unit stretched w_t
+            unit[3, i] = unit[3, i] / stretch - unit[1, i] * stretch_rate / (stretch * stretch)
+            unit[1, i] /= stretch
+        for j in range(directions.shape[0]):
+            cosine, sine = math.cos(directions[j]), math.sin(directions[j])
+            for i in range(n):
+                line[0, i] = cosine * unit[0, i] + sine * unit[1, i]
+                line[1, i] = cosine * unit[1, i] - sine * unit[0, i]
+                line[2, i] = cosine * unit[2, i] + sine * unit[3, i]
+            part = np.zeros((3, 2))
+            clipped_line(line, level, vertices, lengths, weights, part)
+            if not clipped:  # the level itself integrates to zero in exact arithmetic only
+                part[0, :] = 0.0
+                for e in range(lengths.shape[0]):
+                    e2 = 2 * e + 2 if 2 * e + 2 < n else 0
+                    for c in range(2):
+                        part[0, c] += (
+                            weights[c, 0, e] * line[0, 2 * e]
+                            + weights[c, 1, e] * line[0, 2 * e + 1]
+                            + weights[c, 2, e] * line[0, e2]
+                        )
+            for a in range(3):
+                for c in range(2):
+                    result[j, a, c] += weights_z[z] * part[a, c]
+    return result
+
+
+def force_table(mesh: Mesh, radius_to_width: float, clipped: bool) -> Array:
+    """(n, DIRECTIONS, 2, 4) force of one section: value, derivative by x, by the direction psi, and by both.
+
+    Radial component even in psi, tangential odd. Entries are integrals of P (cos Theta, sin Theta) dz dTheta for |w| =
+    1/s, with w measured as (w_r, w_t (1 - eps)^STRETCH).
+    """
+    modes = axial_modes(axial_vertices(mesh.axial))
+    lines, weights = half_width_lines()
+    shapes = modes.at(lines)
+    eccentricities = eccentricity_axis()
+    directions = np.linspace(0.0, np.pi, DIRECTIONS)
+    table = np.empty((len(eccentricities), DIRECTIONS, 2, 4))
+    for i, eccentricity in enumerate(eccentricities):
+        vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
+        fields = unit_fields(vertices, eccentricity, radius_to_width**2 * modes.eigenvalues, modes.loads)
+        stretch = (1.0 - eccentricity) ** STRETCH
+        forces = clipped_forces(
+            fields, shapes, weights, directions, stretch, -STRETCH * stretch / (1.0 - eccentricity), vertices, clipped
+        )
+        table[i, :, :, 0] = forces[:, 0]
+        table[i, :, :, 1] = forces[:, 2] * (1.0 - eccentricity)
+        table[i, :, :, 2] = forces[:, 1]
+    for c, parity in enumerate((1.0, -1.0)):
+        table[:, :, c, 3] = _slopes(table[:, :, c, 1], directions[1], parity)
+    return table
+
+
+def _slopes(values: Array, step: float, parity: float) -> Array:
+    """(n, d) slopes of the cubic splines through values (n, d) over half a turn, mirrored at both ends with this
+    parity.
+
+    Between neighbours s' + 4 s + s'' = 3 (f'' - f') / step; beyond an end the slope of an even function is mirrored
+    with the other sign: it is zero there; that of an odd function with the same.
+    """
+    from scipy.linalg import solve_banded
+
+    n = values.shape[1]
+    bands = np.ones((3, n))
+    bands[1] = 4.0
+    right = np.empty_like(values)
+    right[:, 1:-1] = 3.0 / step * (values[:, 2:] - values[:, :-2])
+    if parity > 0.0:
+        bands[0, 1] = bands[2, -2] = 0.0
+        right[:, 0] = right[:, -1] = 0.0
+    else:
+        bands[0, 1] = bands[2, -2] = 2.0
+        right[:, 0], right[:, -1] = 6.0 / step * values[:, 1], -6.0 / step * values[:, -2]
+    slopes: Array = solve_banded((1, 1), bands, right.T).T
+    return slopes
+
+
+@njit(cache=True, error_model="numpy")
+def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
+    """Bicubic Hermite interpolation of force_table.
+
+    Returns, in the frame of the line of centres, the force (r, t), its derivatives by w (rr, rt, tr, tt) and by the
+    eccentricity (r, t): eight numbers.
+    """
+    n, directions = table.shape[0], table.shape[1]
+    x = -math.log(1.0 - eccentricity)
+    stretch = math.exp(-STRETCH * x)
+    u_t = abs(w_t) * stretch
+    speed = math.sqrt(w_r * w_r + u_t * u_t)
+    cosine, sine = (w_r / speed, u_t / speed) if speed > 0.0 else (1.0, 0.0)
+    step_psi = math.pi / (directions - 1)
+    a, b = x / DEPTH_STEP, math.atan2(u_t, w_r) / step_psi
+    i, j = min(int(a), n - 2), min(int(b), directions - 2)
+    a -= i
+    b -= j
+    # Hermite's four polynomials in each direction and their slopes
+    a0, a1 = (1 + 2 * a) * (1 - a) ** 2, a * a * (3 - 2 * a)
+    a2, a3 = DEPTH_STEP * a * (1 - a) ** 2, DEPTH_STEP * a * a * (a - 1)
+    c1, c2, c3 = 6 * a * (1 - a) / DEPTH_STEP, (1 - a) * (1 - 3 * a), a * (3 * a - 2)
+    b0, b1 = (1 + 2 * b) * (1 - b) ** 2, b * b * (3 - 2 * b)
+    b2, b3 = step_psi * b * (1 - b) ** 2, step_psi * b * b * (b - 1)
+    d1, d2, d3 = 6 * b * (1 - b) / step_psi, (1 - b) * (1 - 3 * b), b * (3 * b - 2)
+    mirror = -1.0 if w_t < 0.0 else 1.0
+    g_r, x_r, p_r = _hermite(table, i, j, 0, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3)
+    g_t, x_t, p_t = _hermite(table, i, j, 1, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3)
+    by_u_r, by_u_t = g_r * sine + p_r * cosine, g_t * sine + p_t * cosine
+    # d(u_t)/dx = -STRETCH u_t; dx/deps = 1 / (1 - eps)
+    depth = 1.0 / (1.0 - eccentricity)
+    return (
+        speed * g_r,
+        mirror * speed * g_t,
+        g_r * cosine - p_r * sine,
+        mirror * by_u_r * stretch,
+        mirror * (g_t * cosine - p_t * sine),
+        by_u_t * stretch,
+        depth * (speed * x_r - STRETCH * by_u_r * u_t),
+        mirror * depth * (speed * x_t - STRETCH * by_u_t * u_t),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _hermite(  # type: ignore[no-untyped-def]
+    table, i, j, c, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3
+):
+    """Value, derivative by x and by psi of component c in the cell (i, j)."""
+    # along psi first, at both ends of the cell in x: value and x-derivative, and the psi-slopes of both
+    v0 = b0 * table[i, j, c, 0] + b1 * table[i, j + 1, c, 0] + b2 * table[i, j, c, 2] + b3 * table[i, j + 1, c, 2]
+    v1 = (
+        b0 * table[i + 1, j, c, 0]
+        + b1 * table[i + 1, j + 1, c, 0]
+        + b2 * table[i + 1, j, c, 2]
+        + b3 * table[i + 1, j + 1, c, 2]
+    )
+    x0 = b0 * table[i, j, c, 1] + b1 * table[i, j + 1, c, 1] + b2 * table[i, j, c, 3] + b3 * table[i, j + 1, c, 3]
+    x1 = (
+        b0 * table[i + 1, j, c, 1]
+        + b1 * table[i + 1, j + 1, c, 1]
+        + b2 * table[i + 1, j, c, 3]
+        + b3 * table[i + 1, j + 1, c, 3]
+    )
+    p0 = d1 * (table[i, j + 1, c, 0] - table[i, j, c, 0]) + d2 * table[i, j, c, 2] + d3 * table[i, j + 1, c, 2]
+    p1 = (
+        d1 * (table[i + 1, j + 1, c, 0] - table[i + 1, j, c, 0])
+        + d2 * table[i + 1, j, c, 2]
+        + d3 * table[i + 1, j + 1, c, 2]
+    )
+    q0 = d1 * (table[i, j + 1, c, 1] - table[i, j, c, 1]) + d2 * table[i, j, c, 3] + d3 * table[i, j + 1, c, 3]
+    q1 = (
+        d1 * (table[i + 1, j + 1, c, 1] - table[i + 1, j, c, 1])
+        + d2 * table[i + 1, j, c, 3]
+        + d3 * table[i + 1, j + 1, c, 3]
+    )
+    return (
+        a0 * v0 + a1 * v1 + a2 * x0 + a3 * x1,
+        c1 * (v1 - v0) + c2 * x0 + c3 * x1,
+        a0 * p0 + a1 * p1 + a2 * q0 + a3 * q1,
+    )

@@ -1,0 +1,116 @@
+"""A rectangular film solved at one position, without any table: what the tables are measured against."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.clip import clipped_line, force_weights
+from frbcli.film.rectangles.modal import element_lengths, unit_fields
+from frbcli.film.rectangles.table import Mesh, ring_contraction
+
+LINES = 24  # Gauss points over the width
+
+
+@dataclass(frozen=True)
+class SectionPressure:
+    """Sommerfeld's pressure of one section, scaled, gauge: values (2 m, LINES) at the ring's nodes and axial Gauss
+    points.
+
+    vertices: (m,) Theta of the element boundaries; z, weights: (LINES,) axial positions and weights over [0, 1].
+    """
+
+    vertices: Array
+    z: Array
+    weights: Array
+    values: Array
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Motion in the frame of the line of centres: eccentricity, unit vectors along and across it, w_r and w_t in
+    1/s."""
+
+    eccentricity: float
+    along: Array
+    across: Array
+    w_r: float
+    w_t: float
+
+
+def _motion(bearing: RectangularBearing, displacement: Array, velocity: Array, omega: float) -> _Motion:
+    d, v = np.asarray(displacement) / bearing.clearance, np.asarray(velocity) / bearing.clearance
+    eccentricity = math.hypot(d[0], d[1])
+    along = np.array([1.0, 0.0]) if eccentricity == 0.0 else d / eccentricity
+    across = np.array([-along[1], along[0]])
+    w = v - 0.5 * omega * np.array([-d[1], d[0]])
+    return _Motion(eccentricity, along, across, float(w @ along), float(w @ across))
+
+
+def direct_force(
+    bearing: RectangularBearing, cavitation: str, mesh: Mesh, displacement: Array, velocity: Array, omega: float
+) -> Array:
+    """(2,) force in N on the journal by the whole bearing; displacement in m, velocity in m/s, omega in rad/s."""
+    motion = _motion(bearing, displacement, velocity, omega)
+    pressure = section_pressure(bearing, mesh, motion.eccentricity, motion.w_r, motion.w_t)
+    level = _scaled(bearing, bearing.cavitation_pressure)
+    if cavitation == "sommerfeld":  # any level below all pressures: a constant pressure carries nothing
+        level = float(pressure.values.min())
+    weights, lengths = force_weights(pressure.vertices), element_lengths(pressure.vertices)
+    total = np.zeros(2)
+    for line, share in zip(pressure.values.T, pressure.weights, strict=True):
+        part = np.zeros((1, 2))
+        clipped_line(np.ascontiguousarray(line[None]), level, pressure.vertices, lengths, weights, part)
+        total += share * part[0]
+    force: Array = bearing.force_scale * (total[0] * motion.along + total[1] * motion.across)
+    return force
+
+
+def section_pressure(
+    bearing: RectangularBearing, mesh: Mesh, eccentricity: float, w_r: float, w_t: float
+) -> SectionPressure:
+    """Solve one section in the frame of the line of centres for the velocity (w_r, w_t) in 1/s."""
+    modes = axial_modes(axial_vertices(mesh.axial))
+    vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
+    radius_to_width = 0.5 * bearing.diameter / bearing.section_width
+    fields = unit_fields(vertices, eccentricity, radius_to_width**2 * modes.eigenvalues, modes.loads)
+    points, weights = np.polynomial.legendre.leggauss(LINES)
+    z = 0.5 * (points + 1.0)
+    supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
+    values = (w_r * fields[0] + w_t * fields[1]).T @ modes.at(z) + _scaled(bearing, supply) * z
+    return SectionPressure(vertices, z, 0.5 * weights, values)
+
+
+def largest_pressure(
+    bearing: RectangularBearing, mesh: Mesh, displacement: Array, velocity: Array, omega: float
+) -> float:
+    """Largest pressure in the film, Pa absolute: parabola through the largest nodal value and its neighbours, each
+    way."""
+    motion = _motion(bearing, displacement, velocity, omega)
+    field = section_pressure(bearing, mesh, motion.eccentricity, motion.w_r, motion.w_t)
+    n = len(field.vertices)
+    angles = np.empty(2 * n)
+    angles[::2] = field.vertices
+    angles[1::2] = field.vertices + 0.5 * element_lengths(field.vertices)
+    i, j = np.unravel_index(np.argmax(field.values), field.values.shape)
+    ring = np.array([i - 1, i, i + 1]) % (2 * n)
+    gain = _summit(np.unwrap(angles[ring]), field.values[ring, j]) - field.values[i, j]
+    if 0 < j < LINES - 1:
+        gain += _summit(field.z[j - 1 : j + 2], field.values[i, j - 1 : j + 2]) - field.values[i, j]
+    highest = float((field.values[i, j] + gain) * bearing.pressure_scale + bearing.ambient_pressure)
+    edge = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
+    return max(highest, edge)
+
+
+def _summit(x: Array, y: Array) -> float:
+    """Largest value of the parabola through three points with the largest in the middle."""
+    a, b, c = np.polyfit(x - x[1], y, 2)
+    return float(c - b * b / (4.0 * a)) if a < 0.0 else float(y[1])
+
+
+def _scaled(bearing: RectangularBearing, pressure: float) -> float:
+    return (pressure - bearing.ambient_pressure) / bearing.pressure_scale

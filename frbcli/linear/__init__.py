@@ -1,0 +1,1 @@
+"""Resting positions, stability, natural modes."""

@@ -1,0 +1,184 @@
+"""Natural frequencies and shapes of a turbocharger's rotor, free or on isotropic springs, over its speed.
+
+The rotor is undamped and not reduced: what a bearing's stiffness makes of the shaft, before any film is computed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, reduction_error, whirl_modes
+from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from frbcli.linear.stability import RestingFilm
+
+Array = NDArray[np.float64]
+
+SPEEDS = 25  # of the default sweep
+SHOWN = 4  # slowest modes of each direction
+RIGID_SHARE = 0.5  # of the kinetic energy, from which on a motion is that of a rigid body
+
+
+@dataclass(frozen=True)
+class Mode:
+    """direction: "forward" | "backward" whirl; kind: "conical" | "cylindrical" | "bending"; shape: (k,) deflection
+    along the shaft, the largest 1."""
+
+    frequency_Hz: float
+    direction: str
+    kind: str
+    shape: Array
+
+
+@dataclass(frozen=True)
+class ModesAtSpeed:
+    """The slowest modes of each direction at a rotor speed, ascending in frequency."""
+
+    speed_Hz: float
+    modes: tuple[Mode, ...]
+
+    def directed(self, direction: str) -> tuple[Mode, ...]:
+        """The "forward" or "backward" modes."""
+        return tuple(mode for mode in self.modes if mode.direction == direction)
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes over speed.
+
+    stiffness_N_m: of each bearing, empty for the free rotor; positions_m: (k,) along the shaft; bearings, disks: names
+    and positions in m; free_Hz: slowest bending frequencies of the free rotor at rest; kept: modes of each plane after
+    the reduction of the case; error: what it leaves out at the highest speed, None for the free rotor.
+    """
+
+    case: Case
+    stiffness_N_m: tuple[float, ...]
+    positions_m: Array
+    bearings: tuple[tuple[str, float], ...]
+    disks: tuple[tuple[str, float], ...]
+    mass_kg: float
+    free_Hz: tuple[float, ...]
+    kept: int
+    points: tuple[ModesAtSpeed, ...]
+    error: ReductionError | None
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row per mode: speed_Hz, frequency_Hz, direction, kind."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            [
+                {
+                    "speed_Hz": point.speed_Hz,
+                    "frequency_Hz": mode.frequency_Hz,
+                    "direction": mode.direction,
+                    "kind": mode.kind,
+                }
+                for point in self.points
+                for mode in point.modes
+            ]
+        )
+
+
+def natural_modes(
+    case: Case, stiffness: float | Sequence[float] | None = None, speeds_Hz: Sequence[float] | None = None
+) -> Modes:
+    """Natural modes of the turbocharger's rotor of a case.
+
+    stiffness: N/m, of each bearing or of all alike, the same in all directions; None leaves the rotor free. speeds_Hz:
+    rotor speeds, by default from standstill to the highest speed of the case. Raises InputError if the case has another
+    rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not as many as bearings.
+    """
+    rotor = turbocharger_of(case)
+    speeds = np.linspace(0.0, max(case.speed.start, case.speed.end), SPEEDS) if speeds_Hz is None else speeds_Hz
+    springs = _springs(case, stiffness)
+    _check(case, springs, speeds)
+    modes = all_modes(case)
+    places = [journal.position for journal in journals(case)]
+    stations = np.stack([modes.at(place) for place in places])
+    held = stations[: len(springs)]
+    omega = 2 * math.pi * np.asarray(speeds, dtype=np.float64)
+    kept = kept_modes(rotor, modes)
+    return Modes(
+        case,
+        tuple(springs.tolist()),
+        modes.positions,
+        tuple((journal.name, journal.position) for journal in journals(case)),
+        tuple((wheel.name, wheel.position) for wheel in wheels(case)),
+        float(modes.weight[0] ** 2),
+        tuple((modes.frequencies[RIGID : RIGID + SHOWN] / (2 * math.pi)).tolist()),
+        kept,
+        tuple(_at_speed(modes, held, springs, value) for value in omega),
+        reduction_error(modes, kept, held, springs, float(np.max(omega))) if len(springs) else None,
+    )
+
+
+def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
+    """Isotropic stiffness in N/m of each bearing of a case out of its films at rest: the mean of both directions, in
+    series where a ring floats between two films. Cross stiffness is left out: it drives a whirl and holds nothing."""
+    single = iter(0.5 * float(np.trace(film.stiffness)) for film in films)
+    return tuple(
+        1 / (1 / next(single) + 1 / next(single)) if isinstance(bearing, FloatingRingBearing) else next(single)
+        for bearing in case.bearings
+    )
+
+
+def _springs(case: Case, stiffness: float | Sequence[float] | None) -> Array:
+    """(b,) N/m, empty for a free rotor."""
+    given = [] if stiffness is None else [stiffness] if isinstance(stiffness, int | float) else list(stiffness)
+    if len(given) == 1:
+        given *= len(case.bearings)
+    if len(given) not in (0, len(case.bearings)):
+        fault = Fault("stiffness", f"{len(given)} values", None, "are not as many as bearings.", "Give one for each.")
+        raise InputError(case.name or "case", (fault,))
+    return np.array(given, dtype=np.float64)
+
+
+def _at_speed(modes: FreeModes, springs: Array, stiffness: Array, omega: float) -> ModesAtSpeed:
+    found = whirl_modes(modes, springs, stiffness, omega)
+    shown: list[Mode] = []
+    for sign, direction in ((1, "forward"), (-1, "backward")):
+        for index in np.flatnonzero(found.frequencies * sign > 0)[:SHOWN]:
+            coordinates = found.coordinates[:, index]
+            shape = modes.shapes @ coordinates
+            frequency = abs(float(found.frequencies[index])) / (2 * math.pi)
+            kind = _kind(coordinates, shape)
+            shown.append(Mode(frequency, direction, kind, shape / shape[np.argmax(np.abs(shape))]))
+    shown.sort(key=lambda mode: mode.frequency_Hz)
+    return ModesAtSpeed(omega / (2 * math.pi), tuple(shown))
+
+
+def _kind(coordinates: Array, shape: Array) -> str:
+    """Of a motion of unit length in the free modes with this shape; a conical one has a node on the shaft."""
+    if coordinates[:RIGID] @ coordinates[:RIGID] < RIGID_SHARE:
+        return "bending"
+    return "conical" if shape.min() < 0 < shape.max() else "cylindrical"
+
+
+def _check(case: Case, springs: Array, speeds: Sequence[float] | Array) -> None:
+    faults = [
+        Fault("stiffness", f"{spring:g} N/m", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".')
+        for spring in springs
+        if not (math.isfinite(spring) and spring > 0)
+    ]
+    if not len(speeds):
+        faults.append(Fault("speed", "", None, "is missing.", 'Write e.g. "350 Hz".'))
+    faults += [
+        Fault("speed", f"{speed:g} Hz", None, "must be at least 0.", 'Write e.g. "350 Hz".')
+        for speed in speeds
+        if not (math.isfinite(speed) and speed >= 0)
+    ]
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))

@@ -1,0 +1,163 @@
+"""Where a rotor rests at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
+
+The rotor is linear, and the films see its journals only. So it is condensed first to the force that it puts on its
+films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
+rings turn with the speeds at which the torques on them balance (ring_speeds); the two are found by turns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.errors import NotConverged
+from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
+from frbcli.rotor.linear import LinearRotor
+from frbcli.scene.system import System
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 80
+STEP = 1e-10  # of the clearance: a full Newton step below this ends the iteration
+SMALLEST_GAP_CHANGE = 0.25  # a step may shrink 1 - eps of a journal to this share of it
+SMALLEST_SHARE = 1e-8  # of a Newton step that is tried
+OUTER_START = 0.9  # eccentricity of the last start that is tried
+RING_STEP = 1e-10  # of the rotor speed: a change of the rings' speeds below this ends their iteration
+RING_ITERATIONS = 40
+
+
+@dataclass(frozen=True)
+class HeldRotor:
+    """A rotor with its journals held at D (2 films,) in m.
+
+    load: (2 films,) force in N that it puts on the films at D = 0, and stiffness (2 films, 2 films) N/m: it puts on
+    load - stiffness @ D; shape: (n,) m its deflection at D = 0, and following (n, 2 films): its deflection is
+    shape + following @ D.
+    """
+
+    load: Array
+    stiffness: Array
+    shape: Array
+    following: Array
+
+
+def held_rotor(rotor: LinearRotor) -> HeldRotor:
+    """The rotor under its static load as its journals see it; what neither spring nor film holds, the angle of a
+    ring, stays at zero."""
+    n, p = rotor.size, rotor.journals.reshape(-1, rotor.size)
+    count = len(p)
+    loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
+    held = np.block([[rotor.stiffness + np.diag(loose.astype(float)), p.T], [p, np.zeros((count, count))]])
+    given = np.zeros((n + count, 1 + count))
+    given[:n, 0] = rotor.static_load
+    given[n:, 1:] = np.eye(count)
+    solution = np.linalg.solve(held, given)
+    return HeldRotor(solution[n:, 0], -solution[n:, 1:], solution[:n, 0], solution[:n, 1:])
+
+
+def resting_position(system: System, omega: float, start: Array | None = None) -> Array:
+    """(n,) displacements in which the rotor rests at omega rad/s; sought from those of `start`, then from the centre.
+
+    Raises NotConverged if no start leads to one.
+    """
+    held, clearances = held_rotor(system.rotor), np.array(system.clearances)[:, None]
+    loads = held.load.reshape(-1, 2)
+    size = np.linalg.norm(loads, axis=1, keepdims=True)
+    along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
+    starts = [np.zeros_like(loads), OUTER_START * clearances * along]
+    if start is not None:
+        starts.insert(0, system.rotor.journals @ start)
+    left = np.inf
+    for first in starts:
+        position, residual = _settle(system, held, omega, first)
+        if residual is None:
+            deflection: Array = held.shape + held.following @ position.ravel()
+            return deflection
+        left = min(left, residual)
+    raise NotConverged(
+        f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
+        f"{len(starts)} starts, {left:.3g} N of {np.linalg.norm(loads):.3g} N left over. "
+        "Ask for a higher speed, or give the bearing more viscosity, more width or less clearance."
+    )
+
+
+def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
+    """(rings,) speeds in rad/s at which the torques (4.17) on the rings balance, films full of oil, at rest in
+    `position` (films, 2) in m.
+
+    Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
+    """
+    eccentricity = np.linalg.norm(position, axis=1) / np.array(system.clearances)
+    drag = system.sheared * np.array(system.drags) * 2.0 * np.pi / np.sqrt(np.maximum(1.0 - eccentricity**2, 1e-6))
+    carried = (held.load - held.stiffness @ position.ravel()).reshape(-1, 2) / system.rotor.multiplicity[:, None]
+    moment = 0.5 * (position[:, 0] * carried[:, 1] - position[:, 1] * carried[:, 0])
+    if system.torque != "all":
+        moment = np.zeros_like(moment)
+    speeds = np.zeros(system.ring_count)
+    for ring in range(system.ring_count):
+        outer, inner = (system.bodies == ring).T
+        driving = omega * drag[inner] + moment[inner] + moment[outer]
+        speeds[ring] = (driving / (drag[inner] + drag[outer])).item()
+    return speeds
+
+
+def _settle(system: System, held: HeldRotor, omega: float, start: Array) -> tuple[Array, float | None]:
+    """As _newton, with the rings' speeds of the position reached."""
+    position, turning = start, ring_speeds(system, held, omega, start)
+    for _ in range(RING_ITERATIONS):
+        position, residual = _newton(system, held, system.omegas(omega, turning), position)
+        following = ring_speeds(system, held, omega, position)
+        if residual is not None or np.all(np.abs(following - turning) <= RING_STEP * abs(omega)):
+            return position, residual
+        turning = following
+    return position, float(np.linalg.norm(held.load))
+
+
+def _newton(system: System, held: HeldRotor, omegas: Array, start: Array) -> tuple[Array, float | None]:
+    """The position reached, and the force in N that is left over, None if it is at rest."""
+    clearances = np.array(system.clearances)[:, None]
+    position = start
+    residual, slope = _balance(system, held, omegas, position)
+    for _ in range(ITERATIONS):
+        if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
+            break
+        step = -np.linalg.solve(slope, residual).reshape(-1, 2)
+        share, length = _largest_share(position / clearances, step / clearances), np.abs(step / clearances).max()
+        while share > SMALLEST_SHARE:
+            following = position + share * step
+            new_residual, new_slope = _balance(system, held, omegas, following)
+            if length < STEP or np.linalg.norm(new_residual) < np.linalg.norm(residual):
+                break
+            share *= 0.5
+        else:
+            break
+        position, residual, slope = following, new_residual, new_slope
+        if length < STEP and share == 1.0:
+            resting = np.linalg.norm(position / clearances, axis=1).max() < LARGEST_ECCENTRICITY
+            return position, None if resting else float(np.linalg.norm(residual))
+    return position, float(np.linalg.norm(residual))
+
+
+def _largest_share(position: Array, step: Array) -> float:
+    """Largest share of a step, at most 1, after which each journal keeps some of its gap; both over the clearance."""
+    share = 1.0
+    for d, change in zip(position, step, strict=True):
+        limit = 1.0 - SMALLEST_GAP_CHANGE * (1.0 - np.linalg.norm(d))
+        a, b, c = change @ change, d @ change, d @ d - limit**2
+        if a > 0.0:
+            share = min(share, float((np.sqrt(b * b - a * c) - b) / a))  # where |d + share * change| = limit
+    return share
+
+
+def _balance(system: System, held: HeldRotor, omegas: Array, position: Array) -> tuple[Array, Array]:
+    """Sum (2 films,) of what rotor and films put on the journals, N, and its derivative (2 films, 2 films), N/m."""
+    surplus = held.load - held.stiffness @ position.ravel()
+    slope = -held.stiffness.copy()
+    for i, many in enumerate(system.rotor.multiplicity):
+        force = system.film_force(i, position[i], np.zeros(2), float(omegas[i]))
+        own = slice(2 * i, 2 * i + 2)
+        surplus[own] += many * force.force
+        slope[own, own] += many * force.by_displacement
+    return surplus, slope

@@ -1,0 +1,261 @@
+"""Linear stability: where the journals rest, how stiff the films are there, and which motions grow.
+
+At a speed the rotor rests where films and shaft carry its static load. Linearised there, each film is a stiffness
+K = -dF/dD and a damping D = -dF/dD' per bearing, and the rotor has 2 n eigenvalues: a positive real part is a motion
+that grows. The threshold is the lowest speed at which one of the oscillating motions, a whirl, begins to grow.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.film.rectangles.bearing import FilmForce
+from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.ring import without_spins
+from frbcli.scene.channels import coupled
+from frbcli.scene.films import rings
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import System, make_system
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+Eigenvalues = NDArray[np.complex128]
+
+SPEEDS = 60  # of the default sweep: 5 Hz apart from 0 to 300 Hz
+THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed: one step of brentq beyond 1e-6, and below what anybody measures
+OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
+
+
+@dataclass(frozen=True)
+class RestingFilm:
+    """A film at its resting position.
+
+    displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the displacement, positive
+    counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m: of one bearing.
+    """
+
+    displacement: Array
+    attitude_deg: float
+    stiffness: Array
+    damping: Array
+
+    @property
+    def eccentricity(self) -> float:
+        """Relative eccentricity of the journal."""
+        return math.hypot(*self.displacement)
+
+
+@dataclass(frozen=True)
+class StabilityPoint:
+    """The rotor at one speed.
+
+    films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
+    ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
+    ring_speeds_Hz: of the rings that turn; their speeds stand while the rotor moves. All are empty where no resting
+    position was found; problem then says why, and is empty otherwise.
+    """
+
+    speed_Hz: float
+    films: tuple[RestingFilm, ...]
+    eigenvalues: Eigenvalues
+    problem: str = ""
+    ring_speeds_Hz: tuple[float, ...] = ()
+
+    @property
+    def status(self) -> str:
+        """ "resting" | "not-converged"."""
+        return "not-converged" if self.problem else "resting"
+
+    @property
+    def oscillating(self) -> Eigenvalues:
+        """One eigenvalue of each oscillating pair, that with positive imaginary part, ascending in frequency."""
+        return self.eigenvalues[self.eigenvalues.imag > OSCILLATING * np.abs(self.eigenvalues)]
+
+    @property
+    def critical(self) -> complex:
+        """The eigenvalue with the largest real part among those that oscillate, or among all where none does."""
+        candidates = self.oscillating if len(self.oscillating) else self.eigenvalues
+        return complex(candidates[np.argmax(candidates.real)]) if len(candidates) else complex(math.nan, math.nan)
+
+    @property
+    def growth(self) -> float:
+        """Real part of the critical eigenvalue, 1/s: positive where a whirl grows; NaN without a resting position."""
+        return self.critical.real
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """Where a whirl begins to grow: rotor speed and frequency of the whirl."""
+
+    speed_Hz: float
+    frequency_Hz: float
+
+    @property
+    def whirl_ratio(self) -> float:
+        """Frequency of the whirl over the rotor speed."""
+        return self.frequency_Hz / self.speed_Hz
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Linear stability of a case.
+
+    points: at the speeds asked for; sweep: at all speeds that were computed, ascending; threshold: None if none lies
+    in the swept range; note then says why.
+    """
+
+    case: Case
+    points: tuple[StabilityPoint, ...]
+    sweep: tuple[StabilityPoint, ...]
+    threshold: Threshold | None
+    note: str
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per point: speed, resting position and coefficients of each film, critical eigenvalue."""
+        import pandas as pd
+
+        return pd.DataFrame([_row(point) for point in self.points])
+
+
+def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability:
+    """Resting positions, linear coefficients and eigenvalues at speeds_Hz (> 0), and the threshold of stability.
+
+    The threshold is sought in the speed range of the case, whatever speeds_Hz; without speeds_Hz the points are those
+    of this sweep. A speed without a resting position gives a point that says so.
+
+    Raises InputError if the case cannot be modelled or a speed is not positive.
+    """
+    asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
+    _check_speeds(case, asked)
+    if any(coupled(bearing) for bearing in rings(case)):
+        problem = "ties the two films of a ring together: neither has coefficients of its own."
+        fault = Fault("bearing.channels", "coupled", None, problem, 'Take channels = "pressure" here.')
+        raise InputError(case.name or "case", (fault,))
+    system = make_system(case, make_plan(case))
+    if system.remembers:
+        problem = "keeps oil of its own: eight coefficients per speed do not say whether the rotor is stable."
+        remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
+        raise InputError(case.name or "case", (Fault("film.cavitation", case.film.cavitation, None, problem, remedy),))
+    speeds = sorted(set(default_speeds(case)) | set(asked))
+    found: dict[float, StabilityPoint] = {}
+    start: Array | None = None
+    for speed in reversed(speeds):  # from near the centre, where a fast journal rests, outwards
+        found[speed], start = _point(system, speed, start)
+    sweep = tuple(found[speed] for speed in speeds)
+    threshold, note = _threshold(system, sweep)
+    return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
+
+
+def default_speeds(case: Case) -> tuple[float, ...]:
+    """Speeds in Hz, greater than zero, that sweep the range of the case."""
+    low, high = sorted((case.speed.start, case.speed.end))
+    if low > 0.0:
+        return tuple(np.unique(np.linspace(low, high, SPEEDS)).tolist())
+    return tuple(np.linspace(0.0, high, SPEEDS + 1)[1:].tolist()) if high > 0.0 else ()
+
+
+def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Eigenvalues:
+    """(2 n,) eigenvalues in 1/s of the rotor at omega rad/s on bearings of stiffness and damping (films, 2, 2).
+
+    Ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
+    """
+    bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
+    k = rotor.stiffness + (bearings @ stiffness @ rotor.journals).sum(axis=0)
+    d = rotor.damping + omega * rotor.gyroscopic + (bearings @ damping @ rotor.journals).sum(axis=0)
+    n = rotor.size
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(rotor.mass, np.hstack([k, d]))]])
+    values = np.linalg.eigvals(state).astype(complex)
+    return values[np.lexsort((-values.imag, values.real, np.abs(values.imag)))]
+
+
+def _point(system: System, speed: float, start: Array | None) -> tuple[StabilityPoint, Array | None]:
+    """The point at a speed in Hz, sought from the displacements `start`, and those from which to seek the next one."""
+    try:
+        resting = resting_position(system, 2 * math.pi * speed, start)
+    except NotConverged as error:
+        return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), start
+    return _linearised(system, speed, resting), resting
+
+
+def _linearised(system: System, speed: float, resting: Array) -> StabilityPoint:
+    """The point at a speed in Hz of the rotor that rests in the displacements `resting` (n,)."""
+    omega = 2 * math.pi * speed
+    journals = system.rotor.journals @ resting
+    turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
+    films = tuple(
+        _resting_film(system.film_force(i, place, np.zeros(2), float(total)), place / system.clearances[i])
+        for i, (place, total) in enumerate(zip(journals, system.omegas(omega, turning), strict=True))
+    )
+    stiffness, damping = np.stack([film.stiffness for film in films]), np.stack([film.damping for film in films])
+    values = eigenvalues(without_spins(system.rotor, system.ring_count), omega, stiffness, damping)
+    return StabilityPoint(speed, films, values, ring_speeds_Hz=tuple((turning / (2 * math.pi)).tolist()))
+
+
+def _resting_film(force: FilmForce, displacement: Array) -> RestingFilm:
+    load, attitude = -force.force, math.nan
+    if load.any():
+        across = load[0] * displacement[1] - load[1] * displacement[0]
+        attitude = math.degrees(math.atan2(across, load @ displacement))
+    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity)
+
+
+def _threshold(system: System, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
+    """The lowest speed at which the growth passes zero from below, and a note where there is none."""
+    resting = [point for point in sweep if point.films]
+    if not resting:
+        return None, "No threshold: there is no resting position in the whole range of speeds."
+    if resting[0].growth > 0.0:
+        return None, f"Unstable from the lowest speed on: the threshold lies below {resting[0].speed_Hz:.4g} Hz."
+    for below, above in itertools.pairwise(resting):
+        if below.growth <= 0.0 < above.growth:
+            return _crossing(system, below.speed_Hz, above.speed_Hz)
+    return None, f"Stable up to the highest speed: the threshold lies above {resting[-1].speed_Hz:.4g} Hz."
+
+
+def _crossing(system: System, low: float, high: float) -> tuple[Threshold | None, str]:
+    """The threshold between two speeds in Hz."""
+
+    def at(speed: float) -> StabilityPoint:
+        return _linearised(system, speed, resting_position(system, 2 * math.pi * speed))
+
+    try:
+        speed = brentq(lambda s: at(s).growth, low, high, xtol=THRESHOLD_TOLERANCE * low, rtol=THRESHOLD_TOLERANCE)
+        return Threshold(speed, at(speed).critical.imag / (2 * math.pi)), ""
+    except NotConverged as error:
+        return None, f"A threshold lies between {low:.4g} and {high:.4g} Hz, but was not found: {error}"
+
+
+def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
+    if not speeds:
+        given = f"{case.speed.end:g} Hz"
+        raise InputError(case.name or "case", (Fault("speed.to", given, None, "leaves no speed.", "Let it turn."),))
+    wrong = [speed for speed in speeds if not (math.isfinite(speed) and speed > 0.0)]
+    if wrong:
+        faults = [Fault("speed", f"{s:g} Hz", None, "must be greater than 0.", 'Write e.g. "25 Hz".') for s in wrong]
+        raise InputError(case.name or "case", tuple(faults))
+
+
+def _row(point: StabilityPoint) -> dict[str, float | str]:
+    """The columns of to_pandas; names of a second and later film end with their number."""
+    row: dict[str, float | str] = {"speed_Hz": point.speed_Hz, "status": point.status}
+    for number, film in enumerate(point.films):
+        end = f"_{number + 1}" if number else ""
+        row |= {f"eccentricity{end}": film.eccentricity, f"attitude_deg{end}": film.attitude_deg}
+        row |= {f"d{axis}{end}": value for axis, value in zip("xy", film.displacement.tolist(), strict=True)}
+        for name, matrix in (("stiffness_{}_N_m", film.stiffness), ("damping_{}_N_s_m", film.damping)):
+            row |= {name.format("xy"[i] + "xy"[j]) + end: float(value) for (i, j), value in np.ndenumerate(matrix)}
+    critical = point.critical
+    return row | {"growth_1_s": critical.real, "frequency_Hz": critical.imag / (2 * math.pi)}

@@ -1,0 +1,67 @@
+"""What two runs of the same machine on different cells say of the error of either."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.scene.system import System
+from frbcli.solve.state import Array
+
+ORDER = 0.66  # in which errors fall with the cells, at least: that of films that fill again after they starved
+
+
+@dataclass(frozen=True)
+class CellErrors:
+    """Largest errors of a run by its cells: of eccentricities, of displacements over the clearance, of the speeds of
+    rings over the largest one of the rotor, of the mean oil fractions."""
+
+    eccentricity: float
+    displacement: float
+    ring_speed: float
+    oil_fraction: float
+
+
+@dataclass(frozen=True)
+class FewerCells:
+    """A run on fewer cells. ratio: of the cells in a direction, the geometric mean of both; samples: at the same times
+    as those of the run, see March; the last ones may be missing."""
+
+    ratio: float
+    samples: Array
+
+    def at(self, there: NDArray[np.bool_]) -> FewerCells:
+        """The same at some of the times only, (m,) whether at each time of the run."""
+        return replace(self, samples=self.samples[there[: len(self.samples)].nonzero()])
+
+    def error(self, samples: Array, system: System) -> CellErrors | None:
+        """Errors of a run in its samples; None if the run on fewer cells does not reach that far."""
+        if len(samples) > len(self.samples):
+            return None
+        n, rotor = system.rotor.size, system.rotor
+        other = self.samples[: len(samples)]
+        apart = samples - other
+        films = [_largest(apart[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True)]
+        eccentric = films
+        if system.ring_count:  # nothing is said of the directions of films between rings
+            runs = samples[:, :n], other[:, :n]
+            eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
+        points = [_largest(apart[:, :n], pick, system.clearances[0]) for _, pick in rotor.points]
+        spins = np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0)
+        top = max(float(np.abs(samples[:, 2 * n]).max(initial=0.0)), 1e-300)
+        oil = np.abs(apart[:, 2 * n + 1 :][:, list(system.remembering)]).max(initial=0.0)
+        # e(ratio h) - e(h) = e(h) (ratio^ORDER - 1)
+        share = 1.0 / (self.ratio**ORDER - 1.0)
+        found = max(eccentric), max([*films, *points]), float(spins) / top, float(oil)
+        return CellErrors(*(share * off for off in found))
+
+
+def _largest(apart: Array, pick: Array, room: float) -> float:
+    return float(np.hypot(*(apart @ pick.T).T).max(initial=0.0)) / room
+
+
+def _parted(one: Array, other: Array, pick: Array, room: float) -> float:
+    lengths = (np.hypot(*(q @ pick.T).T) for q in (one, other))
+    return float(np.abs(np.subtract(*lengths)).max(initial=0.0)) / room

@@ -1,0 +1,173 @@
+"""The error budget of a run: what each approximation leaves, and what all of them leave of the displacements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.rotor.reduction import reduction_error
+from frbcli.runs.cell_errors import FewerCells
+from frbcli.runs.film_error import film_force_errors
+from frbcli.runs.oil import oil_defect
+from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.plan import Plan
+from frbcli.scene.segments import Stretch
+from frbcli.scene.system import System
+from frbcli.scene.turbocharger import all_modes, journals, kept_modes
+from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array, State
+from frbcli.solve.time_loop import NEWTON_SHARE
+
+# Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films (ERROR_MEMORY):
+# that is 2 to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
+COUNTED = 0.5
+# A disk swings on for long after the films have calmed the journals: there the true error is 0.2 to 2.5 times the sum
+# of all of them.
+LASTING = 3.0
+# A force that is wrong by a share moves its journal by so many shares of the eccentricity; cells on a mesh twice as
+# fine still keep a third of their error. Of cells this is too little where errors add up on the way: it is said only
+# where the run was not made on fewer cells.
+FILM_REACH, CELL_REACH = 2.0, 3.0
+BEFORE_WHIRL = 0.85  # of the time of its event: a whirl has grown for a while before it is seen
+PARTING = ("onset", "contact")  # from there on two runs differ in phase, however exact they are
+
+
+def error_budget(
+    case: Case,
+    plan: Plan,
+    system: System,
+    until: float,
+    steps: tuple[float, float],
+    times: Array,
+    samples: Array,
+    fewer: FewerCells | None = None,
+) -> dict[str, float | None]:
+    """The error of a run as its JSON has it, beside that of quick_budget. until: see quiet_until, s.
+
+    steps: as summed, until then; times (m,) s, samples (m, 2 n + 1 ...): see film_force_errors; fewer: the same run on
+    fewer cells. None stands for what the run does not have: see docs/accuracy.md.
+    """
+    films = film_force_errors(plan, system, case, times, samples)
+    force, short = films.relative(), plan.theory == "short"
+    fading, whole = steps
+    quiet = samples[times <= until]
+    eccentric, displaced = (_reach(system, quiet, parts) for parts in (_journals(system), _points(system)))
+    by_films = (FILM_REACH if plan.cells is None else CELL_REACH) * (films.relative(until) or force or 0.0)
+    in_films, in_points = by_films * eccentric, by_films * max(eccentric, displaced)
+    cells = None if fewer is None else fewer.error(quiet, system)
+    if cells is not None:
+        in_films, in_points = cells.eccentricity, cells.displacement
+    return {
+        "film_force_relative": force,
+        "model_relative": force if short else None,
+        "mesh_relative": None if short else force,
+        "coupling": None if plan.coupling in (SEMI, APART) else NEWTON_SHARE * plan.tolerance,
+        "modal_reduction": modal_reduction(case, system, samples),
+        "cells": None if cells is None else cells.eccentricity,
+        "eccentricity": COUNTED * fading + in_films,
+        "displacement": LASTING * whole + in_points,
+        "ring_speed": COUNTED * fading + cells.ring_speed if cells is not None and system.ring_count else None,
+        "oil_fraction": COUNTED * fading + cells.oil_fraction if cells is not None and system.remembers else None,
+        "quiet_until_s": until,
+    }
+
+
+def budget_of_stretches(
+    known: Mapping[str, float | None],
+    stretches: Sequence[Stretch],
+    plan: Plan,
+    until: float,
+    steps: tuple[float, float],
+    times: Array,
+    samples: Array,
+    fewer: FewerCells | None = None,
+) -> dict[str, float | None]:
+    """The largest of each part over the stretches that a run has passed, and of what is known of it beside; otherwise
+    as error_budget."""
+    begins, budgets = [stretch.start for stretch in stretches], [known]
+    for stretch, first, last in zip(stretches, begins, [*begins[1:], math.inf], strict=True):
+        there = (times >= first) & (times < last)
+        less = None if fewer is None else fewer.at(there)
+        budgets.append(
+            error_budget(stretch.case, plan, stretch.system, until, steps, times[there], samples[there], less)
+        )
+    keys = {key: None for budget in budgets for key in budget}
+    values = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
+    return {key: max(found, default=None) for key, found in values.items()}
+
+
+def summed(errors: Array, share: float) -> tuple[float, float]:
+    """(largest fading sum, sum without fading) of the local errors in a share of the time of a run; errors: of State.
+    The span in which that share ends counts in full."""
+    spans = max(1, math.ceil(share * errors.shape[1]))
+    return float(errors[ERRORS_LARGEST, :spans].max()), float(errors[ERRORS_SUM, :spans].sum())
+
+
+def _reach(system: System, samples: Array, parts: Iterable[tuple[Array, float]]) -> float:
+    """Largest displacement over the clearance of some parts in the samples (m, 2 n + 1)."""
+    places = (samples[:, : system.rotor.size] @ pick.T / clearance for pick, clearance in parts)
+    return max((float(np.hypot(*at.T).max(initial=0.0)) for at in places), default=0.0)
+
+
+def quick_budget(system: System, state: State, angle: float) -> dict[str, float | None]:
+    """What is known of the error without any work, while a run goes on. angle: of the rotor, rad."""
+    return {
+        "time_integration": COUNTED * float(state.numbers[ERROR_LARGEST]),
+        "film_force_relative": None,
+        "oil_balance_relative": oil_defect(system, state, angle),
+    }
+
+
+def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:
+    """Time in s until which runs can be compared point by point."""
+    return min([end, *(BEFORE_WHIRL * float(event["t_s"]) for event in events if event["kind"] in PARTING)])
+
+
+def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
+    """Relative error of the slowest natural frequencies by the rotor's modes that were left out, on springs as stiff as
+    the films in the middle of the run; None for a rotor that has no modes, or without a state whose films are stiff."""
+    if not isinstance(case.rotor, TurbochargerRotor) or not len(samples):
+        return None
+    modes = all_modes(case)
+    kept = kept_modes(case.rotor, modes)
+    if kept == len(modes.frequencies):
+        return 0.0
+    try:
+        springs = _springs(case, system, samples[len(samples) // 2])
+    except NotConverged:
+        return None
+    if not np.all(springs > 0.0):
+        return None
+    stations = np.stack([modes.at(journal.position) for journal in journals(case)])
+    top = 2.0 * math.pi * max(case.speed.start, case.speed.end)
+    return reduction_error(modes, kept, stations, springs, top).frequency
+
+
+def _springs(case: Case, system: System, sample: Array) -> Array:
+    """(b,) N/m: the mean of both directions of each bearing's stiffness, in series where a ring floats."""
+    n = system.rotor.size
+    q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
+    omegas = system.omegas(omega, v[list(system.spins)])
+    forces = (
+        system.film_force(i, pick @ q, pick @ v, float(omegas[i])) for i, pick in enumerate(system.rotor.journals)
+    )
+    single = (-0.5 * float(np.trace(force.by_displacement)) for force in forces)
+    return np.array([
+        1.0 / (1.0 / next(single) + 1.0 / next(single)) if isinstance(bearing, FloatingRingBearing) else next(single)
+        for bearing in case.bearings
+    ])
+
+
+def _journals(system: System) -> Iterable[tuple[Array, float]]:
+    return zip(system.rotor.journals, system.clearances, strict=True)
+
+
+def _points(system: System) -> Iterable[tuple[Array, float]]:
+    """Disks and all else that moves; displacements count over the first film's clearance."""
+    return ((pick, system.clearances[0]) for _, pick in system.rotor.points)

@@ -1,0 +1,159 @@
+"""The error of the film forces of a run: solved again at states that the run has passed, on a finer mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.plain.loads import force
+from frbcli.film.cells.steady_force import steady_solution
+from frbcli.film.published.film import PublishedFilm, published_force
+from frbcli.film.rectangles.bearing import evaluate
+from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
+from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.scene.films import film_places, volume_film
+from frbcli.scene.plan import Plan
+from frbcli.scene.published import run_film
+from frbcli.scene.system import System, planned_film
+from frbcli.solve.state import Array
+
+SAMPLES = 48  # states of a run
+PUBLISHED_SAMPLES = 6  # in the published form, where settling takes hundreds of assemblies
+RICHARDSON = 3.0  # an error of second order on twice the elements, from the difference to it
+CELL_SAMPLES = 8  # of them for films with cells, which have to settle at each
+COMPARED = 192  # states of a run with cells, in which it is held against one on fewer
+FINER = 2  # elements more in each direction
+SMALL_FORCE = 0.1  # of the median one
+QUANTILE = 0.9  # of the errors, by the force that they belong to: what nearly all of it stays below
+
+
+@dataclass(frozen=True)
+class FilmErrors:
+    """Of the forces of all films at sampled states of a run. times: (m,) s; errors, sizes: (m,) N."""
+
+    times: Array
+    errors: Array
+    sizes: Array
+
+    def relative(self, until: float = math.inf) -> float | None:
+        """What nearly all of the force is wrong by at most, relative, in states until a time in s; None without any.
+
+        A film that carries next to nothing counts as little as it carries."""
+        kept = self.times <= until
+        errors, sizes = self.errors[kept], self.sizes[kept]
+        if not len(errors) or sizes.max() == 0.0:
+            return None
+        # A film that carries next to nothing for a moment, as at the start, is held to what it carries otherwise.
+        scales = np.maximum(sizes, SMALL_FORCE * float(np.median(sizes)))
+        relative = errors / np.maximum(scales, np.finfo(float).tiny)
+        order = np.argsort(relative)
+        carried = np.cumsum(sizes[order])
+        return float(relative[order][np.searchsorted(carried, QUANTILE * carried[-1])])
+
+
+def sample_count(plan: Plan) -> int:
+    """How many states of a run are kept."""
+    return SAMPLES if plan.cells is None else COMPARED
+
+
+def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samples: Array) -> FilmErrors:
+    """Errors of the film forces at sampled states, against the finite-length film on a finer mesh.
+
+    times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s. For the short-bearing
+    theory this is the error of the theory itself. Films with oil of their own are compared in states in which it has
+    settled; where it does not settle, they are left out.
+    """
+    if isinstance(system.films, PublishedFilm):
+        forces = _published_forces(system.films, case)
+    elif plan.cells is not None:
+        forces = _cell_forces(plan, system, case)
+    else:
+        forces = _source_forces(plan, system) if system.solved else _closed_forces(plan, system)
+    n, found = system.rotor.size, []
+    most = PUBLISHED_SAMPLES if isinstance(system.films, PublishedFilm) else CELL_SAMPLES
+    every = 1 if plan.cells is None else max(1, len(samples) // most)
+    for t, sample in zip(times[::every], samples[::every], strict=True):
+        q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
+        omegas = system.omegas(omega, v[list(system.spins)])
+        for i, pick in enumerate(system.rotor.journals):
+            at, rate = pick @ q, pick @ v
+            if np.hypot(*at) >= LARGEST_ECCENTRICITY * system.clearances[i]:
+                continue
+            try:
+                exact, force = forces(i, at, rate, float(omegas[i]))
+            except NotConverged:
+                continue
+            found.append((float(t), float(np.hypot(*(force - exact))), float(np.hypot(*exact))))
+    table = np.array(found).reshape(-1, 3)
+    return FilmErrors(table[:, 0], table[:, 1], table[:, 2])
+
+
+Forces = Callable[[int, Array, Array, float], tuple[Array, Array]]
+
+
+def _closed_forces(plan: Plan, system: System) -> Forces:
+    """Exact and own force of a film without cells."""
+    finer = Mesh(FINER * plan.mesh.axial, FINER * plan.mesh.circumferential)
+    # Between axial grooves nothing is tabulated: the same film on the finer mesh is the direct solution.
+    fine = [
+        planned_film(plan, bearing, law, finer) if bearing.grooves else None
+        for bearing, law in zip(system.bearings, system.laws, strict=True)
+    ]
+
+    def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
+        bearing, better = system.bearings[i], fine[i]
+        if better is None:
+            exact = direct_force(bearing, system.laws[i], finer, at, rate, omega)
+        else:
+            exact = evaluate(better, bearing.clearance, at, rate, omega).force
+        return exact, system.film_force(i, at, rate, omega).force
+
+    return forces
+
+
+def _source_forces(plan: Plan, system: System) -> Forces:
+    """Solved force on a finer mesh and tabulated one of a film whose law makes oil."""
+    finer = Mesh(FINER * plan.mesh.axial, FINER * plan.mesh.circumferential)
+    fine = [replace(film, mesh=finer) for film in system.solved]
+
+    def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
+        return fine[i].force(at, rate, omega), system.film_force(i, at, rate, omega).force
+
+    return forces
+
+
+def _published_forces(own: PublishedFilm, case: Case) -> Forces:
+    """Own force of a film in the published form, and as far from it as half as many elements each way tell."""
+    coarse = run_film(case, (max(3, own.mesh.around // 2), max(1, own.mesh.along // 2)))
+
+    def forces(_: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
+        fine = published_force(own, at, rate, omega).force
+        difference = published_force(coarse, at, rate, omega).force - fine
+        return fine, fine + difference / RICHARDSON
+
+    return forces
+
+
+def _cell_forces(plan: Plan, system: System, case: Case) -> Forces:
+    """Fine and own force of a film with cells that has settled."""
+    assert plan.cells is not None
+    cells = FINER * plan.cells[0], FINER * plan.cells[1]
+    fine = [volume_film(case, place, cells)[0] for place in film_places(case)]
+
+    def settled(film: VolumeFilm, follows: int, at: Array, rate: Array, omega: float) -> Array:
+        d, v = at / film.section.clearance, rate / film.section.clearance
+        motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
+        return np.array(force(film, film.pressure(steady_solution(film, follows, motion).state)))
+
+    def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
+        follows = system.follows[i]
+        return settled(fine[i], follows, at, rate, omega), settled(system.volumes[i], follows, at, rate, omega)
+
+    return forces

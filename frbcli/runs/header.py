@@ -1,0 +1,56 @@
+"""Names and units of what a run writes, and the head of its file."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+
+from frbcli.case.schema import Case
+from frbcli.results.store import CLEARANCE_STEP, Header
+from frbcli.scene.segments import Stretch
+from frbcli.scene.system import System
+
+PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
+PROGRAM = "frbcli"
+
+
+def named(quantity: str, film: str) -> str:
+    """The name of a signal of a film or ring, which may be the only one."""
+    return f"{quantity}_{film}" if film else quantity
+
+
+def ring_names(system: System) -> list[str]:
+    """The signals of the rings' speeds."""
+    outer = [name for name, (inside, _) in zip(system.names, system.bodies, strict=True) if inside >= 0]
+    return [f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name in outer]
+
+
+def header(command: str, case: Case, stretches: Sequence[Stretch]) -> Header:
+    """The head of the file of a run. Its clearances, which amplitudes refer to, are the first ones."""
+    system = stretches[0].system
+    lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
+    eccentricities = [named("eccentricity", name) for name in system.names]
+    units = {"time_s": "s", "speed_Hz": "Hz", **dict.fromkeys(eccentricities, ""), **dict.fromkeys(lengths, "m")}
+    remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
+    units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
+    units |= dict.fromkeys(ring_names(system), "Hz")
+    return Header(
+        title=case.title or case.name,
+        command=command,
+        case_name=case.name,
+        case_text=case.source_text,
+        units=units,
+        versions={PROGRAM: _version(PROGRAM), "python": platform.python_version()}
+        | {package: _version(package) for package in PACKAGES},
+        references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
+        | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
+        | {f"{CLEARANCE_STEP}_{number}_s": stretch.start for number, stretch in enumerate(stretches[1:], start=1)},
+    )
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        return "unknown"

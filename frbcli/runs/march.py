@@ -1,0 +1,251 @@
+"""A run under way: it is advanced chunk by chunk, tells how far it is, and can be put down and taken up again."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.film.published.film import PublishedFilm
+from frbcli.rotor.excitation import SpeedProfile
+from frbcli.runs.cell_errors import FewerCells
+from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
+from frbcli.runs.control import LONGEST_STEP, control_of
+from frbcli.runs.cosimulation import in_turn, micro_cost
+from frbcli.runs.error_budget import budget_of_stretches, quick_budget, summed
+from frbcli.runs.film_error import sample_count
+from frbcli.runs.header import named, ring_names
+from frbcli.runs.oil import no_oil_comes_in, oil_passed
+from frbcli.runs.start import first_state, rotor_data
+from frbcli.scene.cost import expected_cost
+from frbcli.scene.plan import Plan
+from frbcli.scene.segments import Stretch, make_stretches
+from frbcli.scene.system import System
+from frbcli.solve.macro_step import advance_in_turn
+from frbcli.solve.published.time_loop import advance_published
+from frbcli.solve.state import (
+    CONTACT,
+    FINISHED,
+    OUTPUTS,
+    REJECTED,
+    RUNNING,
+    SOLVES,
+    STEPS,
+    TIME,
+    TURNS,
+    Array,
+    State,
+)
+from frbcli.solve.tableau import METHODS
+from frbcli.solve.time_loop import advance
+
+BUFFER = 4096  # output samples between two looks at the clock, at least
+BUDGET, CELL_BUDGET = 500, 50  # steps between two looks at the clock: some milliseconds
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a run tells while it goes on. Times in s, speed in Hz; eccentricity: the largest of all films now;
+    for_error: of the same run again, to tell its error."""
+
+    t_s: float
+    end_s: float
+    speed_Hz: float
+    eccentricity: float
+    steps: int
+    steps_per_revolution: float
+    simulated_ms_per_hour: float
+    left_s: float
+    for_error: bool = False
+
+
+class March:
+    """A run under way: the constant parts, the state, the clock.
+
+    Its machine may change on the way (scene/segments.py): all stretches are there from the beginning, one is current.
+    """
+
+    def __init__(self, case: Case, plan: Plan, stretches: Sequence[Stretch], profile: SpeedProfile) -> None:
+        self._case, self._plan = case, plan
+        self._stretches = [stretch for stretch in stretches if stretch.start < profile.end]
+        self._profile = profile.with_stops(stretch.start for stretch in self._stretches)
+        self._take_up(0)
+        system = self._system
+        self._control = control_of(case, plan)
+        self._tableau = METHODS[plan.method].tableau
+        self._state = first_state(case.start, system, profile)
+        self._apart = plan.coupling == "co-simulation"
+        if self._apart:
+            self._state = in_turn(system, self._state, float(profile.speeds[0]))
+        self._advance: Callable[..., Any] = advance_in_turn if self._apart else advance
+        if isinstance(system.films, PublishedFilm):
+            self._advance = advance_published
+        rows = max(BUFFER, 4 * (int(LONGEST_STEP / self._control.output_step) + 2))
+        self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
+        self._oil = np.zeros((rows, len(system.remembering)))
+        # States at some fixed output times, at which the films are solved again and runs compared.
+        self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
+        self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
+        self._predicted_cpu_s = expected_cost(case, plan, profile).cpu_s
+        self._cpu_s = self._wall_s = 0.0
+        self._budget = BUDGET if plan.cells is None else CELL_BUDGET
+
+    def _take_up(self, number: int) -> None:
+        """Make a stretch the current one; the time loop sees the profile up to its end."""
+        self._current, self._system = number, self._stretches[number].system
+        ends = [stretch.start for stretch in self._stretches[number + 1 :]]
+        self._rotor = rotor_data(self._system, self._profile.until(ends[0] if ends else self._profile.end))
+
+    def _change(self) -> int:
+        """At the end of a stretch: the machine and the state of the next one. Returns the status of the run."""
+        before = self._system
+        self._take_up(self._current + 1)
+        if largest_eccentricity(self._system, self._state) >= self._control.contact_eccentricity:
+            return CONTACT  # a shell that closes upon the journal
+        self._state = with_clearances(before, self._system, self._profile, self._state, self._apart)
+        return RUNNING
+
+    @property
+    def plan(self) -> Plan:
+        """What the run follows."""
+        return self._plan
+
+    @property
+    def system(self) -> System:
+        """The current machine."""
+        return self._system
+
+    @property
+    def samples(self) -> Array:
+        """(k, 2 n + 1 + films) states so far at the fixed output times: see film_force_errors, and the mean oil
+        fraction of each film, which is of no meaning where it keeps none."""
+        return self._samples
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+        return float(self._state.numbers[TIME])
+
+    @property
+    def starves(self) -> bool:
+        """Whether a film gets no oil, so that a run that cannot go on has run dry."""
+        return no_oil_comes_in(self._system)
+
+    def compile(self) -> None:
+        """Have the time loop compiled, or found in the cache, before the clock starts."""
+        self._advance(
+            self._rotor, self._system.films, self._tableau, self._control, self._state, 0, self._q, self._v, self._oil
+        )
+
+    def chunk(self) -> tuple[int, dict[str, Array]]:
+        """Advance a while. Returns (status, signals of the output times passed)."""
+        cpu, wall = time.process_time(), time.perf_counter()
+        status, rows = self._advance(
+            self._rotor,
+            self._system.films,
+            self._tableau,
+            self._control,
+            self._state,
+            self._budget,
+            self._q,
+            self._v,
+            self._oil,
+        )
+        self._cpu_s += time.process_time() - cpu
+        self._wall_s += time.perf_counter() - wall
+        first = int(self._state.numbers[OUTPUTS]) - rows
+        times = (first + np.arange(rows)) * self._control.output_step
+        speeds = self._profile.speed(times)
+        kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
+        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept]])
+        self._samples = np.concatenate([self._samples, fresh])
+        signals = self._signals(times, speeds, self._q[:rows], self._v[:rows])
+        if status == FINISHED and self._current + 1 < len(self._stretches):
+            status = self._change()
+        return status, signals
+
+    def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
+        signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
+        system = self._system
+        for name, pick, clearance in zip(system.names, system.rotor.journals, system.clearances, strict=True):
+            journal = q @ pick.T
+            signals[named("eccentricity", name)] = np.hypot(journal[:, 0], journal[:, 1]) / clearance
+        for name, pick in system.rotor.points:
+            point = q @ pick.T
+            signals[f"{name}_x_m"], signals[f"{name}_y_m"] = point[:, 0], point[:, 1]
+        for i, name in enumerate(system.names):
+            if system.remembering[i]:
+                signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
+        for name, spin in zip(ring_names(system), system.spins, strict=True):
+            signals[name] = v[:, spin] / (2 * math.pi)
+        return signals
+
+    def snapshot(self) -> dict[str, Array]:
+        """All that is needed to go on as if the run had not stopped."""
+        clock = np.array([self._cpu_s, self._wall_s])
+        return {**self._state._asdict(), "film_samples": self._samples, "clock": clock}
+
+    def restore(self, checkpoint: dict[str, Array]) -> None:
+        """Take up the state of a checkpoint."""
+        self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
+        self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
+        self._samples = checkpoint["film_samples"].reshape(-1, self._samples.shape[1])
+        self._cpu_s, self._wall_s = (float(value) for value in checkpoint["clock"])
+
+    def cost(self) -> dict[str, float]:
+        """What the run has cost so far, without compilation and without tabulating the films."""
+        numbers = self._state.numbers
+        wall = max(self._wall_s, 1e-9)
+        return {
+            "cpu_s": self._cpu_s,
+            "error_cpu_s": 0.0,  # told when the run has ended
+            "predicted_cpu_s": self._predicted_cpu_s,
+            "wall_s": self._wall_s,
+            "steps": int(numbers[STEPS]),
+            "rejected_steps": int(numbers[REJECTED]),
+            "steps_per_revolution": float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
+            "film_solves": int(numbers[SOLVES]),
+            "ms_per_film_solve": 1e3 * self._cpu_s / max(float(numbers[SOLVES]), 1.0),
+            "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
+            **oil_passed(self._system, self._state),
+            **(micro_cost(self._state, self._cpu_s) if self._apart else {}),
+        }
+
+    def error_so_far(self) -> dict[str, float | None]:
+        """The error of a run that goes on, as far as it costs nothing to know."""
+        return quick_budget(self._system, self._state, self._profile.angle(self.time))
+
+    def again(self, plan: Plan) -> March:
+        """The same run from its beginning, by another plan. Raises NotConverged if it does not begin."""
+        return March(self._case, plan, make_stretches(self._case, plan), self._profile)
+
+    def error(self, until: float, fewer: FewerCells | None = None) -> dict[str, float | None]:
+        """The error of the run, point by point until a time in s: the largest of its stretches. fewer: the same run on
+        fewer cells."""
+        steps = summed(self._state.errors, until / self._profile.end)
+        times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
+        passed = self._stretches[: self._current + 1]
+        return budget_of_stretches(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
+
+    def progress(self, until: float | None = None) -> Progress:
+        """For people who wait. until: s, of a run that is made again to tell the error of another one."""
+        numbers = self._state.numbers
+        t, end = self.time, self._profile.end if until is None else until
+        here = self._system.rotor.journals @ self._state.q / np.array(self._system.clearances)[:, None]
+        rate = t / max(self._wall_s, 1e-9)
+        return Progress(
+            t_s=t,
+            end_s=end,
+            speed_Hz=float(self._profile.speed(np.array([t]))[0]) / (2 * math.pi),
+            eccentricity=float(np.max(np.hypot(here[:, 0], here[:, 1]))),
+            steps=int(numbers[STEPS]),
+            steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
+            simulated_ms_per_hour=1e3 * 3600.0 * rate,
+            left_s=(end - t) / rate if rate > 0 else math.inf,
+            for_error=until is not None,
+        )

@@ -1,0 +1,78 @@
+"""The oil that has passed through the films of a run, and whether all of it is accounted for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from frbcli.film.cells.balances import CHANNELS_NET, ENDS_NET, INFLOW, OUTFLOW, SUPPLY_NET
+from frbcli.film.cells.frame import turned
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.published.film import PublishedFilm
+from frbcli.film.section_faults import starves
+from frbcli.scene.system import System
+from frbcli.solve.films import OIL, PASSED, W
+from frbcli.solve.published.state import created_share, published_oil
+from frbcli.solve.state import GRID, State
+
+
+def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None:
+    """Oil in the cells that their unknowns do not account for, over what has passed through; the largest of all films
+    that keep theirs. angle: of the rotor in rad, with which films with bores in the journal turn.
+
+    The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with the
+    pressures and oil fractions. None if none does.
+    """
+    if isinstance(system.films, PublishedFilm):
+        return created_share(system.films, state)
+    if not system.remembers:
+        return None
+    worst = 0.0
+    for i, film in enumerate(system.volumes):
+        if not system.remembering[i]:
+            continue
+        d = turned(displacement(system, state, i), -grid_angle(system, state, i, angle))
+        now = film.content(Motion(d, (0.0, 0.0), 0.0), state.wet[W, i])
+        free = ~film.grid.fixed
+        passed = max(state.flows[PASSED, i, INFLOW], state.flows[PASSED, i, OUTFLOW])
+        area = film.grid.area[free]
+        # per turnover of the film's own oil, if less than that has passed so far
+        passed = max(float(passed), float((area * now[free]).sum()))
+        worst = max(worst, abs(float((area * (now - state.wet[OIL, i])[free]).sum())) / passed)
+    return worst
+
+
+def displacement(system: System, state: State, film: int) -> tuple[float, float]:
+    """Of a film's journal, over the clearance."""
+    x, y = system.rotor.journals[film] @ state.q / system.clearances[film]
+    return float(x), float(y)
+
+
+def grid_angle(system: System, state: State, film: int, angle: float) -> float:
+    """By which a film's grid has turned, rad; angle: of the rotor, rad."""
+    return float(system.turning[film, GRID] @ np.concatenate([[angle], state.q[list(system.spins)]]))
+
+
+def net_flow(state: State, film: int) -> float:
+    """Oil that came in through openings, ends and coupled channels less what left, in units of R b C."""
+    passed = state.flows[PASSED, film]
+    return float(passed[SUPPLY_NET] - passed[ENDS_NET] + passed[CHANNELS_NET])
+
+
+def oil_passed(system: System, state: State) -> dict[str, float]:
+    """Oil in m^3 that came into all films that keep theirs and that left them so far; empty if there are none."""
+    if isinstance(system.films, PublishedFilm):
+        return published_oil(state)
+    if not system.remembers:
+        return {}
+    size = [
+        keeps * film.section.copies * film.section.radius * film.section.width * film.section.clearance
+        for film, keeps in zip(system.volumes, system.remembering, strict=True)
+    ]
+    came, left = (np.asarray(size) @ state.flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
+    return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
+
+
+def no_oil_comes_in(system: System) -> bool:
+    """Whether a film that keeps its oil has no inflow, so that what it carries falls to nothing."""
+    films = zip(system.volumes, system.remembering, strict=True) if system.volumes else ()
+    return any(keeps and starves(film.section) for film, keeps in films)

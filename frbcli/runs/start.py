@@ -1,0 +1,143 @@
+"""What a run starts with: the arrays of its rotor; displacement, velocity and consistent acceleration."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+
+import numpy as np
+
+from frbcli.case.schema import Start
+from frbcli.errors import NotConverged
+from frbcli.film.cells.balances import FLOWS
+from frbcli.film.cells.data import VolumeFilms
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.steady_force import steady_solution
+from frbcli.film.published.film import PublishedFilm
+from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
+from frbcli.rotor.excitation import SpeedProfile
+from frbcli.scene.system import System
+from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
+from frbcli.solve.films import OIL, W_BEFORE, WET, W
+from frbcli.solve.published.state import first_film
+from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
+
+FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
+
+
+def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
+    """The system and its speed as the time loop takes them."""
+    rotor = system.rotor
+    # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
+    observed = np.concatenate([points / system.clearances[0] for _, points in rotor.points])
+    return RotorData(
+        mass=rotor.mass,
+        damping=rotor.damping,
+        gyroscopic=rotor.gyroscopic,
+        stiffness=rotor.stiffness,
+        static_load=rotor.static_load,
+        unbalance_cos=rotor.unbalance_cos,
+        unbalance_sin=rotor.unbalance_sin,
+        journals=rotor.journals,
+        multiplicity=rotor.multiplicity,
+        clearances=np.array(system.clearances),
+        observed=observed,
+        has_gyroscopic=bool(np.any(rotor.gyroscopic)),
+        profile_times=profile.times,
+        profile_speeds=profile.speeds,
+        profile_angles=profile.angles,
+        turning=system.turning,
+        spins=np.array(system.spins, dtype=np.int64),
+        ring_of=system.bodies,
+        drag=np.array(system.drags),
+        torque_terms=np.array([int(system.torque == "all"), _factor(system)], dtype=np.int64),
+    )
+
+
+def _factor(system: System) -> int:
+    """How missing oil lowers the torque."""
+    if system.torque == "simple":
+        return SIMPLE_FACTOR
+    return {"none": NO_FACTOR, "global": GLOBAL_FACTOR, "local": LOCAL_FACTOR}[system.cavitation_factor]
+
+
+def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
+    """The state at the beginning of a run: at rest, in the centre, held at a displacement, or in the resting position,
+    where rings turn already.
+
+    Raises NotConverged if a resting position is asked for and there is none at the first speed.
+    """
+    rotor = system.rotor
+    q, v = np.zeros(rotor.size), np.zeros(rotor.size)
+    if start.displacement is not None:
+        held = held_rotor(rotor)
+        q = held.shape + held.following @ np.outer(system.clearances, start.displacement).ravel()
+    elif start.position == "resting":
+        omega = float(profile.speeds[0])
+        q = resting_position(system, omega)
+        v[list(system.spins)] = ring_speeds(system, held_rotor(rotor), omega, rotor.journals @ q)
+    return state_at(system, profile, q, v)
+
+
+def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State:
+    """The state at the start of a profile with displacements q (n,) in m and velocities v (n,) in m/s."""
+    wet, flows = _films_at(system, profile, q, v)
+    rotation = profile.rotation(float(profile.times[0]))
+    a = accelerations(system, rotation, q, v, settled_forces(system, rotation[1], q, v))
+    numbers = np.zeros(NUMBERS)
+    numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
+    numbers[RUN_END] = profile.end
+    count = len(system.clearances)
+    past = np.zeros((HISTORY, 1 + 2 * count))
+    past[:, 0] = FIRST_STEP * np.arange(1 - HISTORY, 1)
+    past[:, 1:] = (system.rotor.journals @ v).ravel()
+    return State(numbers, q.copy(), v.copy(), a, past, wet, flows, np.zeros((2, ERROR_SPANS)))
+
+
+def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tuple[Array, Array]:
+    """The films' own state: settled where that is possible, else full at the ambient pressure. Its oil does not change
+    at first: the journals stand still."""
+    if isinstance(system.films, PublishedFilm):
+        omega = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
+        return first_film(system.films, system.rotor.journals[0] @ q, float(omega[0]))
+    if not isinstance(system.films, VolumeFilms):
+        return np.zeros((WET, 0, 0, 0)), np.zeros((2, 0, FLOWS))
+    m, k = system.volumes[0].grid.shape
+    wet = np.zeros((WET, len(system.volumes), m, k))
+    omegas = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
+    for i, (film, pick) in enumerate(zip(system.volumes, system.rotor.journals, strict=True)):
+        at = pick @ q / system.clearances[i]
+        motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(omegas[i]))
+        w = film.full()
+        if np.any(at != 0.0) and omegas[i] != 0.0:
+            with contextlib.suppress(NotConverged):
+                w = steady_solution(film, system.follows[i], motion).w
+        wet[W, i] = wet[W_BEFORE, i] = w
+        wet[OIL, i] = film.content(motion, w)
+    return wet, np.zeros((2, len(system.volumes), FLOWS))
+
+
+def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
+    """(films, 2) N: forces of the films that have settled where the rotor is, none of those that starve."""
+    forces, omegas = np.zeros((len(system.names), 2)), system.omegas(omega, v[list(system.spins)])
+    for i, pick in enumerate(system.rotor.journals):
+        with contextlib.suppress(NotConverged):
+            forces[i] = system.film_force(i, pick @ q, pick @ v, float(omegas[i])).force
+    return forces
+
+
+def accelerations(
+    system: System, rotation: tuple[float, float, float], q: Array, v: Array, film_forces: Array
+) -> Array:
+    """(n,) m/s^2 of a rotor with displacements q, velocities v and forces (films, 2) of its films in N.
+
+    rotation: angular acceleration, speed and angle of the rotor, see SpeedProfile.
+    """
+    rotor, (alpha, omega, angle) = system.rotor, rotation
+    sine, cosine = math.sin(angle), math.cos(angle)
+    forces = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
+    forces = forces + (alpha * cosine - omega**2 * sine) * rotor.unbalance_cos
+    forces = forces + (alpha * sine + omega**2 * cosine) * rotor.unbalance_sin
+    for pick, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
+        forces = forces + count * pick.T @ force
+    return np.asarray(np.linalg.solve(rotor.mass, forces), dtype=np.float64)

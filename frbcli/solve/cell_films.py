@@ -1,0 +1,232 @@
+"""Films with cells in one stage of the time loop, one film at a time, compiled.
+
+A Newton step of the film with what it does per journal velocity as further right-hand sides leaves 2 x 2 equations for
+the journal; the journal's correction then moves the film (Schur's complement: the coupling is monolithic).
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from frbcli.film.cavitation.compiled import empty_unknown
+from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
+from frbcli.film.cells.block_cyclic import solve_ring
+from frbcli.film.cells.channel_flow import ask_of_channels, exchange
+from frbcli.film.cells.data import (
+    AMBIENT,
+    AREA,
+    CAVITY,
+    COS,
+    GAP,
+    LAW,
+    LEAST_GAP,
+    MOUTH,
+    PULL,
+    REFERENCE,
+    REMEMBERS,
+    SIN,
+    STOPS_FROM,
+    UNKNOWN,
+)
+from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
+from frbcli.film.cells.states import FRACTION, cell_states, law_parameters
+from frbcli.film.contact_gap import kept_gap
+
+# How a film's grid stands, where the journal is in it, and the parameters of its law.
+# EMPTY: empty_unknown of that law. FOLLOWS_X, FOLLOWS_Y, FOLLOWS_XY: the symmetric matrix by which the gap follows the
+# journal, see kept_gap.
+(
+    GRID_TURN,
+    GRID_SPEED,
+    GRID_X,
+    GRID_Y,
+    UNSETTLED,
+    LAW_FIRST,
+    LAW_SECOND,
+    EMPTY,
+    FOLLOWS_X,
+    FOLLOWS_Y,
+    FOLLOWS_XY,
+    GRIDS,
+) = range(12)
+SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
+# The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
+CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
+PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
+SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
+NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
+
+
+@njit(cache=True, error_model="numpy")
+def follow(grid, v_x, v_y):  # type: ignore[no-untyped-def]
+    """What the film feels of a velocity."""
+    xy = grid[FOLLOWS_XY]
+    return grid[FOLLOWS_X] * v_x + xy * v_y, xy * v_x + grid[FOLLOWS_Y] * v_y
+
+
+@njit(cache=True, error_model="numpy")
+def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-def]
+    """w of a stage by a straight line: in the first through the step before, later through the last stage."""
+    m, k = w.shape
+    for i in range(m):
+        for j in range(k):
+            if s == 1:
+                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
+            else:
+                w[i, j] = start[i, j] + lag * (w[i, j] - start[i, j])
+
+
+@njit(cache=True, error_model="numpy")
+def cell_numbers(  # type: ignore[no-untyped-def]
+    numbers,
+    ring,
+    width,
+    cells,
+    w,
+    past,
+    states,
+    stencil,
+    blocks,
+    fields,
+    rates,
+    flows,
+    grid,
+    slopes,
+    channel,
+    d_x,
+    d_y,
+    v_x,
+    v_y,
+    omega,
+    g,
+    iteration,
+):
+    """film_numbers of films.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
+    pressures of the channels over its cells, see channels.py."""
+    turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
+    d_x, d_y, grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY] = kept_gap(
+        numbers[STOPS_FROM], numbers[LEAST_GAP], d_x, d_y
+    )
+    v_x, v_y = follow(grid, v_x, v_y)
+    c, s = math.cos(turn), math.sin(turn)
+    x, y = c * d_x + s * d_y, c * d_y - s * d_x
+    grid[GRID_X], grid[GRID_Y] = x, y
+    against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
+    v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
+    remembers = numbers[REMEMBERS] != 0.0
+    if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
+        grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, d_x, d_y, v_x, v_y, omega)
+        grid[EMPTY] = empty_unknown(
+            int(numbers[LAW]), grid[LAW_FIRST], grid[LAW_SECOND], numbers[REFERENCE], numbers[CAVITY], numbers[AMBIENT]
+        )
+    drop, rate = numbers[PULL] * spin * spin, 1.0 / g if remembers else 0.0
+    cell_states(numbers, cells, grid[LAW_FIRST], grid[LAW_SECOND], drop, w, states)
+    balances(
+        numbers, ring, width, cells, states, x, y, omega - 2.0 * spin, rate, past, g, v_f, v_g, spin, stencil, fields,
+        flows,
+    )  # fmt: skip
+    slots = fields.shape[2] - fields.shape[1] - SIDES
+    if slots > 0:
+        exchange(cells, states, channel, stencil, fields, flows)
+    mean, largest = imbalance(cells, fields)
+    pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
+    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest)
+    if left < SETTLED * pace and iteration > 0:
+        grid[UNSETTLED] = 0.0
+        if remembers:
+            store_rates(ring, cells, states, x, y, g, past, fields, rates)
+        m, k = w.shape
+        for i in range(m):  # the journal takes the film along as it did before
+            for j in range(k):
+                fields[i, j, k + BY_ITSELF] = 0.0
+                fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, 0], fields[i, j, 1]
+        f_x, f_y, _, _, _, _ = film_loads(numbers, ring, width, states, fields)
+    else:
+        grid[UNSETTLED] = 1.0
+        if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
+            damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
+        if slots > 0:
+            ask_of_channels(cells, fields)
+        solve_ring(stencil, blocks, fields)
+        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, width, states, fields)
+        m, k = w.shape
+        for i in range(m):
+            for j in range(k):
+                fields[i, j, 0], fields[i, j, 1] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
+    xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
+    # back from the grid's directions: Q^T B Q
+    a, b, p, q = c * xx - s * yx, c * xy - s * yy, s * xx + c * yx, s * xy + c * yy
+    xx, xy, yx, yy = a * c - b * s, a * s + b * c, p * c - q * s, p * s + q * c
+    follows_x, follows_y, follows_xy = grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY]
+    return (
+        c * f_x - s * f_y,
+        s * f_x + c * f_y,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        xx * follows_x + xy * follows_xy,
+        xx * follows_xy + xy * follows_y,
+        yx * follows_x + yy * follows_xy,
+        yx * follows_xy + yy * follows_y,
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untyped-def]
+    """The unknowns w (m, k) follow a correction u of the journal's velocity and those of its channels' pressures,
+    changes (slots,); 1 if the film had not settled.
+
+    Of a small gap in a short step the oil counts far more than its flow, and a cell's oil is an S over w: steep between
+    empty and full, flat on both sides. From one flat side Newton's method would leap to the other and back for ever; a
+    cell that leaps over all of the steep part stops in its middle, from where it gets to its end directly.
+    """
+    m, k = w.shape
+    empty = grid[EMPTY]
+    c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
+    u_x, u_y = follow(grid, u_x, u_y)
+    x, y = c * u_x + s * u_y, c * u_y - s * u_x
+    grid[GRID_X] += g * x
+    grid[GRID_Y] += g * y
+    for i in range(m):
+        for j in range(k):
+            before = w[i, j]
+            w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
+            for slot in range(changes.shape[0]):
+                w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
+            if max(before, w[i, j]) > 0.0 and min(before, w[i, j]) < empty:
+                w[i, j] = 0.5 * empty
+    return 1 if grid[UNSETTLED] != 0.0 else 0
+
+
+@njit(cache=True, error_model="numpy")
+def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
+    """The mean oil fraction of a film, (4.46)."""
+    m, k = states.shape[1], states.shape[2]
+    area, oil = 0.0, 0.0
+    for i in range(m):
+        for j in range(k):
+            if cells[UNKNOWN, i, j] != 0.0 and cells[MOUTH, i, j] == 0.0:
+                area += cells[AREA, i, j]
+                oil += cells[AREA, i, j] * states[FRACTION, i, j]
+    return oil / area
+
+
+@njit(cache=True, error_model="numpy")
+def sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+    """drag_integral of films.py for a film with cells."""
+    if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
+        return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
+    m, k = states.shape[1], states.shape[2]
+    whole, weighed = 0.0, 0.0
+    for i in range(m):
+        h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
+        for j in range(k):
+            if cells[UNKNOWN, i, j] != 0.0 and cells[MOUTH, i, j] == 0.0:
+                whole += cells[AREA, i, j] / h
+                weighed += cells[AREA, i, j] * states[FRACTION, i, j] / h
+    if factor == LOCAL_FACTOR:
+        return weighed
+    return whole * oil_fraction(cells, states) if factor == GLOBAL_FACTOR else whole

@@ -1,0 +1,109 @@
+"""Coupled channels in one stage of the time loop, compiled: the films of a ring solved as one.
+
+Each film is solved with further right-hand sides, one per channel: what a unit of pressure in it does. The pressures of
+all channels then follow from one small system (Schur's complement), which leaves equations for the journals alone, now
+with the force of a film depending on the journals of both films of its ring.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from frbcli.film.cells.balances import BY_ITSELF, SIDES
+from frbcli.film.cells.channel_flow import (
+    channel_pressures,
+    follow_means,
+    mean_changes,
+    mouth_pressure,
+    push_of_channel,
+)
+from frbcli.film.cells.data import FILM, SLOT
+from frbcli.film.cells.states import law_parameters
+from frbcli.solve.cell_films import FOLLOWS_X, FOLLOWS_XY, FOLLOWS_Y, GRID_SPEED, GRID_TURN, LAW_FIRST, LAW_SECOND
+from frbcli.solve.dense import solve_dense
+
+
+@njit(cache=True, error_model="numpy")
+def set_law(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-untyped-def]
+    """The parameters of the films' laws where the journals are guessed to be."""
+    for f in range(clearances.shape[0]):
+        d_x = (x_0[2 * f] + g * u[2 * f]) / clearances[f]
+        d_y = (x_0[2 * f + 1] + g * u[2 * f + 1]) / clearances[f]
+        v_x, v_y = u[2 * f] / clearances[f], u[2 * f + 1] / clearances[f]
+        grids[LAW_FIRST, f], grids[LAW_SECOND, f] = law_parameters(films.numbers[f], d_x, d_y, v_x, v_y, omega[2 * f])
+
+
+@njit(cache=True, error_model="numpy")
+def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
+    """channel (films, m, k) <- the channels' pressures over the cells of their mouths, by the films as they are."""
+    count = films.mouths.shape[0]
+    means = np.empty(count)
+    for q in range(count):
+        f = int(films.mouths[q, FILM])
+        means[q] = mouth_pressure(
+            films.numbers[f], films.cells[f], grids[LAW_FIRST, f], grids[LAW_SECOND, f], w[f], films.mouths[q],
+            films.mouth_cells[q],
+        )  # fmt: skip
+    channel_pressures(films.channels, films.mouths, grids[GRID_SPEED], means)
+    for q in range(count):
+        f = int(films.mouths[q, FILM])
+        for n in range(films.mouth_cells.shape[1]):
+            i, j = films.mouth_cells[q, n, 0], films.mouth_cells[q, n, 1]
+            if i >= 0:
+                channel[f, i, j] = means[q]
+
+
+@njit(cache=True, error_model="numpy")
+def join(films, grids, states, fields, clearances, force, cross, answers, changes):  # type: ignore[no-untyped-def]
+    """Let the solved films feel each other: their forces, and cross (2 films, 2 films), N s / m, what the channels make
+    of the derivatives by the journals' velocities. answers (mouths, 1 + 2 films) <- the changes of the channels'
+    pressures, by themselves and per journal velocity in m/s; changes (films, slots) <- the former."""
+    count, journals = films.mouths.shape[0], cross.shape[0]
+    matrix, own = np.zeros((count, count)), np.empty(SIDES + changes.shape[1])
+    for q in range(count):
+        f = int(films.mouths[q, FILM])
+        mean_changes(films.cells[f], states[f], fields[f], films.mouths[q], films.mouth_cells[q], own)
+        for column in range(1 + journals):
+            answers[q, column] = 0.0
+        answers[q, 0] = own[BY_ITSELF]
+        c, s = math.cos(grids[GRID_TURN, f]), math.sin(grids[GRID_TURN, f])
+        x, y = (c * own[1] - s * own[2]) / clearances[f], (s * own[1] + c * own[2]) / clearances[f]
+        answers[q, 1 + 2 * f] = grids[FOLLOWS_X, f] * x + grids[FOLLOWS_XY, f] * y
+        answers[q, 2 + 2 * f] = grids[FOLLOWS_XY, f] * x + grids[FOLLOWS_Y, f] * y
+        for other in range(count):
+            if int(films.mouths[other, FILM]) == f:
+                matrix[q, other] = own[SIDES + int(films.mouths[other, SLOT])]
+    follow_means(films.channels, films.mouths, matrix)
+    follow_means(films.channels, films.mouths, answers)
+    for q in range(count):
+        for other in range(count):
+            matrix[q, other] = -matrix[q, other]
+        matrix[q, q] += 1.0
+    solve_dense(matrix, answers)
+    for i in range(journals):
+        for j in range(journals):
+            cross[i, j] = 0.0
+    for q in range(count):
+        f, slot = int(films.mouths[q, FILM]), int(films.mouths[q, SLOT])
+        changes[f, slot] = answers[q, 0]
+        x, y = push_of_channel(films.numbers[f], films.ring[f], films.width[f], states[f], fields[f], slot)
+        c, s = math.cos(grids[GRID_TURN, f]), math.sin(grids[GRID_TURN, f])
+        push_x, push_y = c * x - s * y, s * x + c * y
+        force[2 * f] += push_x * answers[q, 0]
+        force[2 * f + 1] += push_y * answers[q, 0]
+        for j in range(journals):
+            cross[2 * f, j] += push_x * answers[q, 1 + j]
+            cross[2 * f + 1, j] += push_y * answers[q, 1 + j]
+
+
+@njit(cache=True, error_model="numpy")
+def follow_journals(films, answers, correction, share, changes):  # type: ignore[no-untyped-def]
+    """changes (films, slots) <- of the channels' pressures with a share of a correction of the journals' velocities."""
+    for q in range(films.mouths.shape[0]):
+        total = answers[q, 0]
+        for j in range(correction.shape[0]):
+            total += share * answers[q, 1 + j] * correction[j]
+        changes[int(films.mouths[q, FILM]), int(films.mouths[q, SLOT])] = total

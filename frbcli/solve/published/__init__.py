@@ -1,0 +1,1 @@
+"""The time loop of a film in the published two-phase form."""

@@ -1,0 +1,147 @@
+"""The time loop: rotor and films advanced together by an implicit Runge-Kutta method with error control. Compiled.
+
+A step is a few stages (stage.py) and what all loops do around them (step.py). All that it is given and carries along
+is in state.py, the methods in tableau.py.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from frbcli.rotor.excitation import rotation
+from frbcli.solve.films import accept_films, begin_stage, make_work, write_oil
+from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
+from frbcli.solve.journal_newton import NEWTON_LIMIT, correct, forces
+from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
+from frbcli.solve.scratch import make_scratch
+from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, start_stage
+from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK
+from frbcli.solve.step import (
+    UNSOLVED,
+    begin_past,
+    begin_stages,
+    begin_step,
+    choose_next,
+    count_step,
+    displace,
+    end_of_step,
+    keep_past,
+    local_error,
+    move_on,
+    reject,
+    write_outputs,
+)
+
+CELL_LIMIT = 24  # as NEWTON_LIMIT, for films with cells, whose kinks take longer
+NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
+
+
+@njit(cache=True, error_model="numpy")
+def _largest_eccentricity(clearances, pick, q):  # type: ignore[no-untyped-def]
+    largest = 0.0
+    for f in range(clearances.shape[0]):
+        x, y = 0.0, 0.0
+        for i in range(q.shape[0]):
+            x += pick[2 * f, i] * q[i]
+            y += pick[2 * f + 1, i] * q[i]
+        largest = max(largest, norm(x, y) / clearances[f])
+    return largest
+
+
+@njit(cache=True, error_model="numpy")
+def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil):  # type: ignore[no-untyped-def]
+    """Advance the state until the output buffers are full, `budget` steps are done, or the run ends.
+
+    out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more
+    than one step can write; out_oil: (rows, films) for the oil fraction of films with cells. Returns (status,
+    rows written). The course of the steps does not depend on how often this is called.
+    """
+    # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
+    numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past
+    wet, flows, work = state.wet, state.flows, make_work(films, state.wet, tableau.times.shape[0])
+    spins, turning, grids = rotor.spins, rotor.turning, work.grids
+    times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
+    clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
+    weights, moments, defect, three = tableau.stage, tableau.times, tableau.defect, tableau.guess
+    tolerance, contact_at, contact_stiffness = (
+        control.tolerance, control.contact_eccentricity, control.contact_stiffness)
+    n, m, stages = q.shape[0], 2 * clearances.shape[0], moments.shape[0]
+    gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
+    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = make_scratch(rotor, numbers, stages)
+    newton, past, q_new = np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n)
+    bodies, angles_now, torque = np.zeros(1 + spins.shape[0]), np.zeros(1 + spins.shape[0]), np.zeros(spins.shape[0])
+    has_cells = wet.shape[1] > 0
+    written, done = 0, 0
+
+    while done < budget:
+        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
+        if step == 0.0:
+            return status, written
+        begin_past(past_now, past)
+        begin_stages(v, a, stage_v, stage_a)
+        g, solved, speed = gamma * step, True, 0.0
+        for s in range(1, stages):
+            t_s = t + moments[s] * step
+            acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
+            if outdated(numbers, g, speed, gyroscopic):
+                prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance)
+            start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle,
+                        gyroscopic, at, film)
+            guess(past, three, s, pick, q, clearances, g, t_s, limit, film)
+            guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles_now)
+            set_speeds(turning, bodies, angles_now, film, grids)
+            begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
+                        moments[s] / moments[s - 1] if s > 1 else 1.0)
+            # Not before it is needed: a branch ahead of the inlined parts above keeps the compiler from leaving out the
+            # counts of references to their arrays, which take a quarter of the time.
+            lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
+            solved = False
+            for iteration in range(CELL_LIMIT if has_cells else NEWTON_LIMIT):
+                forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
+                numbers[SOLVES] += m // 2
+                share, left, moved, unsettled = correct(films, work, compliance, clearances, g, limit, film, newton)
+                if left == math.inf:
+                    break
+                if has_cells:  # a film with cells has kinks: no guess at what is left, but the balances themselves
+                    left = math.inf if unsettled > 0 else moved
+                if share == 1.0:
+                    accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a)
+                    if spins.shape[0] > 0:
+                        turned = spin_up(films, work, rotor, s, g, clearances, at, film, bodies, angles_now, torque,
+                                         stage_v, stage_a)
+                        left = max(left, turned)
+                        set_speeds(turning, bodies, angles_now, film, grids)
+                    settled = control.linearised or left < NEWTON_SHARE * tolerance
+                    if settled and (lag == 0.0 or iteration >= LAG_SWEEPS):
+                        solved = True
+                        break
+            if not solved:
+                break
+            past[HISTORY + s - 1, 0] = t_s
+            for i in range(m):
+                past[HISTORY + s - 1, 1 + i] = film[U, i]
+        error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance if solved else UNSOLVED
+        if not error <= 1.0:  # not a number counts as too large
+            if reject(numbers, step, error, order):
+                continue
+            return STUCK, written
+
+        t_new = end_of_step(t, step, times[piece + 1])
+        displace(weights[stages - 1], stage_v, step, q, q_new)
+        before = written
+        written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
+        write_oil(films, work, out_oil, before, written)
+        accept_films(films, work, wet, flows, weights, step)
+        numbers[STEP_DONE] = step
+        move_on(q, v, a, q_new, stage_v, stage_a)
+        keep_past(past, past_now)
+        done += 1
+        largest = _largest_eccentricity(clearances, pick, q)
+        status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance, largest)
+        if status != RUNNING:
+            return status, written
+        choose_next(numbers, h, error, order, math.inf)
+    return RUNNING, written

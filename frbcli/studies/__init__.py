@@ -1,0 +1,1 @@
+"""Many runs of one case: compare, accuracy, verify, sweep, hard cases."""

@@ -1,0 +1,186 @@
+"""Speed against error: a run-up on a ladder of theories, meshes, tolerances and couplings, against a fine reference."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from frbcli.case.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.linear.stability import default_speeds, stability
+from frbcli.results.store import Run
+from frbcli.runs.march import Progress
+from frbcli.runs.run import runup
+from frbcli.scene.cost import solve_us
+from frbcli.scene.coupling import COUPLINGS
+from frbcli.scene.film_choice import DEFAULT_MESH
+from frbcli.scene.plan import THEORIES, Plan, make_plan
+from frbcli.scene.system import make_system
+from frbcli.studies.differences import difference, onset_speed
+from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
+
+MESHES = (0.5, 1.0, 1.5)  # of the plan's elements or cells in each direction
+TOLERANCES = (100.0, 10.0, 1.0, 0.1)  # of the plan's
+LOOSEST = 0.1  # tolerance that a case may have
+REFERENCE_MESH, REFERENCE_TOLERANCE = 2.0, 0.02
+COARSER_MESH, LOOSER = 1.5, 2.0  # what the reference is held against: of the plan's elements, of its own tolerance
+INTERRUPTED = "interrupted"
+
+
+Observer = Callable[[Rung, Progress], None]
+
+
+def accuracy(
+    case: Case,
+    until: float | None = None,
+    theories: Sequence[str] = (),
+    couplings: Sequence[str] = (),
+    observe: Observer | None = None,
+) -> AccuracyLadder:
+    """Run a case up on a ladder and say what each rung costs and how far it is from a fine reference.
+
+    until: in s, shortens the run; the rotor speeds up as before. theories, couplings: to be tried, () for all theories
+    that can be had and for the coupling of the plan. observe: called some times a second. Ctrl-C ends it with the rungs
+    done so far. Raises InputError for names that there are not, and for a case that cannot be modelled.
+    """
+    _check_names(case, theories, couplings)
+    short = _until(case, until)
+    own = planned_rung(make_plan(short))
+    fine = replace(own, theory="finite", mesh=_mesh(own, REFERENCE_MESH), tolerance=REFERENCE_TOLERANCE * own.tolerance)
+    coarser = replace(fine, mesh=_mesh(own, COARSER_MESH), tolerance=LOOSER * fine.tolerance)
+    rungs = list(ladder(short, own, theories, couplings))
+    with TemporaryDirectory(prefix="frb-accuracy-") as folder:
+
+        def run(rung: Rung) -> Run:
+            watch = None if observe is None else lambda progress: observe(rung, progress)
+            return runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch)
+
+        exact = run(fine)
+        reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
+        found = []
+        for rung in rungs:
+            one = run(rung)
+            if one.status == INTERRUPTED:
+                break
+            found.append(_result(rung, one, exact, _tabulating(short, rung), rung == own))
+    complete = len(found) == len(rungs)
+    if complete:
+        reference, *found = _with_thresholds(case, reference, coarser, found)
+    found.sort(key=lambda item: item.cpu_s)
+    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete)
+
+
+def planned_rung(plan: Plan) -> Rung:
+    """What the plan of a case chooses."""
+    mesh = (plan.mesh.axial, plan.mesh.circumferential) if plan.cells is None else (plan.cells[1], plan.cells[0])
+    return Rung(plan.theory, plan.cavitation, mesh if plan.theory == "finite" else None, plan.tolerance, plan.coupling)
+
+
+def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Sequence[str] = ()) -> Iterator[Rung]:
+    """The rungs for a case whose plan is `own`: all meshes by all tolerances, and the same tolerances for the short
+    bearing where it applies. Raises InputError for a theory or coupling that was asked for and cannot be had."""
+    rungs: list[Rung] = [own]
+    for coupling in couplings or (own.coupling,):
+        for tolerance in sorted({min(LOOSEST, factor * own.tolerance) for factor in TOLERANCES}, reverse=True):
+            for theory in theories or THEORIES:
+                meshes = [None] if theory == "short" else [_mesh(own, factor) for factor in MESHES]
+                rungs += [Rung(theory, own.cavitation, mesh, tolerance, coupling) for mesh in meshes]
+    for rung in dict.fromkeys(rungs):
+        try:
+            make_plan(_with_rung(case, rung))
+        except InputError:
+            if theories or rung.theory == "finite":
+                raise
+            continue  # a film that the short-bearing theory does not know
+        yield rung
+
+
+def _mesh(own: Rung, factor: float) -> tuple[int, int]:
+    """The plan's mesh made finer or coarser by a factor."""
+    along, around = own.mesh or (DEFAULT_MESH.axial, DEFAULT_MESH.circumferential)
+    return max(2, round(factor * along)), max(12, 4 * round(0.25 * factor * around))
+
+
+def _result(
+    rung: Rung, run: Run, reference: Run, cpu_s: float, planned: bool = False, forces_of: Run | None = None
+) -> RungResult:
+    apart = difference(run, reference)
+    force = (forces_of or run).error["film_force_relative"]
+    onset = onset_speed(run) - onset_speed(reference)
+    error = RungError(apart.largest, apart.rms, apart.until_s, onset, math.nan if force is None else float(force))
+    work = 1e-6 * float(run.cost["film_solves"]) * solve_us(make_plan(load_case_text(run.case_text)))
+    march = float(run.cost["cpu_s"])
+    return RungResult(rung, run.status, cpu_s + march, error, planned, apart.signals, run.error, work)
+
+
+def _with_thresholds(
+    case: Case, reference: RungResult, coarser: Rung, found: Sequence[RungResult]
+) -> Iterator[RungResult]:
+    """The reference and what was found, with the errors of the thresholds of linear stability over all speeds of the
+    case. They depend on theory and mesh alone."""
+    rungs = {(rung.theory, rung.mesh): rung for rung in (coarser, reference.rung, *(item.rung for item in found))}
+    speeds = {film: _threshold(_with_rung(case, rung)) for film, rung in rungs.items()}
+
+    def off(one: Rung, other: Rung) -> float:
+        return speeds[one.theory, one.mesh] - speeds[other.theory, other.mesh]
+
+    for item, other in ((reference, coarser), *((item, reference.rung) for item in found)):
+        yield replace(item, error=replace(item.error, threshold_Hz=off(item.rung, other)))
+
+
+def _threshold(case: Case) -> float:
+    """In Hz; NaN without one, and for films with cells: those with oil of their own have none, the others take
+    minutes."""
+    if make_plan(case).cells is not None or not default_speeds(case):
+        return math.nan
+    found = stability(case).threshold
+    return math.nan if found is None else found.speed_Hz
+
+
+def _tabulating(case: Case, rung: Rung) -> float:
+    """CPU time in s that it takes to tabulate the films of a rung, which the cost of a run leaves out."""
+    rung_case = _with_rung(case, rung)
+    plan = make_plan(rung_case)
+    began = time.process_time()
+    make_system(rung_case, plan)
+    return time.process_time() - began
+
+
+def _until(case: Case, until: float | None) -> Case:
+    """The case up to a time."""
+    speed = case.speed
+    if until is None or until >= speed.duration:
+        return case
+    if until <= case.output.step:
+        problem = f"is not above the output step of {case.output.step:g} s."
+        raise InputError(case.name or "case", (Fault("--until", f"{until:g} s", None, problem, "Lengthen it."),))
+    end = speed.start + (speed.end - speed.start) * until / speed.duration
+    return _with(case, f"speed.to={end!r} Hz", f"speed.duration={until!r} s")
+
+
+def _with_rung(case: Case, rung: Rung) -> Case:
+    settings = [f"film.theory={rung.theory}", f"film.coupling={rung.coupling}"]
+    settings.append(f"accuracy.tolerance={rung.tolerance!r}")
+    if rung.mesh is not None:
+        settings.append(f"accuracy.mesh=[{rung.mesh[0]}, {rung.mesh[1]}]")
+    return _with(case, *settings)
+
+
+def _with(case: Case, *settings: str) -> Case:
+    return load_case_text(case.source_text, settings, name=case.name)
+
+
+def _check_names(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> None:
+    faults = [
+        Fault(option, name, None, "is not known.", f"There are: {', '.join(known)}.")
+        for option, names, known in (("--theory", theories, THEORIES), ("--coupling", couplings, COUPLINGS))
+        for name in dict.fromkeys(names)
+        if name not in known
+    ]
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))

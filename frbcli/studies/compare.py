@@ -1,0 +1,262 @@
+"""The same run-up with several models of the films: what each says, how far it is from the first, what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.bearing_tests.plan import MODELS
+from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
+from frbcli.case.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.results.store import Run
+from frbcli.runs.march import Progress
+from frbcli.runs.run import runup
+from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.film_choice import CLOSED
+from frbcli.scene.plan import THEORIES, make_plan
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pandas as pd
+
+TESTS = ("runup",)
+INTERRUPTED = "interrupted"
+UNTIL = ("onset", "contact")  # from there on two runs differ in phase, whatever their films
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One model of the films, and how they are coupled to the rotor."""
+
+    theory: str
+    cavitation: str
+    coupling: str = "auto"
+
+    @property
+    def name(self) -> str:
+        """For tables and file names."""
+        return f"{self.cavitation} {self.theory}" + ("" if self.coupling == "auto" else f" {self.coupling}")
+
+    @property
+    def coupled(self) -> str:
+        """The coupling that "auto" stands for, too."""
+        return chosen_coupling(self.coupling, self.cavitation)
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """Of the eccentricities from those of the first variant: the largest and the root mean square until until_s, in s,
+    where either begins to whirl, touches its shell, or ends. NaN if that is at the very beginning."""
+
+    largest: float
+    rms: float
+    until_s: float
+
+
+@dataclass(frozen=True)
+class VariantResult:
+    """What one model says. The run's file is gone unless it was to be kept; the run itself is not."""
+
+    variant: Variant
+    run: Run
+    deviation: Deviation
+
+    @property
+    def ms_per_step(self) -> float:
+        """CPU time of a step, of one of the films' own if they have them."""
+        cost = self.run.cost
+        return 1e3 * float(cost["cpu_s"]) / max(float(cost.get("micro_steps", cost["steps"])), 1.0)
+
+    def first(self, kind: str) -> dict[str, Any] | None:
+        """The first event of a kind, None if there is none."""
+        return next((event for event in self.run.events if event["kind"] == kind), None)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Results in the order of the variants; the first is what the others are compared with."""
+
+    case: Case
+    test: str
+    results: tuple[VariantResult, ...]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per variant: models, coupling, status, first events, deviation, cost, error."""
+        import pandas as pd
+
+        return pd.DataFrame([_row(result) for result in self.results])
+
+
+Observer = Callable[[Variant, Progress], None]
+
+
+def compare(
+    case: Case,
+    cavitations: Sequence[str] = (),
+    theories: Sequence[str] = (),
+    test: str = "runup",
+    keep: str | Path | None = None,
+    observe: Observer | None = None,
+    couplings: Sequence[str] = (),
+) -> Comparison:
+    """Run a case with every combination of the given cavitation models, theories and couplings; () stands for that of
+    the case.
+
+    With none given, that of the case is compared with all that have no state and cost little. keep: a directory for
+    the run files, made if need be; observe: called some times a second. Ctrl-C ends the comparison with an
+    "interrupted" run.
+    Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
+    allow, or files that cannot be written; nothing is run then.
+    """
+    _check_test(test)
+    variants = make_variants(case, cavitations, theories, couplings)
+    cases = [_with_models(case, variant) for variant in variants]
+    for variant, its_case in zip(variants, cases, strict=True):
+        make_plan(its_case)
+        _check_own_models(case, variant, its_case)
+    runs: list[Run] = []
+    with _directory(keep) as folder:
+        for variant, its_case in zip(variants, cases, strict=True):
+            path = folder / f"{variant.name.replace(' ', '-')}.h5"
+            tell = None if observe is None else _telling(observe, variant)
+            runs.append(runup(its_case, path, observe=tell))
+            if runs[-1].status == INTERRUPTED:
+                break
+    results = [
+        VariantResult(variant, run, deviation(run, runs[0])) for variant, run in zip(variants, runs, strict=False)
+    ]
+    return Comparison(case, test, tuple(results))
+
+
+def make_variants(
+    case: Case, cavitations: Sequence[str] = (), theories: Sequence[str] = (), couplings: Sequence[str] = ()
+) -> tuple[Variant, ...]:
+    """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
+    faults = [*_unknown("--cavitation", cavitations, MODELS), *_unknown("--theory", theories, THEORIES)]
+    faults += _unknown("--coupling", couplings, COUPLINGS)
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))
+    plan = make_plan(case)
+    own = Variant(plan.theory, plan.cavitation, case.film.coupling)
+    if not cavitations and not theories and not couplings:
+        others = (Variant(theory, cavitation, own.coupling) for cavitation in CLOSED for theory in THEORIES)
+        found = [own, *(variant for variant in others if _fits(case, variant))]
+    else:
+        found = [
+            Variant(theory, cavitation, coupling)
+            for cavitation in cavitations or (own.cavitation,)
+            for theory in theories or (own.theory,)
+            for coupling in couplings or (own.coupling,)
+        ]
+    variants = tuple(dict.fromkeys(found))
+    if len(variants) < 2:
+        problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
+        remedy = f"There are --cavitation {','.join(MODELS)} and --theory {','.join(THEORIES)}, "
+        remedy += f"--coupling {','.join(COUPLINGS)}."
+        raise InputError(case.name or "case", (Fault("comparison", "", None, problem, remedy),))
+    return variants
+
+
+def deviation(run: Run, reference: Run) -> Deviation:
+    """How far the eccentricities of a run are from those of a reference with the same speeds and output times."""
+    ends = [event["t_s"] for one in (run, reference) for event in one.events if event["kind"] in UNTIL]
+    until = min([*ends, run.t_end_s, reference.t_end_s])
+    count = min(int(np.searchsorted(run["time_s"], until, side="right")), len(run), len(reference))
+    names = [name for name in run.signals if name.startswith("eccentricity")]
+    apart = np.array([run[name][:count] - reference[name][:count] for name in names])
+    if count < 2:
+        return Deviation(np.nan, np.nan, until)
+    return Deviation(float(np.abs(apart).max()), _rms(apart), until)
+
+
+def _rms(values: NDArray[np.float64]) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _check_test(test: str) -> None:
+    if test in TESTS:
+        return
+    kinematic = test in KINEMATIC_TESTS
+    problem = f"is a function of its own: frbcli.{test}(case, cavitations)." if kinematic else "is no test."
+    raise InputError("comparison", (Fault("--test", test, None, problem, f"There is: {', '.join(TESTS)}."),))
+
+
+def _unknown(option: str, names: Sequence[str], known: Sequence[str]) -> list[Fault]:
+    problem, remedy = "is no model of this version.", f"There are: {', '.join(known)}."
+    return [Fault(option, name, None, problem, remedy) for name in dict.fromkeys(names) if name not in known]
+
+
+def _with_models(case: Case, variant: Variant) -> Case:
+    settings = (
+        f"film.theory={variant.theory}", f"film.cavitation={variant.cavitation}", f"film.coupling={variant.coupling}")
+    return load_case_text(case.source_text, settings, name=case.name)
+
+
+def _fits(case: Case, variant: Variant) -> bool:
+    """Whether a run-up of the case can be made with the model: no short bearing with openings, for instance."""
+    try:
+        its_case = _with_models(case, variant)
+        make_plan(its_case)
+        _check_own_models(case, variant, its_case)
+    except InputError:
+        return False
+    return True
+
+
+def _check_own_models(case: Case, variant: Variant, its_case: Case) -> None:
+    """Raise InputError for a variant whose model some film does not take, having one of its own."""
+    if variant.cavitation != case.film.cavitation and set(its_case.cavitations) != {variant.cavitation}:
+        problem = "is not what all films are computed with: some name a model of their own."
+        remedy = "Remove `cavitation` from the films of the bearing, or compare couplings only."
+        raise InputError(case.name or "case", (Fault("--cavitation", variant.cavitation, None, problem, remedy),))
+
+
+@contextmanager
+def _directory(keep: str | Path | None) -> Iterator[Path]:
+    """The directory for the run files; a temporary one if they are not to be kept."""
+    if keep is None:
+        with TemporaryDirectory(prefix="frb-compare-") as folder:
+            yield Path(folder)
+        return
+    try:
+        Path(keep).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        problem = f"cannot be made: {error.strerror}."
+        raise InputError("comparison", (Fault("--keep", str(keep), None, problem, "Choose another place."),)) from error
+    yield Path(keep)
+
+
+def _telling(observe: Observer, variant: Variant) -> Callable[[Progress], None]:
+    return lambda progress: observe(variant, progress)
+
+
+def _row(result: VariantResult) -> dict[str, Any]:
+    critical, onset = result.first("critical-speed"), result.first("onset")
+    return {
+        "cavitation": result.variant.cavitation,
+        "theory": result.variant.theory,
+        "coupling": result.variant.coupled,
+        "status": result.run.status,
+        "t_end_s": result.run.t_end_s,
+        "critical_speed_Hz": np.nan if critical is None else critical["speed_Hz"],
+        "onset_speed_Hz": np.nan if onset is None else onset["speed_Hz"],
+        "onset_frequency_ratio": np.nan if onset is None else onset["frequency_ratio"],
+        "deviation_largest": result.deviation.largest,
+        "deviation_rms": result.deviation.rms,
+        "deviation_until_s": result.deviation.until_s,
+        "cpu_s": result.run.cost["cpu_s"],
+        "ms_per_step": result.ms_per_step,
+        "micro_steps_per_macro_step": result.run.cost.get("micro_steps_per_macro_step", np.nan),
+        "simulated_ms_per_hour": result.run.cost["simulated_ms_per_hour"],
+        "film_force_relative": result.run.error["film_force_relative"],
+    }

@@ -1,0 +1,229 @@
+"""Hard cases: each is computed in a process of its own time, and held to the end and the reference that it has."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
+from frbcli.case.hard import HardCase, Reference, hard_cases, references
+from frbcli.case.schema import Case
+from frbcli.errors import InputError, NotConverged
+from frbcli.results.store import Run
+from frbcli.runs.run import rundown, runup
+from frbcli.studies.hard.worker import DIED, HUNG, Worker
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FINISHED, INPUT_ERROR, NOT_CONVERGED, ERROR = "finished", "input-error", "not-converged", "error"
+RUNS = {"runup": runup, "rundown": rundown}
+TESTS = {"rotation": rotation, "squeeze": squeeze, "whirl": whirl}
+OIL_LOST = 1e-3  # share of the oil that may be unaccounted for
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class HardResult:
+    """How a hard case ended.
+
+    status: of the run or test, "finished" for a test that converged; "input-error", "error" (a bug), "hung", "died";
+    message: why, where there is more to say; events: kinds with names of films; error: the largest deviation of the
+    eccentricities from those of the reference until until_s, or the relative one of the force, None without reference;
+    reported: the error that the program itself states for it, None where it states none; certain: how far the
+    reference may be off, None without; problems: what is not as it should be.
+    """
+
+    hard: HardCase
+    status: str
+    message: str = ""
+    events: tuple[str, ...] = ()
+    error: float | None = None
+    reported: float | None = None
+    certain: float | None = None
+    until_s: float | None = None
+    cpu_s: float = 0.0
+    problems: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether the case ended as it has to."""
+        return not self.problems
+
+
+Observer = Callable[[HardResult, int, int], None]  # a result, how many are done, how many there are
+
+
+@dataclass(frozen=True)
+class HardResults:
+    """All results, in the order of the list."""
+
+    results: tuple[HardResult, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether all cases ended as they have to."""
+        return all(result.ok for result in self.results)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per case."""
+        import pandas as pd
+
+        return pd.DataFrame([
+            {"name": r.hard.name, "topic": r.hard.topic, "expected": r.hard.end, "status": r.status, "ok": r.ok,
+             "error": r.error, "reported": r.reported, "certain": r.certain, "until_s": r.until_s,
+             "cpu_s": r.cpu_s, "problems": "; ".join(r.problems)}
+            for r in self.results
+        ])  # fmt: skip
+
+
+def run_hard_cases(names: Sequence[str] = (), observe: Observer | None = None) -> HardResults:
+    """Compute the hard cases of these names, () for all, one after the other in a process beside this one.
+
+    A case that takes too long is stopped and "hung". observe: called after each. Raises InputError for a name that
+    there is not.
+    """
+    chosen, known, found = hard_cases(names), references(), []
+    with Worker(hard_case_result) as worker:
+        for hard in chosen:
+            task = hard, known.get(hard.name)
+            answer = worker.ask(task, hard.within_s)
+            if answer in (HUNG, DIED):
+                answer = HardResult(hard, str(answer), problems=(f"{answer} within {hard.within_s:g} s",))
+            found.append(answer)
+            if observe is not None:
+                observe(answer, len(found), len(chosen))
+    return HardResults(tuple(found))
+
+
+def hard_case_result(task: tuple[HardCase, Reference | None]) -> HardResult:
+    """One hard case, here and now, and all that is wrong with it. Raises nothing: a bug is a result, too."""
+    hard, reference = task
+    begun = time.process_time()
+    try:
+        result = _compared(hard, outcome(hard.command, hard.case()), reference)
+    except InputError as error:
+        result = HardResult(hard, INPUT_ERROR, " ".join(map(str, error.faults)))
+    except NotConverged as error:
+        result = HardResult(hard, NOT_CONVERGED, str(error))
+    except Exception as error:
+        result = HardResult(hard, ERROR, f"{type(error).__name__}: {error}", problems=("a bug",))
+    problems = [*result.problems, *_unexpected(result)]
+    return replace(result, problems=tuple(problems), cpu_s=time.process_time() - begun)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """values: by name, at times_s (n,) of a run, one number each of a test, which has no times; until_s: how far they
+    can be compared."""
+
+    status: str
+    message: str
+    values: dict[str, Array]
+    times_s: Array
+    until_s: float
+    events: tuple[str, ...]
+    reported: float | None
+    problems: tuple[str, ...]
+
+
+def outcome(command: str, case: Case) -> Outcome:
+    """Of a run or a test. Raises what they raise."""
+    if command in RUNS:
+        with TemporaryDirectory(prefix="frb-hard-") as folder:
+            return _run_outcome(RUNS[command](case, Path(folder) / "run.h5"))
+    return _test_outcome(TESTS[command](case).results[0])
+
+
+def _run_outcome(run: Run) -> Outcome:
+    names = [name for name in run.signals if name.startswith("eccentricity")]
+    problems = [f"{name} is not finite" for name in run.signals if not np.isfinite(run[name]).all()]
+    lost = run.error["oil_balance_relative"]
+    if lost is not None and not lost <= OIL_LOST:
+        problems.append(f"oil is lost: {lost:.1e} of it")
+    return Outcome(
+        status=run.status,
+        message="" if run.status == FINISHED else f"{run.status} at {run.t_end_s:.4g} s",
+        values={name: run[name] for name in names},
+        times_s=run["time_s"],
+        until_s=run.error["quiet_until_s"],
+        events=tuple(" ".join(filter(None, (event["kind"], event["film"]))) for event in run.events),
+        reported=run.error["eccentricity"],
+        problems=tuple(problems),
+    )
+
+
+def _test_outcome(result: KinematicResult) -> Outcome:
+    values: dict[str, Array] = {}
+    problems: list[str] = []
+    if result.loads is not None:
+        values = {f"force_{axis}_N": np.array([force]) for axis, force in zip("xy", result.loads.force, strict=True)}
+        if not np.isfinite([*result.loads.force, result.loads.p_max]).all():
+            problems.append("a load is not finite")
+    status = FINISHED if result.status == "ok" else result.status
+    reported = None if math.isnan(result.force_error) else result.force_error
+    return Outcome(status, result.problem, values, np.empty(0), 0.0, (), reported, tuple(problems))
+
+
+def _compared(hard: HardCase, found: Outcome, reference: Reference | None) -> HardResult:
+    result = HardResult(hard, found.status, found.message, found.events, reported=found.reported)
+    result = replace(result, problems=found.problems)
+    if reference is None:
+        return result
+    if not found.values:
+        return replace(result, problems=(*found.problems, "nothing to compare with the reference"))
+    error, until = apart(found, reference)
+    return replace(result, error=error, until_s=until, certain=reference.change)
+
+
+def apart(found: Outcome, reference: Reference) -> tuple[float, float | None]:
+    """(how far an outcome is from a reference, see HardResult; until which time in s, None for a test)."""
+    if not reference.times_s:
+        return _force_error(found.values, reference.values), None
+    until = min(found.until_s, reference.until_s)
+    return _deviation(found, reference, until), until
+
+
+def _force_error(values: dict[str, Array], exact: dict[str, list[float]]) -> float:
+    names = sorted(exact)
+    off = np.array([values[name][0] - exact[name][0] for name in names])
+    return float(np.linalg.norm(off) / np.linalg.norm([exact[name][0] for name in names]))
+
+
+def _deviation(found: Outcome, reference: Reference, until_s: float) -> float:
+    """Largest deviation at the times of the reference that lie before until_s."""
+    times = np.array(reference.times_s)
+    shared = times <= until_s
+    off = [
+        np.interp(times[shared], found.times_s, found.values[name]) - np.array(exact)[shared]
+        for name, exact in reference.values.items()
+    ]
+    return float(np.max(np.abs(off)))
+
+
+def _unexpected(result: HardResult) -> list[str]:
+    """What of a result is not as the list says."""
+    hard, found = result.hard, []
+    if result.status != hard.end:
+        found.append(f"{result.status} instead of {hard.end}")
+    if hard.says not in result.message:
+        found.append(f'the message lacks "{hard.says}"')
+    if hard.events is not None and result.events != hard.events:
+        found.append(f"events: {', '.join(result.events) or 'none'} instead of {', '.join(hard.events) or 'none'}")
+    if result.error is not None and not _bounded(result.error, result.reported):
+        stated = "none" if result.reported is None else f"{result.reported:.1e}"
+        found.append(f"off by {result.error:.1e}, stated {stated}")
+    return found
+
+
+def _bounded(error: float, reported: float | None) -> bool:
+    return reported is not None and error <= reported

@@ -1,0 +1,1 @@
+"""Parameter studies: one case with many settings."""

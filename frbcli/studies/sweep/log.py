@@ -1,0 +1,87 @@
+"""What a sweep has done so far, one line of JSON for each point, so that a broken sweep goes on where it was.
+
+A line is written as soon as its point is computed. The first line says which sweep it is; a line that a crash has
+torn is left out, and so are points that deserve another try.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from frbcli.case.load import describes
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.studies.sweep.task import UNDECIDED, SweepPoint
+
+Header = Mapping[str, Any]
+
+
+def open_log(path: Path, header: Header, case: Case) -> tuple[SweepPoint, ...]:
+    """The points that are done already by the log at `path`, which is ready for more afterwards.
+
+    header: of the sweep, with the text of its `case`, which the log may have in other words. Raises InputError if it
+    is the log of another sweep, or cannot be read or written.
+    """
+    try:
+        known = path.read_text(encoding="utf-8").split("\n") if path.exists() else []
+        if known and not _same_sweep(_parsed(known[0]), json.loads(json.dumps(header)), case):
+            remedy = "Choose another directory with -o, or remove this one."
+            raise _refuse(path, "belongs to another sweep, case or version.", remedy)
+        done = {point.number: point for point in map(_point, known[1:]) if point and point.status not in UNDECIDED}
+        part = path.with_name(path.name + ".part")
+        lines = [json.dumps(header), *map(_line, done.values())]
+        part.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+        os.replace(part, path)
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise _refuse(path, f"cannot be used: {reason}.", "Choose another directory with -o.") from error
+    return tuple(done.values())
+
+
+def append(path: Path, points: Sequence[SweepPoint]) -> None:
+    """Note that points are done. Raises InputError if the disk does not take it."""
+    try:
+        with path.open("a", encoding="utf-8") as file:
+            file.writelines(f"{_line(point)}\n" for point in points)
+    except OSError as error:
+        remedy = "Make room; the same sweep then goes on."
+        raise _refuse(path, f"cannot be written: {error.strerror}.", remedy) from error
+
+
+def _same_sweep(known: object, header: Header, case: Case) -> bool:
+    if not isinstance(known, dict) or {**known, "case": ""} != {**header, "case": ""}:
+        return False
+    text = known.get("case")
+    return text == header["case"] or (isinstance(text, str) and describes(text, case))
+
+
+def _line(point: SweepPoint) -> str:
+    return json.dumps(asdict(point), default=str)
+
+
+def _point(line: str) -> SweepPoint | None:
+    """The point of a line, None for a torn one."""
+    found = _parsed(line)
+    if not isinstance(found, dict):
+        return None
+    try:
+        run = None if found["run"] is None else Path(found["run"])
+        return SweepPoint(**(found | {"events": tuple(found["events"]), "run": run}))
+    except (KeyError, TypeError):
+        return None
+
+
+def _parsed(line: str) -> object:
+    try:
+        return json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+
+
+def _refuse(path: Path, problem: str, remedy: str) -> InputError:
+    return InputError("sweep", (Fault("--output", str(path), None, problem, remedy),))

@@ -1,0 +1,193 @@
+"""Parameter studies: one case with many settings, on all cores or on a cluster.
+
+Everything stays in one directory: `sweep.jsonl`, which a broken sweep goes on from, and the runs in `runs/`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from frbcli.case.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.scene.plan import make_plan
+from frbcli.studies.sweep.log import append, open_log
+from frbcli.studies.sweep.points import Settings, checked, grid
+from frbcli.studies.sweep.task import INPUT_ERROR, INTERRUPTED, METHODS, SweepPoint, Task, one_line, solve
+from frbcli.studies.sweep.workers import Workers, check_workers, solved
+from frbcli.version import __version__
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Observer", "Sweep", "SweepPoint", "Workers", "check_table_format", "sweep", "write_table"]
+
+LOG, RUNS = "sweep.jsonl", "runs"
+TABLE_FORMATS = ("csv", "parquet")
+EVENTS = {"runup": ("critical-speed", "onset", "offset", "lock-in", "contact"), "stability": ("threshold",)}
+# decisions of a plan that choose the kernels
+COMPILED_FOR = ("bearings", "theory", "cavitation", "coupling", "film", "integrator")
+WARM_UP_s = 1e-3
+
+Observer = Callable[[SweepPoint, int, int], None]  # a point, how many are done, how many there are
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """points: in the order of their numbers, those that failed included."""
+
+    case: Case
+    method: str
+    points: tuple[SweepPoint, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys that the points set, in the order in which they first appear."""
+        return tuple(dict.fromkeys(key for point in self.points for key in point.settings))
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per point: number, values set as text, status, message, first event of each kind, cost."""
+        import pandas as pd
+
+        return pd.DataFrame([_row(point, self.keys, EVENTS[self.method]) for point in self.points])
+
+
+def sweep(
+    case: Case,
+    points: Mapping[str, Sequence[object]] | Sequence[Mapping[str, object]],
+    directory: str | Path,
+    method: str = "runup",
+    keep_runs: bool = True,
+    workers: Workers | None = None,
+    observe: Observer | None = None,
+) -> Sweep:
+    """Compute a case at many points: keys with the values of each (all combinations), or a list of points.
+
+    method: "runup", or "stability" for the threshold speed alone; directory: holds the log and, with keep_runs, the
+    runs; a second call with the same case and points goes on with what is missing. observe: called in this process
+    after each point. Ctrl-C returns what there is; points without a result are "interrupted". A point that fails has a
+    status and a message, and the others go on.
+
+    Raises InputError if no point is a case, or for a directory that cannot be written or holds another sweep.
+    """
+    workers = workers or Workers()
+    settings = grid(points) if isinstance(points, Mapping) else checked(points)
+    if method not in METHODS:
+        raise _refuse("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
+    check_workers(workers)
+    cases = [_case(case, chosen) for chosen in settings]
+    if isinstance(cases[0], InputError) and not any(isinstance(each, Case) for each in cases):
+        raise cases[0]
+    folder = Path(directory).absolute()
+    _make(folder / RUNS if keep_runs and method == "runup" else folder)
+    log = folder / LOG
+    found = {point.number: point for point in open_log(log, _header(case, settings, method), case)}
+
+    def take(point: SweepPoint) -> None:
+        found[point.number] = point
+        append(log, [point])
+        if observe is not None:
+            observe(point, len(found), len(settings))
+
+    tasks: list[Task] = []
+    for number, (chosen, its_case) in enumerate(zip(settings, cases, strict=True), 1):
+        if number in found:
+            continue
+        if isinstance(its_case, InputError):
+            take(SweepPoint(number, chosen, INPUT_ERROR, one_line(its_case)))
+            continue
+        run = folder / RUNS / f"{number:0{max(3, len(str(len(settings))))}d}.h5"
+        tasks.append(Task(number, chosen, its_case, method, run if keep_runs and method == "runup" else None))
+    try:
+        if tasks and workers.backend == "loky":
+            _compile(tasks)
+        with closing(solved(tasks, workers)) as points_solved:
+            for point in points_solved:
+                take(point)
+    except KeyboardInterrupt:
+        pass
+    missing = {n: SweepPoint(n, chosen, INTERRUPTED) for n, chosen in enumerate(settings, 1) if n not in found}
+    return Sweep(case, method, tuple(point for _, point in sorted((missing | found).items())))
+
+
+def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Path:
+    """Write the table of a sweep as "csv" or "parquet". Raises InputError if that does not work."""
+    path = Path(path)
+    check_table_format(table_format)
+    try:
+        if table_format == "csv":
+            found.to_pandas().to_csv(path, index=False, lineterminator="\n")
+        else:
+            found.to_pandas().to_parquet(path, index=False)
+    except (OSError, ValueError) as error:
+        raise _refuse("--output", str(path), f"cannot be written: {error}.", "Choose another directory.") from error
+    return path
+
+
+def check_table_format(table_format: str) -> None:
+    """Raises InputError if no table can be written so: before the work, not after."""
+    if table_format not in TABLE_FORMATS:
+        raise _refuse("--format", table_format, "is no format.", f"There are: {', '.join(TABLE_FORMATS)}.")
+    if table_format == "parquet" and find_spec("pyarrow") is None:
+        raise _refuse("--format", "parquet", "needs the library pyarrow.", "pip install frbcli[parquet], or use csv.")
+
+
+def _case(case: Case, chosen: Settings) -> Case | InputError:
+    """The case of a point that can be modelled, or why it cannot."""
+    try:
+        its_case = load_case_text(case.source_text, [f"{key}={value}" for key, value in chosen.items()], case.name)
+        make_plan(its_case)
+    except InputError as error:
+        return error
+    return its_case
+
+
+def _compile(tasks: Sequence[Task]) -> None:
+    """Run a moment of one task of each kind, so that its kernels are compiled once and not in every process."""
+    kinds: dict[object, Task] = {}
+    for task in tasks:
+        decisions = make_plan(task.case).decisions
+        kinds.setdefault(tuple(made.value for made in decisions if made.choice in COMPILED_FOR), task)
+    for task in kinds.values():
+        case = task.case
+        moment = (f"speed.from={case.speed.end!r}", f"speed.duration={max(WARM_UP_s, 2 * case.output.step)!r}")
+        with TemporaryDirectory(prefix="frb-sweep-") as folder:
+            run = Path(folder) / "moment.h5"
+            solve(Task(0, {}, load_case_text(case.source_text, moment, case.name), task.method, run))
+
+
+def _header(case: Case, settings: Sequence[Settings], method: str) -> dict[str, Any]:
+    return {"version": __version__, "method": method, "case": case.source_text, "points": list(settings)}
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise _refuse("--output", str(folder), f"cannot be made: {reason}.", "Choose another directory.") from error
+
+
+def _row(point: SweepPoint, keys: Sequence[str], kinds: Sequence[str]) -> dict[str, Any]:
+    row: dict[str, Any] = {"point": point.number} | {key: point.settings.get(key) for key in keys}
+    row |= {"status": point.status, "message": point.message}
+    for kind in kinds:
+        event = point.first(kind) or {}
+        name = kind.replace("-", "_").removesuffix("_speed")
+        row |= {f"{name}_{value}": _number(event.get(value)) for value in ("speed_Hz", "frequency_Hz")}
+    return row | {name: _number(point.cost.get(name)) for name in ("cpu_s", "wall_s")}
+
+
+def _number(value: Any) -> float:
+    return math.nan if value is None else float(value)
+
+
+def _refuse(key: str, value: str, problem: str, remedy: str) -> InputError:
+    return InputError("sweep", (Fault(key, value, None, problem, remedy),))

@@ -1,0 +1,132 @@
+"""Who computes the points of a sweep: processes of this machine, or the workers of a dask cluster."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import warnings
+from collections.abc import Generator, Iterable, Iterator
+from concurrent.futures import BrokenExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any
+
+import joblib
+
+from frbcli.errors import Fault, InputError
+from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
+
+BACKENDS = ("loky", "dask")
+CONNECT_WITHIN_s = 10.0
+QUEUE = 2  # tasks given out per worker: the next one waits where the last one ends
+DIED = "its process died: it was killed, or the memory was short."
+
+
+@dataclass(frozen=True)
+class Workers:
+    """backend: "loky" for processes of this machine, "dask" for a cluster; jobs: how many processes, -1 for one on each
+    core; scheduler: address of the cluster's, e.g. "tcp://10.0.0.1:8786"."""
+
+    backend: str = "loky"
+    jobs: int = -1
+    scheduler: str = ""
+
+
+def check_workers(workers: Workers) -> None:
+    """Raises InputError if there can be no such workers."""
+    if workers.backend not in BACKENDS:
+        raise _refuse("--backend", workers.backend, "is no backend.", f"There are: {', '.join(BACKENDS)}.")
+    if workers.backend == "dask" and not workers.scheduler:
+        raise _refuse("--scheduler", "", "is missing.", "Write e.g. --scheduler tcp://10.0.0.1:8786.")
+    if workers.backend == "dask" and find_spec("distributed") is None:
+        remedy = "Install it: pip install frbcli[cluster]"
+        raise _refuse("--backend", "dask", "needs the library dask.distributed.", remedy)
+    if workers.backend != "dask" and workers.scheduler:
+        raise _refuse("--scheduler", workers.scheduler, "is for a cluster.", "Add --backend dask.")
+    if workers.jobs != -1 and workers.jobs < 1:
+        raise _refuse("--jobs", str(workers.jobs), "is no number of processes.", "Write 1 or more.")
+
+
+def solved(tasks: Iterable[Task], workers: Workers) -> Generator[SweepPoint, None, None]:
+    """The points of all tasks, each as soon as it is computed.
+
+    A process that dies takes what is under way with it. These tasks then run again, one at a time, so that the one that
+    kills its process is known and fails alone. Raises InputError if the cluster cannot be reached.
+    """
+    waiting = {task.number: task for task in tasks}
+    with _deaths(workers) as deaths:
+        under_way = QUEUE * joblib.effective_n_jobs(workers.jobs)
+        while waiting:
+            try:
+                with _dropped_at_the_end(_together(waiting.values(), workers.jobs)) as points:
+                    for point in points:
+                        del waiting[point.number]
+                        yield point
+            except deaths:
+                for task in list(waiting.values())[:under_way]:
+                    del waiting[task.number]
+                    yield _alone(task, workers.jobs, deaths)
+
+
+def _together(tasks: Iterable[Task], jobs: int) -> Generator[SweepPoint, None, None]:
+    parallel = joblib.Parallel(
+        n_jobs=jobs, batch_size=1, pre_dispatch=f"{QUEUE} * n_jobs", return_as="generator_unordered"
+    )
+    found: Generator[SweepPoint, None, None] = parallel(joblib.delayed(solve)(task) for task in list(tasks))
+    return found
+
+
+@contextmanager
+def _dropped_at_the_end(points: Generator[SweepPoint, None, None]) -> Iterator[Iterator[SweepPoint]]:
+    """What is under way when nobody wants more of `points` is dropped; joblib warns of it, but it is meant so."""
+    try:
+        yield points
+    finally:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            points.close()
+
+
+def _alone(task: Task, jobs: int, deaths: tuple[type[Exception], ...]) -> SweepPoint:
+    try:
+        (point,) = _together([task], jobs)
+        return point
+    except deaths:
+        return task.failed(ERROR, DIED)
+
+
+@contextmanager
+def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
+    """Within it joblib uses these workers; what is raised when one of them dies."""
+    if workers.backend == "loky":
+        with joblib.parallel_config("loky", inner_max_num_threads=1):  # one core for each point
+            _start(workers.jobs)
+            yield (BrokenExecutor,)
+        return
+    from distributed import Client, KilledWorker
+
+    connect: Any = Client  # without types where it is installed
+    try:
+        client = connect(workers.scheduler, timeout=CONNECT_WITHIN_s, set_as_default=False)
+    except (OSError, ValueError) as error:
+        remedy = "Start `dask scheduler` and `dask worker`, and give the scheduler's address."
+        raise _refuse("--scheduler", workers.scheduler, f"cannot be reached: {error}.", remedy) from error
+    with client, joblib.parallel_config("dask", client=client):
+        yield (KilledWorker,)
+
+
+def _start(jobs: int) -> None:
+    """Start the processes deaf to Ctrl-C, which reaches them, too: this one hears it, and then ends them quietly."""
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        return
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        joblib.Parallel(n_jobs=jobs)(joblib.delayed(abs)(0) for _ in range(joblib.effective_n_jobs(jobs)))
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _refuse(option: str, value: str, problem: str, remedy: str) -> InputError:
+    return InputError("sweep", (Fault(option, value, None, problem, remedy),))
