@@ -11,7 +11,7 @@ from frbcli.film.cells.ends import PREFACTOR, STEEPNESS
 from frbcli.film.gap import Lobes
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import Elements
-from frbcli.film.quadratic.mesh import QuadraticMesh
+from frbcli.film.published.mesh import QuadraticMesh
 
 Diffusion = Literal["consistent", "streamline", "none"]
 

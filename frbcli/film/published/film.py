@@ -15,9 +15,9 @@ from frbcli.film.grid import Array
 from frbcli.film.published.assembly import Gap
 from frbcli.film.published.elements import Diffusion, force_weights, lobe_slope, make_elements
 from frbcli.film.published.law import Step, make_step
+from frbcli.film.published.mesh import quadratic_mesh
 from frbcli.film.published.newton import NONE, Equations, Newton, Point
 from frbcli.film.published.solution import FilmState, PublishedSolution, Response
-from frbcli.film.quadratic.mesh import quadratic_mesh
 from frbcli.film.rectangles.bearing import FilmForce
 
 AROUND, ALONG = 20, 10  # elements of a section, figure 6.2

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from frbcli.film.cells.ends import PREFACTOR, STEEPNESS
 from frbcli.film.grid import Array
 from frbcli.film.published.law import Step, oil_fraction, step_pressure
-from frbcli.film.quadratic.mesh import QuadraticMesh
+from frbcli.film.published.mesh import QuadraticMesh
 
 SETTLED = 1e-14
 MOST = 60

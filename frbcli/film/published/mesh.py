@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from frbcli.film.cells.openings import hole_area, wrapped
 from frbcli.film.gap import Hole, Section, groove_pressure
 from frbcli.film.grid import Array
-from frbcli.film.quadratic.bores import Box, hole_box, rounded
+from frbcli.film.published.bores import Box, hole_box, rounded
 
 TURN = 2.0 * np.pi
 SAME = 1e-9  # faces closer than this are one, rad and shares of the width
