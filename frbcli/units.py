@@ -24,6 +24,25 @@ _SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "min^-1":
 _ANGLE_UNITS = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
 _NUMBER_UNITS = {"": 1.0, "1": 1.0, "%": 0.01}
 _TABLES = {SPEED: _SPEED_UNITS, ANGLE: _ANGLE_UNITS, NUMBER: _NUMBER_UNITS}
+# The units that cases are written in, so that most need no registry of units, which takes a second to load. A test
+# holds every factor to the registry; any other unit goes there.
+_COMMON: dict[str, dict[str, float]] = {
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9},
+    "kg": {"kg": 1.0, "g": 1e-3, "t": 1e3},
+    "kg*m": {"kg*m": 1.0, "g*mm": 1e-6, "g*m": 1e-3, "kg*mm": 1e-3},
+    "kg*m^2": {"kg*m^2": 1.0, "kg*mm^2": 1e-6, "g*mm^2": 1e-9},
+    "kg/m^3": {"kg/m^3": 1.0, "g/cm^3": 1e3, "kg/l": 1e3},
+    "N": {"N": 1.0, "kN": 1e3},
+    "N/m": {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6, "kN/mm": 1e6, "MN/m": 1e6},
+    "N*s/m": {"N*s/m": 1.0, "N*s/mm": 1e3, "kN*s/m": 1e3},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mbar": 1e2, "bar": 1e5, "N/mm^2": 1e6},
+    "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3, "cP": 1e-3},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0},
+    "m/s^2": {"m/s^2": 1.0},
+    "1/K": {"1/K": 1.0},
+    TEMPERATURE_DIFFERENCE: {"K": 1.0},
+}
+_CELSIUS = {"degC": 273.15, "°C": 273.15}  # K
 
 _TEXT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 # A product of names with one-digit powers: all that a case needs, and nothing that pint could be kept busy with.
@@ -108,7 +127,10 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         raise ValueFault("has no unit.", remedy)
     if unit_text == readable(unit):
         return number
-    return _round(_by_pint(number, unit_text, unit, remedy))
+    if unit == "K" and unit_text in _CELSIUS:
+        return _round(number + _CELSIUS[unit_text])
+    factor = _COMMON.get(unit, {}).get(unit_text)
+    return _round(_by_pint(number, unit_text, unit, remedy) if factor is None else number * factor)
 
 
 def _by_pint(number: float, unit_text: str, unit: str, remedy: str) -> float:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from frbcli import units
 from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity
 
 
@@ -138,3 +141,21 @@ def test_anything_is_a_finite_number_or_a_fault(given: object, unit: str) -> Non
 )
 def test_any_unit_is_read_or_refused(number: float, unit_text: str, unit: str) -> None:
     assert is_number_or_fault(f"{number} {unit_text}", unit)
+
+
+COMMON = [(unit, text) for unit, factors in units._COMMON.items() for text in factors]
+
+
+@pytest.mark.parametrize(("unit", "text"), [*COMMON, ("K", "degC"), ("K", "°C")])
+@given(number=st.floats(-1e6, 1e6, allow_subnormal=False))
+def test_common_units_are_those_of_the_registry(unit: str, text: str, number: float) -> None:
+    written = float(f"{number:.9g}")
+    assert quantity(f"{written!r} {text}", unit) == pytest.approx(
+        units._by_pint(written, text, unit, ""), rel=1e-14, abs=1e-12 if unit == "K" else 0.0
+    )
+
+
+def test_a_shipped_case_needs_no_registry_of_units() -> None:
+    load = "import sys, frbcli; [frbcli.load_case(name) for name in frbcli.shipped_cases()]"
+    code = f"{load}; assert 'pint' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
