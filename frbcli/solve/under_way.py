@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -190,7 +190,7 @@ class March:
         clock = np.array([self._cpu_s, self._wall_s])
         return {**self._state._asdict(), "film_samples": self._samples, "clock": clock}
 
-    def restore(self, checkpoint: dict[str, Array]) -> None:
+    def restore(self, checkpoint: Mapping[str, Array]) -> None:
         """Take up the state of a checkpoint."""
         self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
         self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
