@@ -8,7 +8,6 @@ one piece, so that no part is larger than the file.
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -90,7 +89,7 @@ def has(inside: h5py.Group, name: str) -> bool:
 
 def rest(arrays: Iterable[Stored], length: int) -> int:
     """How many of the bytes of a file are not those of its arrays; negative where arrays share them."""
-    return length - sum(math.prod(found.shape) * found.dtype.itemsize for found in arrays)
+    return length - sum(found.bytes for found in arrays)
 
 
 def _member(inside: h5py.Group, name: str, kind: type[Any]) -> Any:

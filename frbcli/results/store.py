@@ -42,6 +42,7 @@ INTERRUPTED = "interrupted"
 CLEARANCE_STEP = "clearance_step"  # begins the names of the references that are times of one
 TEXTS = ("title", "command", "case_name", "case_text", "status")
 RECORDS = ("versions", "references", "cost", "error", "events")  # kept as JSON text
+LARGEST_STATE = 128 * 1024**2  # bytes of a checkpoint; cells have some hundred thousand numbers
 LARGEST_REST = 8 * 1024**2  # bytes of a file that are not numbers of signals and checkpoint
 UNREADABLE = (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError, OverflowError, MemoryError)
 
@@ -278,6 +279,8 @@ def _read(path: Path, file: h5py.File, place: Place) -> Run:
     rest = parts.rest([*columns.values(), *({} if state is None else state).values()], place.size - USER_BLOCK)
     if not 0 <= rest <= LARGEST_REST:
         raise parts.WrongPart("the sizes of its parts do not make up that of the file")
+    if sum(array.bytes for array in ({} if state is None else state).values()) > LARGEST_STATE:
+        raise parts.WrongPart("its checkpoint is too large")
     texts: dict[str, Any] = {name: parts.text(file, name) for name in TEXTS}
     records = {name: parts.record(file, name) for name in RECORDS}
     t_end_s = float(parts.number_attribute(file, "t_end_s"))

@@ -71,6 +71,11 @@ class Stored:
         self.place.read(self.offset + first * self.dtype.itemsize * math.prod(self.shape[1:]), array)
         return array
 
+    @property
+    def bytes(self) -> int:
+        """How many it takes."""
+        return math.prod(self.shape) * self.dtype.itemsize
+
     def whole(self) -> NDArray[Any]:
         """All of it; an array of no dimension, too."""
         array = np.empty(self.shape, dtype=self.dtype)

@@ -27,6 +27,7 @@ from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.march import advance
 from frbcli.solve.oil import no_oil_comes_in, oil_passed
 from frbcli.solve.published_march import advance_published
+from frbcli.solve.restored import array, restored
 from frbcli.solve.run_header import named, ring_names
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import (
@@ -40,7 +41,6 @@ from frbcli.solve.state import (
     TIME,
     TURNS,
     Array,
-    State,
 )
 from frbcli.solve.tableau import METHODS
 
@@ -191,11 +191,14 @@ class March:
         return {**self._state._asdict(), "film_samples": self._samples, "clock": clock}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
-        """Take up the state of a checkpoint."""
-        self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
+        """Take up the state of a checkpoint. Raises WrongCheckpoint if it is not one of this run."""
+        state = restored(checkpoint, self._state, self._profile, self._control.output_step)
+        rows = math.ceil(state.numbers[OUTPUTS] / self._sample_every)
+        samples = array(checkpoint, "film_samples", (rows, self._samples.shape[1]))
+        clock = array(checkpoint, "clock", (2,))
+        self._state, self._samples = state, samples
         self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
-        self._samples = checkpoint["film_samples"].reshape(-1, self._samples.shape[1])
-        self._cpu_s, self._wall_s = (float(value) for value in checkpoint["clock"])
+        self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def cost(self) -> dict[str, float]:
         """What the run has cost so far, without compilation and without tabulating the films."""
