@@ -5,6 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 
+def printable(text: str) -> str:
+    """`text` without what a terminal would obey: control and escape characters, but for new lines, become "?"."""
+    return "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in text)
+
+
 class FrbError(Exception):
     """Base class. `exit_code` is what the command line ends with."""
 

@@ -24,7 +24,7 @@ from frbcli.case.schema import json_schema
 from frbcli.case.shipped import find_shipped, shipped_names
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, RunFileError
-from frbcli.results.container import USER_BLOCK, read_whole, seal
+from frbcli.results.container import USER_BLOCK, seal
 from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.scene.plan import Plan, make_plan
 
@@ -249,7 +249,7 @@ def resealed(whole: bytes, path: Path, change: Callable[[h5py.File], None]) -> N
 def test_a_run_file_with_wrong_parts_is_read_or_refused(whole_run: bytes, tmp_path: Path) -> None:
     path, names = tmp_path / "run.h5", []
     path.write_bytes(whole_run)
-    with h5py.File(io.BytesIO(read_whole(path)), "r") as file:
+    with h5py.File(io.BytesIO(path.read_bytes()), "r") as file:
         file.visit(names.append)
     outcomes = []
     for seed in range(MUTATIONS // 4):

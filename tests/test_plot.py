@@ -19,13 +19,15 @@ from frbcli.case.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.displacement import displacement_figure
 from frbcli.plot.eccentricity import eccentricity_figure
+from frbcli.plot.envelope import DRAWN_POINTS, Envelope, at_times, curve
 from frbcli.plot.oil_content import oil_content_figure
-from frbcli.plot.orbit import orbit_figure
+from frbcli.plot.orbit import orbit_figure, visible_steps
 from frbcli.plot.ring_speed import ring_speed_figure
-from frbcli.plot.signals import DRAWN_POINTS, clearance, labels, model, thin
+from frbcli.plot.signals import clearance, labels, model
 from frbcli.plot.style import save_figure
 from frbcli.plot.summary import summary_figure
-from frbcli.plot.waterfall import LEVELS_dB, waterfall_figure
+from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
+from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
 FILM = '[film]\ntheory = "finite"\ncavitation = "{}"\n'
@@ -130,7 +132,8 @@ def test_eccentricities_are_overlaid_and_told_apart_by_model(run: Run) -> None:
 def test_labels_fall_back_to_files(run: Run) -> None:
     assert labels([run, replace(run, path=Path("b/other.h5"))]) == ["run", "other"]
     assert len(set(labels([run, replace(run, path=Path("b/run.h5"))]))) == 2
-    assert model(replace(run, case_text="not toml [")) == model(replace(run, case_text="film = 3")) == ""
+    for text in ("", "film = 3", "[film]\ncavitation = 3", "[film]\ncavitation = ['\\u001b']"):
+        assert model(replace(run, case_text=text)) == ""
     assert model(replace(run, case_text='[film]\ncavitation = { two-phase = { steepness = 0.9 } }')) == "two-phase"
 
 
@@ -277,7 +280,10 @@ def test_thinned_curves_keep_their_extremes() -> None:
     time_s = np.linspace(0.0, 1.0, 200_001)
     values = np.sin(400 * time_s)
     values[123_456] = 5.0
-    few, kept = thin(time_s, values)
+    line = Envelope(len(time_s))
+    for first, last in ((0, 1), (1, 70_000), (70_000, len(time_s))):
+        line.add(time_s[first:last], values[first:last])
+    few, kept = line.points()
     assert len(few) < 1.1 * DRAWN_POINTS
     assert (np.diff(few) > 0.0).all()
     assert (kept.max(), kept.min()) == (5.0, values.min())
@@ -307,3 +313,72 @@ def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:
 def test_drawing_does_not_import_pyplot() -> None:
     code = "import sys, frbcli.plot.summary, frbcli.plot.orbit; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[1], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    "text", ["not toml [", "a = " + "[" * 1000 + "]" * 1000, "a = 1" + "0" * 5000, "a." * 300 + "b = 1"]
+)
+def test_a_case_that_cannot_be_read_is_the_fault_of_its_run(run: Run, text: str) -> None:
+    with pytest.raises(RunFileError, match="no readable case"):
+        model(replace(run, case_text=text))
+
+
+def test_letters_of_a_title_are_neither_mathematics_nor_orders_to_a_terminal(run: Run, tmp_path: Path) -> None:
+    figure = eccentricity_figure([replace(run, title="costs 5 $, \\foo 7 $ \x1b[31m 漢")])
+    save_figure(figure, tmp_path / "a.svg")
+    assert "costs 5 $, \\foo 7 $ ?[31m 漢" in (tmp_path / "a.svg").read_text()
+
+
+def test_a_curve_is_the_same_however_it_is_read(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = curve(run, run.signal("eccentricity"), 100, 150_001)
+    between = at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333))
+    monkeypatch.setattr("frbcli.plot.envelope.pieces", lambda first, last: pieces(first, last, 777))
+    for all_at_once, in_pieces in zip(whole, curve(run, run.signal("eccentricity"), 100, 150_001), strict=True):
+        np.testing.assert_array_equal(all_at_once, in_pieces)
+    np.testing.assert_array_equal(between, at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333)))
+
+
+def test_curves_over_speed_are_the_same_however_they_are_read(ringed: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def drawn() -> list[np.ndarray]:
+        return [line.get_xydata() for axes in eccentricity_figure([ringed], over="speed").axes for line in axes.lines]
+
+    whole = drawn()
+    monkeypatch.setattr("frbcli.plot.curves.pieces", lambda first, last: pieces(first, last, 777))
+    for all_at_once, in_pieces in zip(whole, drawn(), strict=True):
+        np.testing.assert_array_equal(all_at_once, in_pieces)
+
+
+def test_a_waterfall_is_the_same_however_it_is_read(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = run_spectra(run, "journal", 0.2, "x")
+    monkeypatch.setattr("frbcli.plot.waterfall.MOST_AT_ONCE", 20_000)
+    in_pieces = run_spectra(run, "journal", 0.2, "x")
+    for name in ("time_s", "speed_Hz", "frequency_Hz", "amplitude", "level_dB"):
+        np.testing.assert_allclose(getattr(in_pieces, name), getattr(whole, name), rtol=1e-9, atol=1e-20)
+    monkeypatch.setattr("frbcli.plot.waterfall.MOST_COLUMNS", 100)
+    monkeypatch.setattr("frbcli.plot.waterfall.MOST_LINES", 100)
+    fewer = run_spectra(run, "journal", 0.2, "x")
+    assert fewer.level_dB.shape == (len(fewer.frequency_Hz), len(fewer.time_s))
+    assert fewer.level_dB.shape < (100, 100)
+    assert fewer.level_dB.max() == pytest.approx(whole.level_dB.max(), rel=1e-12)
+    assert fewer.time_s == pytest.approx(np.linspace(fewer.time_s[0], fewer.time_s[-1], len(fewer.time_s)), abs=0.1)
+
+
+def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    x, y = run.signal("journal_x_m"), run.signal("journal_y_m")
+    monkeypatch.setattr("frbcli.plot.orbit.ALL_DRAWN", 1000)
+    begins, ends, gaps = np.stack(visible_steps(x, y, 0, len(run))).reshape(2, -1, 3).T
+    assert np.isnan(gaps).all()
+    assert len(begins) < 0.1 * len(run)
+    lines = np.concatenate([begins + share * (ends - begins) for share in np.linspace(0.0, 1.0, 9)])
+    cell = 2.0 * float(np.hypot(x.values, y.values).max()) / 600
+    orbit = set(map(tuple, np.round(np.stack([x.values, y.values], axis=1) / cell).astype(int)))
+    kept = set(map(tuple, np.round(lines / cell).astype(int)))
+    reached = {(i + k, j + m) for i, j in kept for k in (-1, 0, 1) for m in (-1, 0, 1)}
+    assert orbit <= reached
+
+
+def test_a_picture_marks_no_more_events_than_it_has_room_for(run: Run) -> None:
+    event = {"kind": "contact", "film": None, "t_s": 2.0, "speed_Hz": 60.0, "frequency_ratio": None}
+    figure = summary_figure(replace(run, events=[event] * 9000))
+    assert texts(figure).count("contact\n60.0 Hz") == 50
+    assert "the first 50 of 9000 events" in texts(figure)

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from frbcli.errors import InputError, RunFileError
-from frbcli.results.container import USER_BLOCK, read_whole, write_whole
+from frbcli.results.container import USER_BLOCK, write_whole
 from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 
 HEADER = Header(
@@ -29,7 +29,7 @@ HEADER = Header(
     versions={"frbcli": "0.1"},
     references={"clearance_m": 35e-6},
 )
-EVENT = {"kind": "onset", "film": None, "t_s": 0.5, "speed_Hz": 150.0}
+EVENT = {"kind": "onset", "film": None, "t_s": 0.05, "speed_Hz": 1.5, "frequency_Hz": 0.7, "frequency_ratio": 0.47}
 
 
 def chunk(first: int, last: int) -> dict[str, np.ndarray]:
@@ -187,7 +187,7 @@ PARTS = ["title", "status", "case_text", "events", "cost", "versions", "signals"
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("change", ["missing", "number", "text", "group", "table"])
 def test_a_run_with_a_wrong_part_is_refused_or_read(run_path: Path, part: str, change: str) -> None:
-    content = io.BytesIO(read_whole(run_path))
+    content = io.BytesIO(run_path.read_bytes())
     with h5py.File(content, "r+") as file:
         del file[part]
         if change == "group":
@@ -207,7 +207,7 @@ def test_a_run_with_a_wrong_part_is_refused_or_read(run_path: Path, part: str, c
 
 
 def test_signals_of_different_length_are_refused(run_path: Path) -> None:
-    content = io.BytesIO(read_whole(run_path))
+    content = io.BytesIO(run_path.read_bytes())
     with h5py.File(content, "r+") as file:
         del file["signals/time_s"]
         file["signals/time_s"] = np.zeros(3)
@@ -221,12 +221,14 @@ KILLED = """
     import sys
     import numpy as np
     from frbcli.results.store import Header, RunWriter
-    names = [f"signal_{i}" for i in range(10)]
-    writer = RunWriter(sys.argv[1], Header("t", "runup", "c", "", {"time_s": "s"} | dict.fromkeys(names, "m")))
+    names = [f"disk_{i}_x_m" for i in range(10)]
+    units = {"time_s": "s", "speed_Hz": "Hz"} | dict.fromkeys(names, "m")
+    writer = RunWriter(sys.argv[1], Header("t", "runup", "c", "", units))
     sys.stdout.write("go\\n")
     sys.stdout.flush()
     for n in range(100_000):
-        writer.append({"time_s": np.full(500, float(n))} | {name: np.full(500, float(n)) for name in names})
+        values = {"time_s": np.arange(500 * n, 500 * (n + 1)) * 1e-3, "speed_Hz": np.zeros(500)}
+        writer.append(values | {name: np.full(500, float(n)) for name in names})
         writer.checkpoint({"n": np.array(n)}, {"n": n}, {}, t=float(n))
 """
 
@@ -247,7 +249,7 @@ def test_a_killed_run_leaves_a_file_that_opens(tmp_path: Path) -> None:
         if run.checkpoint is not None:
             n = int(run.checkpoint["n"])
             assert len(run) == run.checkpoint_samples == 500 * (n + 1)
-            assert run["signal_9"][-1] == run.t_end_s == run.cost["n"] == n
+            assert run["disk_9_x_m"][-1] == run.t_end_s == run.cost["n"] == n
         reached.append(run.t_end_s)
     assert max(reached) > 0.0  # at least one was killed while it was writing checkpoints
 

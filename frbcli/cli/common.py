@@ -22,6 +22,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from frbcli.errors import printable
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -55,9 +57,9 @@ class Terminal:
         return Console(stderr=True, quiet=self.quiet, highlight=False, markup=False, emoji=False)
 
     def say(self, text: str = "") -> None:
-        """Print `text` for people, as it is."""
+        """Print `text` for people; of control characters, which names of files may have, only new lines."""
         if not self.quiet:
-            click.echo(text, err=True)
+            click.echo(printable(text), err=True)
 
     def progress(self, line: str, show: Callable[[str], None] | None) -> None:
         """How far a command is: by `show`, which moves a line where somebody watches, else a line of its own."""
@@ -78,13 +80,14 @@ class Terminal:
         for column in columns:
             table.add_column(column, overflow="fold")
         for row in rows:
-            table.add_row(*(Text(str(cell)) for cell in row))
+            table.add_row(*(Text(printable(str(cell))) for cell in row))
         self.console().print(table)
 
     def emit(self, document: Mapping[str, object]) -> None:
         """Print the command's one JSON document on stdout if --json was given; NaN and infinities become null."""
         if self.json:
-            click.echo(json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False))
+            text = json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False)
+            click.echo("".join(map(_as_json, text)))
 
 
 def short_number(value: float | None) -> str:
@@ -149,6 +152,11 @@ def _load(context: click.Context, _: click.Parameter, source: str) -> Case:
     from frbcli.case.load import load_case
 
     return load_case(source, context.meta.get(_SETTINGS, ()))
+
+
+def _as_json(letter: str) -> str:
+    """A letter as JSON prints it: what a terminal would obey as an escape of JSON."""
+    return letter if letter.isprintable() or letter == "\n" else json.dumps(letter)[1:-1]
 
 
 def _plain(value: object) -> object:

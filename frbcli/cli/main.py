@@ -6,13 +6,14 @@ Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason tha
 from __future__ import annotations
 
 import importlib
+import io
 import sys
 from collections.abc import Sequence
 
 import click
 
 from frbcli.cli.common import Terminal
-from frbcli.errors import Fault, FrbError, InputError, NotConverged
+from frbcli.errors import Fault, FrbError, InputError, NotConverged, printable
 from frbcli.version import __version__
 
 # name: (module, one line of help); the module is imported when its command is called
@@ -83,11 +84,13 @@ def run(arguments: Sequence[str]) -> int:
         nothing_asked.show()
         return nothing_asked.exit_code
     except click.ClickException as wrong_usage:
-        wrong_usage.show()
+        told = io.StringIO()
+        wrong_usage.show(told)
+        click.echo(printable(told.getvalue()), nl=False, err=True)
         _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
         return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
     except FrbError as error:
-        click.echo(f"frb: {error}", err=True)
+        click.echo(printable(f"frb: {error}"), err=True)
         _emit_error(arguments, error)
         return error.exit_code
     return code if isinstance(code, int) else 0

@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films, joined
-from frbcli.plot.signals import CAVITATION_NAMES, thin, times
-from frbcli.plot.style import COLOURS, new_figure, styled
+from frbcli.plot.envelope import curve
+from frbcli.plot.signals import CAVITATION_NAMES, ends
+from frbcli.plot.style import COLOURS, MOST_MARKED, new_figure, styled
 from frbcli.results.store import Run
 from frbcli.studies.compare import Comparison, Variant
 
@@ -30,7 +31,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
     Raises RunFileError if a run holds no samples.
     """
     runs = [result.run for result in comparison.results]
-    spans = [times(run) for run in runs]
+    spans = [ends(run) for run in runs]
     count = len(runs)
     with styled():
         title = comparison.case.title or comparison.case.name
@@ -42,8 +43,8 @@ def comparison_figure(comparison: Comparison) -> Figure:
         for row, run in enumerate(runs):
             colour, line = COLOURS[row % len(COLOURS)], LINES[row % len(LINES)]
             for film in films(run.signals):
-                values = run[joined("eccentricity", film)]
-                above.plot(*thin(times(run), values), color=colour, linestyle=line, alpha=0.75)
+                drawn = curve(run, run.signal(joined("eccentricity", film)))
+                above.plot(*drawn, color=colour, linestyle=line, alpha=0.75)
             _draw_events(below, run, row, colour, line)
         above.set_ylim(0.0, 1.0)
         above.set_ylabel("eccentricity")
@@ -60,14 +61,13 @@ def comparison_figure(comparison: Comparison) -> Figure:
 def _draw_events(axes: Axes, run: Run, row: int, colour: str, line: Line) -> None:
     """A run as a line as long as it lasts, with its events on it."""
     left, right = axes.get_xlim()
-    time_s = times(run)
-    axes.plot([time_s[0], time_s[-1]], [row, row], color=colour, linestyle=line)
-    for event in run.events:
+    axes.plot(ends(run), [row, row], color=colour, linestyle=line)
+    for event in run.events[:MOST_MARKED]:
         at = event["t_s"]
-        axes.plot(at, row, marker=MARKS[event["kind"]], markersize=6.0, color=colour, clip_on=False)
+        axes.plot(at, row, marker=MARKS.get(event["kind"], "."), markersize=6.0, color=colour, clip_on=False)
         after = at < left + LEFT_SHARE * (right - left)
         axes.annotate(
-            f"{WORDS[event['kind']]} {event['speed_Hz']:.1f} Hz",
+            f"{WORDS.get(event['kind'], event['kind'])} {event['speed_Hz']:.1f} Hz",
             (at, row),
             xytext=(6 if after else -6, 3),
             textcoords="offset points",

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from frbcli.plot.signals import cut, labels, thin, times
+from frbcli.plot.envelope import Column, Envelope, curve, extremes
+from frbcli.plot.signals import cut, labels
 from frbcli.plot.style import COLOURS
 from frbcli.results.container import refuse
+from frbcli.results.records import SPEED
+from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
 Values = NDArray[np.float64]
@@ -21,10 +24,11 @@ Span = tuple[float | None, float | None]
 STANDS = 1e-6  # of the highest speed per sample: less is no change of speed
 OVERLAID = 0.75  # opacity of curves that lie upon each other
 WORDS = {"time": "time in s", "speed": "rotor speed in Hz"}
+WAYS = {"run-up": 1.0, "run-down": -1.0}
 
 
 def draw_curves(
-    axes: Axes, runs: Sequence[Run], signals: Sequence[tuple[str, Sequence[Values]]], over: Over, span: Span
+    axes: Axes, runs: Sequence[Run], signals: Sequence[tuple[str, Sequence[Column]]], over: Over, span: Span
 ) -> None:
     """Curves of all runs on axes of a figure, from and to the times of span in s.
 
@@ -35,10 +39,9 @@ def draw_curves(
     colour = 0
     for number, (run, told) in enumerate(zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True)):
         shown = cut(run, *span)
-        for name, values in signals:
-            for way, time_s, drawn in _ways(run, over, shown, values[number]):
+        for name, columns in signals:
+            for way, place, drawn in _ways(run, over, shown, columns[number]):
                 label = ", ".join(word for word in (told, name, way) if word)
-                place = time_s if over == "time" else np.interp(time_s, times(run), run["speed_Hz"])
                 alpha = OVERLAID if several or way else 1.0
                 axes.plot(place, drawn, color=COLOURS[colour % len(COLOURS)], label=label, alpha=alpha)
                 colour += 1
@@ -50,19 +53,32 @@ def finish(axes: Axes, over: Over) -> None:
     axes.set_xlabel(WORDS[over])
 
 
-def _ways(run: Run, over: Over, shown: slice, values: Values) -> list[tuple[str, Values, Values]]:
+def _ways(run: Run, over: Over, shown: tuple[int, int], column: Column) -> list[tuple[str, Values, Values]]:
     """The way up and the way down of the rotor speed with their thinned curves; all of a curve over time."""
-    time_s, values = times(run)[shown], values[shown]
     if over == "time":
-        return [("", *thin(time_s, values))]
-    speed = run["speed_Hz"][shown]
-    change = np.gradient(speed)
-    least = STANDS * float(np.max(np.abs(speed)))
-    ways = [
-        (name, *thin(time_s[chosen], values[chosen]))
-        for name, chosen in (("run-up", change > least), ("run-down", change < -least))
-        if np.count_nonzero(chosen) > 1
-    ]
-    if not ways:
+        return [("", *curve(run, column, *shown))]
+    least = STANDS * max(map(abs, extremes(run.signal(SPEED), *shown)))
+    counts = dict.fromkeys(WAYS, 0)
+    for _, _, _, change in _changes(run, shown):
+        for way, sign in WAYS.items():
+            counts[way] += int(np.count_nonzero(sign * change > least))
+    lines = {way: Envelope(count) for way, count in counts.items() if count > 1}
+    if not lines:
         raise refuse(run.path, "was made at constant speed.", "Draw it over time.")
+    for start, stop, speed, change in _changes(run, shown):
+        values = column[start:stop]
+        for way, line in lines.items():
+            chosen = WAYS[way] * change > least
+            line.add(speed[chosen], values[chosen])
+    ways = [(way, *line.points()) for way, line in lines.items()]
     return ways if len(ways) > 1 else [("", *ways[0][1:])]
+
+
+def _changes(run: Run, shown: tuple[int, int]) -> Iterator[tuple[int, int, Values, Values]]:
+    """Pieces of the samples shown, from and to, each with the speed and its change per sample there."""
+    first, last = shown
+    for start, stop in pieces(first, last):
+        begin, end = max(start - 1, first), min(stop + 1, last)  # a change is seen from both neighbours
+        speed = run.read(SPEED, begin, end)
+        here = slice(start - begin, stop - begin)
+        yield start, stop, speed[here], np.gradient(speed)[here]

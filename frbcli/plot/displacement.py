@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import joined, points
-from frbcli.plot.signals import MICRO, cut, heading, labels, located, motion, thin, times
+from frbcli.plot.envelope import curve
+from frbcli.plot.signals import MICRO, cut, heading, labels, located, motion
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.store import Run
 
@@ -31,9 +32,9 @@ def displacement_figure(
         panels = figure.subplots(2, 1, sharex=True)
         for run, label in zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True):
             shown = cut(run, from_time, to_time)
-            for axes, values in zip(panels, motion(run, node), strict=True):
-                thinned = thin(times(run)[shown], values[shown] * MICRO)
-                axes.plot(*thinned, label=label, alpha=1.0 if len(runs) == 1 else 0.75)
+            for axes, signal_there in zip(panels, motion(run, node), strict=True):
+                time_s, values = curve(run, signal_there, *shown)
+                axes.plot(time_s, values * MICRO, label=label, alpha=1.0 if len(runs) == 1 else 0.75)
         for axes, name in zip(panels, "xy", strict=True):
             axes.set_ylabel(f"{name} in µm")
             axes.margins(x=0.0)

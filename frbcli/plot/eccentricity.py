@@ -45,7 +45,7 @@ def draw_eccentricity(
     names = names or list(films(runs[0].signals)) or [""]
     told = [_without_side(name) if len(names) < len(list(films(runs[0].signals))) else name for name in names]
     curves = [
-        (label.replace("_", " "), [run[joined("eccentricity", name)] for run in runs])
+        (label.replace("_", " "), [run.signal(joined("eccentricity", name)) for run in runs])
         for label, name in zip(told, names, strict=True)
     ]
     draw_curves(axes, runs, curves, over, span)

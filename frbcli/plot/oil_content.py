@@ -28,7 +28,7 @@ def oil_content_figure(
         if not names or any(name not in run.signals for name in names):
             remedy = "Run the case with a model that conserves oil: peeken, elrod or two-phase."
             raise refuse(run.path, "does not tell how full its films are.", remedy)
-    curves = [(name[len(SIGNAL) + 1 :].replace("_", " "), [run[name] for run in runs]) for name in names]
+    curves = [(name[len(SIGNAL) + 1 :].replace("_", " "), [run.signal(name) for run in runs]) for name in names]
     with styled():
         figure = new_figure(*heading(runs))
         axes = figure.subplots()

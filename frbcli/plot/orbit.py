@@ -8,13 +8,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from numpy.typing import NDArray
 
 from frbcli.analysis.signals import joined, points
-from frbcli.plot.signals import MICRO, clearance, cut, heading, labels, motion, times
+from frbcli.plot.signals import MICRO, clearance, cut, ends, heading, labels, motion
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
+from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
 
+Values = NDArray[np.float64]
+
 LAST_s = 0.1  # what is shown if no time is given
+ALL_DRAWN = 300_000  # samples of an orbit up to which every step is drawn
+CELLS = 600  # in each direction, about as many as the picture has pixels
+PER_STEP = 5  # places of a step at which it is seen to touch a cell
 
 
 def orbit_figure(runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None) -> Figure:
@@ -23,7 +30,7 @@ def orbit_figure(runs: Sequence[Run], from_time: float | None = None, to_time: f
     A dot marks where an orbit begins. Raises RunFileError if a run has no samples between these times.
     """
     bearings = list(points(runs[0].signals, "journal")) or [""]
-    end = min(float(times(run)[-1]) for run in runs) if to_time is None else to_time
+    end = min(ends(run)[1] for run in runs) if to_time is None else to_time
     begin = max(end - LAST_s, 0.0) if from_time is None else from_time
     title, subtitle = heading(runs)
     span = f"orbit from {begin:.4g} s to {end:.4g} s"
@@ -40,14 +47,15 @@ def _draw(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[float, fl
     widest = 0.0
     circles: set[float] = set()
     for number, (run, label) in enumerate(zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True)):
-        shown = cut(run, *span_s)
-        x, y = (values[shown] * MICRO for values in motion(run, joined("journal", bearing)))
+        first, last = cut(run, *span_s)
+        signals = motion(run, joined("journal", bearing))
         colour = COLOURS[number % len(COLOURS)]
+        x, y = (values * MICRO for values in visible_steps(*signals, first, last))
         axes.plot(x, y, color=colour, linewidth=0.9, label=label)
         axes.plot(x[:1], y[:1], color=colour, marker="o", markersize=4.0)
         radius = clearance(run, bearing) * MICRO
         circles.add(radius)
-        widest = max(widest, radius, float(np.max(np.hypot(x, y))))
+        widest = max(widest, radius, _reach(*signals, first, last) * MICRO)
     for radius in circles:
         axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
         axes.annotate(
@@ -60,3 +68,32 @@ def _draw(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[float, fl
     axes.set_ylim(-1.12 * widest, 1.12 * widest)
     axes.set_xlabel("x in µm")
     axes.set_ylabel("y in µm")
+
+
+def _reach(x: Signal, y: Signal, first: int, last: int) -> float:
+    """The largest distance from the center."""
+    return max(float(np.max(np.hypot(x[start:stop], y[start:stop]))) for start, stop in pieces(first, last))
+
+
+def visible_steps(x: Signal, y: Signal, first: int, last: int) -> tuple[Values, Values]:
+    """x and y (k,) of an orbit from one sample to before another: of a long one only the steps that touch a part of the
+    picture that no step before has touched, apart from each other by NaN."""
+    if last - first <= ALL_DRAWN:
+        return x[first:last], y[first:last]
+    reach = _reach(x, y, first, last) or 1.0
+    touched = np.zeros((CELLS, CELLS), dtype=bool)
+    kept = []
+    for start, stop in pieces(first, last - 1):
+        steps = np.stack([np.stack([signal[start:stop], signal[start + 1 : stop + 1]]) for signal in (x, y)])
+        places = steps[:, :1] + np.linspace(0.0, 1.0, PER_STEP)[:, None] * np.diff(steps, axis=1)  # (2, PER_STEP, m)
+        column, row = ((0.5 + 0.5 * places / reach) * (CELLS - 1)).astype(np.int64)
+        cells = CELLS * row + column
+        fresh = ~touched.ravel()[cells]
+        # of the steps of this piece that touch the same fresh part, the first one
+        _, earliest = np.unique(cells.T[fresh.T], return_index=True)
+        chosen = np.unique(np.nonzero(fresh.T)[0][earliest])
+        touched.ravel()[cells[:, chosen]] = True
+        gaps = np.full((2, 1, len(chosen)), np.nan)
+        kept.append(np.concatenate([steps[:, :, chosen], gaps], axis=1).transpose(0, 2, 1).reshape(2, -1))
+    drawn = np.concatenate(kept, axis=1)
+    return drawn[0], drawn[1]

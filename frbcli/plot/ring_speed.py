@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import joined, points, ring_speed
+from frbcli.analysis.signals import joined, points
 from frbcli.case.load import load_case_text
 from frbcli.errors import InputError
 from frbcli.linear.ring_speed import concentric_ratios
 from frbcli.plot.curves import Over, draw_curves, finish
-from frbcli.plot.signals import heading
+from frbcli.plot.envelope import extremes
+from frbcli.plot.signals import case_tables, ends, heading
 from frbcli.plot.style import GREY, legend_below, new_figure, styled
 from frbcli.results.container import refuse
+from frbcli.results.records import SPEED
+from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 
 Values = NDArray[np.float64]
@@ -35,16 +39,21 @@ def ring_speed_figure(
     Raises RunFileError if a run has no ring that turns.
     """
     for run in runs:
+        ends(run)
         if not _turning(run):
             raise refuse(run.path, "has no ring that turns.", "Draw a run of a case with floating rings.")
     names = _turning(runs[0])
-    curves = [(name, [_ratio(run, name) for run in runs]) for name in names]
+    curves = [(name, [_Ratio.of(run, name) for run in runs]) for name in names]
     with styled():
         figure = new_figure(*heading(runs))
         axes = figure.subplots()
         draw_curves(axes, runs, curves, over, (from_time, to_time))
         concentric = _concentric(runs[0]) if len({run.case_text for run in runs}) == 1 else {}
-        highest = max(float(np.nanmax(values[int(START * len(values)) :])) for _, each in curves for values in each)
+        highest = max(
+            extremes(ratio, int(START * len(run)), len(run))[1]
+            for _, each in curves
+            for run, ratio in zip(runs, each, strict=True)
+        )
         for value in sorted(set(concentric.values())):
             axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
         for name, value in concentric.items():
@@ -64,16 +73,29 @@ def _turning(run: Run) -> list[str]:
     return [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
 
 
-def _ratio(run: Run, name: str) -> Values:
-    """NaN where the rotor hardly turns."""
-    speed = np.abs(run["speed_Hz"])
-    fast = speed > SLOWEST * float(np.max(speed))
-    ratio: Values = np.divide(ring_speed(run, name), speed, out=np.full(len(speed), np.nan), where=fast)
-    return ratio
+@dataclass(frozen=True)
+class _Ratio:
+    """Speed of a ring over that of the rotor, NaN where the rotor hardly turns: below `least` Hz."""
+
+    ring: Signal
+    rotor: Signal
+    least: float
+
+    @classmethod
+    def of(cls, run: Run, name: str) -> _Ratio:
+        rotor = run.signal(SPEED)
+        fastest = max(map(abs, extremes(rotor, 0, len(run))))
+        return cls(run.signal(joined("ring_speed", name, "Hz")), rotor, SLOWEST * fastest)
+
+    def __getitem__(self, part: slice) -> Values:
+        speed = np.abs(self.rotor[part])
+        ratio: Values = np.full(len(speed), np.nan)
+        return np.divide(self.ring[part], speed, out=ratio, where=speed > self.least)
 
 
 def _concentric(run: Run) -> dict[str, float]:
-    """Of the run's case, none if it cannot be read."""
+    """Of the run's case, none if this version of frb would not run it."""
+    case_tables(run)
     try:
         return concentric_ratios(load_case_text(run.case_text))
     except InputError:

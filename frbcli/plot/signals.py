@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-import tomllib
+import re
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from frbcli.analysis.events import find_events
+from frbcli.analysis.revolutions import SAMPLES_PER_REVOLUTION
 from frbcli.analysis.signals import bearing_clearance, joined, points
+from frbcli.case.load import LARGEST_FILE
+from frbcli.case.toml import TomlFault, parse
+from frbcli.plot.envelope import extremes
+from frbcli.plot.style import plain
 from frbcli.results.container import refuse
+from frbcli.results.records import SPEED, TIME
+from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 
-Values = NDArray[np.float64]
-
-DRAWN_POINTS = 4000  # more than a picture has columns of pixels
 MICRO = 1e6
+MOST_SEARCHED = 2_000_000  # samples in which events are sought
+_MODEL = re.compile("[a-z-]{1,40}")
 CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerfeld", "reynolds": "Reynolds",
                     "peeken": "Peeken", "elrod": "Elrod"}  # fmt: skip
 
@@ -29,12 +33,11 @@ def located(run: Run, node: str) -> tuple[str, str]:
     return kind, name or next(points(run.signals, kind), "")
 
 
-def motion(run: Run, node: str) -> tuple[Values, Values]:
+def motion(run: Run, node: str) -> tuple[Signal, Signal]:
     """x and y (n,) in m of a point, see located."""
     point = joined(*located(run, node))
-    x, y = run[f"{point}_x_m"], run[f"{point}_y_m"]
-    if len(x) < 2:
-        raise refuse(run.path, "holds no samples yet.", "Let the run go on with --resume.")
+    x, y = run.signal(f"{point}_x_m"), run.signal(f"{point}_y_m")
+    ends(run)
     return x, y
 
 
@@ -45,23 +48,28 @@ def bearing_of(run: Run, node: str) -> str:
     return name if name in bearings or not bearings else bearings[0]
 
 
-def times(run: Run) -> Values:
-    """Time (n,) in s; raises RunFileError if there is nothing to draw."""
-    time_s = run["time_s"]
-    if len(time_s) < 2:
+def ends(run: Run) -> tuple[float, float]:
+    """The first and the last time in s; raises RunFileError if there is nothing to draw."""
+    if len(run) < 2:
         raise refuse(run.path, "holds no samples yet.", "Let the run go on with --resume.")
-    return time_s
+    return float(run.read(TIME, 0, 1)[0]), float(run.read(TIME, len(run) - 1)[0])
 
 
-def cut(run: Run, from_time: float | None, to_time: float | None) -> slice:
-    """The samples from from_time to to_time in s (None: to the end of the run). RunFileError if there are not two."""
-    time_s = times(run)
-    first = 0 if from_time is None else int(np.searchsorted(time_s, from_time))
-    last = len(time_s) if to_time is None else int(np.searchsorted(time_s, to_time, side="right"))
+def cut(run: Run, from_time: float | None, to_time: float | None) -> tuple[int, int]:
+    """The samples from from_time to to_time in s (None: to the end of the run), as the first and that after the last.
+    RunFileError if there are not two."""
+    begin, end = ends(run)
+    samples = range(len(run))
+
+    def time_at(sample: int) -> float:
+        return float(run.read(TIME, sample, sample + 1)[0])
+
+    first = 0 if from_time is None else bisect_left(samples, from_time, key=time_at)
+    last = len(run) if to_time is None else bisect_right(samples, to_time, key=time_at)
     if last - first < 2:
-        remedy = f"The run goes from {time_s[0]:g} s to {time_s[-1]:g} s."
+        remedy = f"The run goes from {begin:g} s to {end:g} s."
         raise refuse(run.path, "has no samples between the times asked for.", remedy)
-    return slice(first, last)
+    return first, last
 
 
 def clearance(run: Run, bearing: str = "") -> float:
@@ -73,14 +81,25 @@ def clearance(run: Run, bearing: str = "") -> float:
     raise refuse(run.path, "does not say the clearance that amplitudes refer to.", "Run the case again.")
 
 
-def model(run: Run) -> str:
-    """The models of the film in words, as far as the run's case says them."""
+def case_tables(run: Run) -> dict[str, Any]:
+    """The tables of the case that a run was made of. Raises RunFileError if its text cannot be that of a case."""
+    if len(run.case_text.encode(errors="replace")) > LARGEST_FILE:
+        raise refuse(run.path, f"has a case of more than {LARGEST_FILE // 1024} KiB.", "Run the case again.")
     try:
-        film = tomllib.loads(run.case_text).get("film", {})
-        theory, cavitation = film.get("theory", ""), film.get("cavitation", "")
-    except (tomllib.TOMLDecodeError, AttributeError):
+        return parse(run.case_text)
+    except TomlFault as error:
+        raise refuse(run.path, f"has no readable case: {error}", "Run the case again.") from None
+
+
+def model(run: Run) -> str:
+    """The models of the film in words, as far as the run's case says them. Raises as case_tables."""
+    film = case_tables(run).get("film")
+    if not isinstance(film, dict):
         return ""
-    cavitation = cavitation if isinstance(cavitation, str) else next(iter(cavitation), "")
+    theory, cavitation = film.get("theory"), film.get("cavitation")
+    cavitation = next(iter(cavitation), "") if isinstance(cavitation, dict) else cavitation
+    if not isinstance(cavitation, str) or not _MODEL.fullmatch(cavitation):
+        cavitation = ""
     words = [CAVITATION_NAMES.get(cavitation, cavitation)]
     if theory in ("short", "finite"):
         words.append(f"{theory} bearing")
@@ -91,8 +110,8 @@ def labels(runs: Sequence[Run]) -> list[str]:
     """What tells several runs apart in a legend: their models if these differ, else their files."""
     for names in ([model(run) for run in runs], [run.path.stem for run in runs]):
         if len(set(names)) == len(runs) and all(names):
-            return names
-    return [str(run.path) for run in runs]
+            return [plain(name) for name in names]
+    return [plain(str(run.path)) for run in runs]
 
 
 def heading(runs: Sequence[Run]) -> tuple[str, str]:
@@ -105,18 +124,13 @@ def heading(runs: Sequence[Run]) -> tuple[str, str]:
     return title, ", ".join(word for word in words if word)
 
 
-def thin(time_s: Values, values: Values) -> tuple[Values, Values]:
-    """Fewer points that draw the same line: the lowest and the highest of each short stretch, where it lies."""
-    stretch = len(values) // (DRAWN_POINTS // 2)
-    if stretch < 4:
-        return time_s, values
-    rows = values[: len(values) // stretch * stretch].reshape(-1, stretch)
-    first = np.arange(len(rows))[:, None] * stretch
-    kept = np.sort(first + np.stack([rows.argmin(axis=1), rows.argmax(axis=1)], axis=1), axis=1).ravel()
-    kept = np.unique(np.concatenate([kept, [len(values) - 1]]))
-    return time_s[kept], values[kept]
-
-
 def events(run: Run) -> list[dict[str, Any]]:
-    """The events that the run tells, or else those found in it."""
-    return run.events or [asdict(event) for event in find_events(run)]
+    """The events that the run tells, or else those found in it; none where searching would take too much memory."""
+    return run.events or ([asdict(event) for event in find_events(run)] if is_searchable(run) else [])
+
+
+def is_searchable(run: Run) -> bool:
+    """Whether a run is short enough for a search for events, which takes it whole and at even angles of the rotor."""
+    begin, end = ends(run)
+    fastest = max(map(abs, extremes(run.signal(SPEED), 0, len(run))))
+    return len(run) <= MOST_SEARCHED and fastest * (end - begin) * SAMPLES_PER_REVOLUTION <= MOST_SEARCHED

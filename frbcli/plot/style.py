@@ -5,6 +5,7 @@ Figures are made without pyplot: nothing is kept in global state, and no window 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +16,7 @@ from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, InputError, printable
 
 # Okabe and Ito: told apart by the colour-blind too
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -29,6 +30,8 @@ FORMATS = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}  
 
 LABEL_WIDTH = 0.19  # of a label above a panel, relative to the panel
 LABEL_ROWS = 3
+MOST_MARKED = 50  # events in a picture, the first ones
+MOST_NAMED = 40  # curves in a legend
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -59,8 +62,13 @@ def styled() -> Iterator[None]:
 def new_figure(title: str, subtitle: str, width: float = 7.2, height: float = 4.4) -> Figure:
     """An empty figure, width and height in inches, under the title of the case and what was computed."""
     figure = Figure(figsize=(width, height))
-    figure.suptitle(f"{title}\n{subtitle}" if subtitle else title, x=0.01, ha="left", fontsize=10.0)
+    figure.suptitle(plain(f"{title}\n{subtitle}" if subtitle else title), x=0.01, ha="left", fontsize=10.0)
     return figure
+
+
+def plain(text: str) -> str:
+    """`text` as it is, without mathematics between dollars and without control characters."""
+    return printable(text).replace("$", r"\$")
 
 
 def mark_times(panels: Sequence[Axes], times_s: Sequence[float], labels: Sequence[str]) -> None:
@@ -90,9 +98,9 @@ def mark_times(panels: Sequence[Axes], times_s: Sequence[float], labels: Sequenc
 
 
 def legend_below(figure: Figure, axes: Axes) -> None:
-    """A legend under the picture, where it hides no curve; none for a single curve."""
+    """A legend under the picture, where it hides no curve; none for one curve, or for more than there is room for."""
     handles, labels = axes.get_legend_handles_labels()
-    if len(handles) > 1:
+    if 1 < len(handles) <= MOST_NAMED:
         figure.legend(handles, labels, loc="outside lower center", ncols=min(len(handles), 3))
 
 
@@ -107,7 +115,8 @@ def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
     path = Path(path)
     check_picture(path)
     try:
-        with styled():
+        with styled(), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph")  # a letter that no font has is drawn as a box
             figure.savefig(path, dpi=dpi, metadata=FORMATS[path.suffix.lower()])
     except (OSError, ValueError) as error:
         raise _refuse(path, f"cannot be written: {error}.", "Choose another place with -o.") from error

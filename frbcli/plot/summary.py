@@ -12,9 +12,11 @@ from matplotlib.ticker import MaxNLocator
 from frbcli.analysis.signals import joined, points
 from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.plot.eccentricity import draw_eccentricity
-from frbcli.plot.signals import events, heading, thin, times
-from frbcli.plot.style import BLACK, GREY, SKY, mark_times, new_figure, styled
-from frbcli.plot.waterfall import draw_levels, level_label, run_spectra
+from frbcli.plot.envelope import curve
+from frbcli.plot.signals import ends, events, heading, is_searchable
+from frbcli.plot.style import BLACK, GREY, MOST_MARKED, MOST_NAMED, SKY, mark_times, new_figure, styled
+from frbcli.plot.waterfall import MOST_IN_WINDOW, draw_levels, level_label, run_spectra
+from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 
 SIGNAL = "journal"
@@ -31,16 +33,23 @@ def summary_figure(run: Run) -> Figure:
 
     Raises RunFileError if the run holds no samples.
     """
-    time_s = times(run)
+    begin, end = ends(run)
+    title, subtitle = heading([run])
+    marked = _marks(events(run))
+    words = [subtitle]
+    if not run.events and not is_searchable(run):
+        words.append("too long for a search for events")
+    if len(marked) > MOST_MARKED:
+        words.append(f"the first {MOST_MARKED} of {len(marked)} events")
     with styled():
-        figure = new_figure(*heading([run]), height=7.6)
+        figure = new_figure(title, ", ".join(word for word in words if word), height=7.6)
         above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
         draw_eccentricity(above, [run])
-        above.set_xlim(time_s[0], time_s[-1])
-        if len(above.get_lines()) > 1:
+        above.set_xlim(begin, end)
+        if 1 < len(above.get_lines()) <= MOST_NAMED:
             above.legend(loc="upper right", ncols=2, frameon=True, framealpha=0.85, edgecolor="none")
-        if len(time_s) >= FEWEST_SAMPLES:
-            window = min(WINDOW_s, float(time_s[-1] - time_s[0]) / WINDOWS)
+        if len(run) >= FEWEST_SAMPLES:
+            window = min(WINDOW_s, (end - begin) / WINDOWS, (end - begin) / (len(run) - 1) * MOST_IN_WINDOW)
             mesh = draw_levels(middle, run, SIGNAL, run_spectra(run, SIGNAL, window, "x"), "time")
             bar = figure.colorbar(mesh, ax=[above, middle, below], location="bottom", shrink=0.6, pad=0.02,
                                   extend="both", aspect=40)  # fmt: skip
@@ -49,18 +58,18 @@ def summary_figure(run: Run) -> Figure:
         _draw_speed(below, run)
         for axes in (above, middle):
             axes.set_xlabel("")
-        marked = _marks(events(run))
-        mark_times((above, middle), [time for time, _ in marked], [words for _, words in marked])
+        marked = marked[:MOST_MARKED]
+        mark_times((above, middle), [time for time, _ in marked], [told for _, told in marked])
     return figure
 
 
 def _draw_speed(axes: Axes, run: Run) -> None:
-    axes.plot(*thin(times(run), run["speed_Hz"]), color=BLACK, label="rotor")
+    axes.plot(*curve(run, run.signal(SPEED)), color=BLACK, label="rotor")
     rings = [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
     for name, colour in zip(rings, itertools.cycle((GREY, SKY)), strict=False):
         label = ", ".join(word for word in ("ring", name) if word)
-        axes.plot(*thin(times(run), run[joined("ring_speed", name, "Hz")]), color=colour, label=label)
-    if rings:
+        axes.plot(*curve(run, run.signal(joined("ring_speed", name, "Hz"))), color=colour, label=label)
+    if 0 < len(rings) < MOST_NAMED:
         axes.legend(loc="upper left")
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("time in s")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -11,13 +13,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, ScalarFormatter
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import joined, points, ring_speed
+from frbcli.analysis.signals import joined, points
 from frbcli.analysis.spectrum import Direction, Spectrogram
 from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.plot.cascade import draw_cascade
-from frbcli.plot.signals import bearing_of, clearance, heading, located, motion, times
+from frbcli.plot.envelope import at_times, extremes
+from frbcli.plot.signals import bearing_of, clearance, ends, heading, located, motion
 from frbcli.plot.style import LEVEL_MAP, new_figure, styled
 from frbcli.results.container import refuse
+from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 
 Over = Literal["time", "speed"]
@@ -27,6 +31,11 @@ LEVELS_dB = (-60.0, 0.0)  # a thousandth of the clearance, and the clearance
 ABOVE_SYNCHRONOUS = 1.2  # how far the frequency axis goes, relative to the highest rotor speed
 LOWEST_LOG_Hz = 10.0
 FEWEST_LINES = 8  # lines of an unpadded spectrum that the frequency axis shows of a rotor that hardly turns
+OVERLAP = 0.9  # of a window and the next one
+MOST_IN_WINDOW = 2**18  # samples
+MOST_AT_ONCE = 300_000  # samples, or one window
+ROUNDING = 1e-9  # by which the frequencies of pieces may differ
+MOST_COLUMNS, MOST_LINES = 1200, 1500  # of a map of levels
 TURNING = 1e-3  # share of the highest speed per window that is a change of speed
 
 
@@ -70,12 +79,59 @@ def waterfall_figure(
 
 
 def run_spectra(run: Run, signal: str, window_s: float, direction: Direction) -> Spectrogram:
-    """The spectra of a run up to the frequency that its pictures show."""
-    x, y = motion(run, signal)
-    highest = max(ABOVE_SYNCHRONOUS * float(np.max(run["speed_Hz"])), FEWEST_LINES / max(window_s, 1e-9))
+    """The spectra of a run up to the frequency that its pictures show; a long run is read in pieces. Where there are
+    more spectra or lines than a picture can show, each is the highest level of some neighbors."""
+    columns = [run.signal(TIME), *motion(run, signal), run.signal(SPEED)]
+    begin, end = ends(run)
+    count, step = len(run), (end - begin) / (len(run) - 1)
+    if window_s > MOST_IN_WINDOW * step:
+        raise refuse(run.path, f"has more than {MOST_IN_WINDOW} samples in a window.", "Shorten --window.")
+    window = max(round(window_s / step), 1) if window_s > 0.0 else 1
+    hop = max(1, round(window * (1.0 - OVERLAP)))
+    lead = -(window // 2) % hop  # from the first sample to the first window
+    together = math.ceil(((count - lead - window) // hop + 1) / MOST_COLUMNS) if count > lead + window else 1
+    at_once = hop * together * max(1, (MOST_AT_ONCE - window) // (hop * together))
+    highest = max(ABOVE_SYNCHRONOUS * extremes(columns[-1], 0, count)[1], FEWEST_LINES / max(window_s, 1e-9))
     length = clearance(run, bearing_of(run, signal))
-    return spectra(
-        times(run), x, y, run["speed_Hz"], length, window_s, max_frequency_Hz=highest, direction=direction
+    found = []
+    for first in range(0, max(count - lead - window, 0) + 1, at_once):
+        time_s, x, y, speed = (column[first : first + at_once - hop + lead + window] for column in columns)
+        part = spectra(time_s, x, y, speed, length, window_s, OVERLAP, highest * (1.0 + ROUNDING), direction)
+        found.append(_condensed(part, together))
+    return found[0] if len(found) == 1 else _joined(found)
+
+
+def _condensed(found: Spectrogram, together: int) -> Spectrogram:
+    """As many neighbors in time `together` as are given, and as few lines as a picture can show."""
+    lines = math.ceil(len(found.frequency_Hz) / MOST_LINES)
+    if lines == together == 1:
+        return found
+    row = np.arange(0, len(found.frequency_Hz), lines)
+    column = np.arange(0, len(found.time_s), together)
+
+    def highest(levels: Values) -> Values:
+        return np.asarray(np.maximum.reduceat(np.maximum.reduceat(levels, row, axis=0), column, axis=1))
+
+    def mean(places: Values, first: NDArray[np.int64]) -> Values:
+        return np.asarray(np.add.reduceat(places, first) / np.diff([*first, len(places)]))
+
+    return Spectrogram(
+        mean(found.time_s, column),
+        mean(found.speed_Hz, column),
+        mean(found.frequency_Hz, row),
+        highest(found.amplitude),
+        highest(found.level_dB),
+    )
+
+
+def _joined(found: Sequence[Spectrogram]) -> Spectrogram:
+    """Spectra of pieces of a run, which follow each other."""
+    return Spectrogram(
+        np.concatenate([part.time_s for part in found]),
+        np.concatenate([part.speed_Hz for part in found]),
+        found[0].frequency_Hz,
+        np.concatenate([part.amplitude for part in found], axis=1),
+        np.concatenate([part.level_dB for part in found], axis=1),
     )
 
 
@@ -121,7 +177,8 @@ def _orders(run: Run, signal: str, found: Spectrogram) -> list[tuple[str, Values
     bearing = bearing_of(run, signal)
     if bearing not in points(run.signals, "ring"):
         return [*lines, ("ω/2", found.speed_Hz / 2)]
-    ring = np.interp(found.time_s, run["time_s"], ring_speed(run, bearing))
+    turning = joined("ring_speed", bearing, "Hz")
+    ring = at_times(run, run.signal(turning), found.time_s) if turning in run else np.zeros(len(found.time_s))
     return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
 
 

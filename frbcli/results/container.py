@@ -10,12 +10,16 @@ from __future__ import annotations
 import contextlib
 import os
 import zlib
+from io import BufferedReader
 from pathlib import Path
 
 from frbcli.errors import Fault, RunFileError
 
 MAGIC = b"frb-run 1 "
 USER_BLOCK = 512  # bytes; the smallest that HDF5 allows
+SIGNATURE = b"\x89HDF\r\n\x1a\n"  # that every HDF5 file begins with
+LARGEST = 8 * 1024**3  # bytes; the longest run that a case may ask for has about half of it
+PIECE = 4 * 1024**2  # bytes of a file that are held at a time
 
 
 def refuse(path: Path, problem: str, remedy: str = "") -> RunFileError:
@@ -26,7 +30,7 @@ def refuse(path: Path, problem: str, remedy: str = "") -> RunFileError:
 def seal(content: memoryview) -> bytes:
     """The user block, (512,) bytes, for `content`: a whole HDF5 file that was made with an empty user block."""
     body = content[USER_BLOCK:]
-    return (MAGIC + b"length=%d crc32=%08x\n" % (len(body), zlib.crc32(body))).ljust(USER_BLOCK, b"\0")
+    return _user_block(len(body), zlib.crc32(body))
 
 
 def write_whole(path: Path, content: memoryview) -> None:
@@ -34,6 +38,8 @@ def write_whole(path: Path, content: memoryview) -> None:
 
     Raises RunFileError if the disk or the directory does not take it.
     """
+    if len(content) > LARGEST:
+        raise refuse(path, f"would be larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step.")
     part = part_file(path)
     try:
         with part.open("wb") as file:
@@ -46,19 +52,52 @@ def write_whole(path: Path, content: memoryview) -> None:
         raise refuse(path, f"cannot be written: {error.strerror}.", "Choose another place with -o.") from error
 
 
-def read_whole(path: Path) -> bytes:
-    """The checked content of a run file, user block included. Raises RunFileError for anything else."""
+def open_whole(path: Path) -> BufferedReader:
+    """A run file, open for reading, whose length and checksum are right. Raises RunFileError for anything else.
+
+    The file is read once from end to end, a piece at a time. Whoever holds it open goes on reading this content, also
+    when another run takes its place.
+    """
     try:
         if not path.is_file():
             raise refuse(path, "is not a file." if path.exists() else "does not exist.", "Name a run of frb runup.")
-        content = path.read_bytes()
+        file = path.open("rb")
     except (OSError, ValueError) as error:
         raise refuse(path, f"cannot be read: {error}.") from error
-    if not content.startswith(MAGIC):
+    try:
+        _check_seal(path, file)
+    except BaseException as error:
+        file.close()
+        if isinstance(error, OSError):
+            raise refuse(path, f"cannot be read: {error}.") from error
+        raise
+    return file
+
+
+def _check_seal(path: Path, file: BufferedReader) -> None:
+    head, length = file.read(USER_BLOCK), os.fstat(file.fileno()).st_size - USER_BLOCK
+    if not head.startswith(MAGIC):
         raise refuse(path, "is not a run of frb.", "Name a file that frb runup or frb rundown has written.")
-    if len(content) < USER_BLOCK or content[:USER_BLOCK] != seal(memoryview(content)):
+    if length + USER_BLOCK > LARGEST:
+        raise refuse(path, f"is larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step and run the case again.")
+    whole = head.startswith(_beginning(length)) and file.peek(len(SIGNATURE)).startswith(SIGNATURE)
+    if not whole or head != _user_block(length, _checksum(file)):
         raise refuse(path, "was cut short or changed after frb wrote it.", "Run the case again.")
-    return content
+
+
+def _checksum(file: BufferedReader) -> int:
+    checksum = 0
+    while piece := file.read(PIECE):
+        checksum = zlib.crc32(piece, checksum)
+    return checksum
+
+
+def _beginning(length: int) -> bytes:
+    return MAGIC + b"length=%d " % length
+
+
+def _user_block(length: int, checksum: int) -> bytes:
+    return (_beginning(length) + b"crc32=%08x\n" % checksum).ljust(USER_BLOCK, b"\0")
 
 
 def check_output(path: Path) -> None:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from frbcli.errors import Fault, InputError
 from frbcli.results.container import is_run
+from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
+
+LINES = 50_000  # of CSV that are made at a time
+MOST_COMPRESSED = 4_000_000  # samples of a column of MAT
 
 
 def export_run(run: Run, path: str | Path, table_format: str) -> Path:
@@ -31,27 +36,68 @@ def export_run(run: Run, path: str | Path, table_format: str) -> Path:
     return path
 
 
-def write_csv(run: Run, target: Path | IO[str]) -> None:
-    """Comma-separated, one line of names, all digits of each number. Raises OSError."""
-    run.to_pandas().to_csv(target, index=False, lineterminator="\n")
+def write_csv(run: Run, target: IO[str]) -> None:
+    """Comma-separated, one line of names, all digits of each number; a piece of the run at a time. Raises OSError."""
+    import pandas as pd
+
+    target.write(",".join(run.signals) + "\n")
+    for first, last in pieces(0, len(run), LINES):
+        table = pd.DataFrame({name: signal[first:last] for name, signal in run.signals.items()})
+        table.to_csv(target, index=False, header=False, lineterminator="\n")
+
+
+def _write_csv(run: Run, path: Path) -> None:
+    with path.open("w", encoding="utf-8", newline="") as target:
+        write_csv(run, target)
 
 
 def _write_parquet(run: Run, path: Path) -> None:
     if find_spec("pyarrow") is None:
         raise _refuse("format", "Parquet needs the library pyarrow.", "Install it: pip install frbcli[parquet]")
-    run.to_pandas().to_parquet(path, index=False)
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    schema = pa.schema([(name, pa.float64()) for name in run.signals])
+    with parquet.ParquetWriter(path, schema) as writer:
+        for first, last in pieces(0, len(run)):
+            columns = {name: signal[first:last] for name, signal in run.signals.items()}
+            writer.write_table(pa.table(columns, schema=schema))
 
 
 def _write_mat(run: Run, path: Path) -> None:
+    """One column after the other: the format has each in one piece. Long ones are not compressed, which would take
+    several times their memory."""
     from scipy.io import savemat
 
-    # MATLAB takes letters, digits and underscores only; the name of a bearing may have others
-    columns = {re.sub(r"\W", "_", name): signal.values for name, signal in run.signals.items()}
-    texts = {"title": run.title, "status": run.status, "case_text": run.case_text}
-    savemat(path, columns | texts, appendmat=False, long_field_names=True, do_compression=True, oned_as="column")
+    columns = _MatColumns(run, {"title": run.title, "status": run.status, "case_text": run.case_text})
+    savemat(path, columns, appendmat=False, long_field_names=True, do_compression=len(run) <= MOST_COMPRESSED,
+            oned_as="column")  # fmt: skip
 
 
-FORMATS: dict[str, Callable[[Run, Path], None]] = {"csv": write_csv, "parquet": _write_parquet, "mat": _write_mat}
+class _MatColumns(Mapping[str, Any]):
+    """The signals of a run, each read when its turn has come, and some texts, by names that MATLAB takes: letters,
+    digits and underscores. The name of a bearing may have others; names that become the same are numbered."""
+
+    def __init__(self, run: Run, texts: Mapping[str, str]) -> None:
+        self._texts, self._signals = texts, dict[str, Signal]()
+        for name, signal in run.signals.items():
+            plain = re.sub(r"\W", "_", name)
+            numbered = (f"{plain}_{number}" for number in itertools.count(2))
+            while plain in self._signals:
+                plain = next(numbered)
+            self._signals[plain] = signal
+
+    def __getitem__(self, name: str) -> Any:
+        return self._signals[name].values if name in self._signals else self._texts[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return itertools.chain(self._signals, self._texts)
+
+    def __len__(self) -> int:
+        return len(self._signals) + len(self._texts)
+
+
+FORMATS: dict[str, Callable[[Run, Path], None]] = {"csv": _write_csv, "parquet": _write_parquet, "mat": _write_mat}
 
 
 def _refuse(key: str, problem: str, remedy: str) -> InputError:

@@ -1,57 +1,178 @@
-"""What a run file must look like inside: its records, and the signals that the others are drawn over."""
+"""What a run file must say: the forms of its texts and records, and its signals with their names, units and values.
+
+Whatever reads a run relies on this: what is printed is printable, what is computed with is finite and no larger than
+any machine needs, and there is never more of it than a picture or a table can show.
+"""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-FINITE = ("time_s", "speed_Hz")  # signals that others are drawn over
-RISING = "time_s"
+from frbcli.results.signals import Signal, pieces
+
+Values = NDArray[np.float64]
+
+COMMANDS = ("runup", "rundown")
+STATUSES = ("finished", "contact", "starved", "not-converged", "interrupted")
+TIME, SPEED = "time_s", "speed_Hz"
+LONGEST_LABEL = 200  # characters
+MOST_ENTRIES = 500  # of a table
+MOST_EVENTS = 10_000
+MOST_SAMPLES = 25_000_000  # a case may ask for 20 million
+LARGEST, SMALLEST = 1e15, 1e-15  # in SI: beyond what any machine has, as in a case file
+FASTEST_Hz = 1e7
+LONGEST_COUNT = 64  # bits
+UNEVEN = 1e-3  # share of a time step by which a sample may be off: round-off is less
+
 EVENT_NUMBERS = ("t_s", "speed_Hz")  # every event has them
-EVENT_OPTIONAL = ("frequency_Hz", "frequency_ratio")
+EVENT_OPTIONAL = ("frequency_Hz", "frequency_ratio")  # or None
+EVENT_KEYS = ("kind", "film", *EVENT_NUMBERS, *EVENT_OPTIONAL)
+# What is told of every run that has ended, and what comes together.
+COST_OF_ALL = ("cpu_s", "steps", "rejected_steps", "steps_per_revolution", "film_solves", "ms_per_film_solve",
+               "simulated_ms_per_hour")  # fmt: skip
+ERROR_OF_ALL = ("time_integration",)
+TOGETHER = {"oil_in_m3": "oil_out_m3", "eccentricity": "quiet_until_s"}
+
+_NAME = "(_[A-Za-z0-9_-]{1,60})?"  # of a film, a bearing or a wheel
+_UNITS = {
+    re.compile("time_s"): "s",
+    re.compile("speed_Hz"): "Hz",
+    re.compile(f"(eccentricity|oil_fraction){_NAME}"): "",
+    re.compile(f"(journal|disk|ring){_NAME}_[xy]_m"): "m",
+    re.compile(f"ring_speed{_NAME}_Hz"): "Hz",
+}
+_KIND = re.compile("[a-z]{1,30}(-[a-z]{1,30}){0,3}")
+_KEY = re.compile("[A-Za-z][A-Za-z0-9_-]{0,99}")
+
+
+def wrong_text(texts: Mapping[str, str]) -> str:
+    """The name of the first text with a wrong form, "" if there is none: title and case_name are one printable line,
+    command and status are among those that there are."""
+    for name in ("title", "case_name"):
+        if not _is_label(texts[name]):
+            return name
+    return "command" if texts["command"] not in COMMANDS else "status" if texts["status"] not in STATUSES else ""
 
 
 def wrong_record(records: Mapping[str, Any]) -> str:
     """The name of the first record with a wrong form, "" if there is none.
 
-    versions: names -> text; references: names -> finite numbers; cost, error: tables; events: a list of tables, each
-    with kind, time and speed, and with film and frequency where the event has them.
+    versions: names -> text; references: names -> numbers, lengths above zero; cost: names -> numbers; error: names ->
+    numbers or None; events: a list of tables with the keys of EVENT_KEYS.
     """
     forms: dict[str, Callable[[Any], bool]] = {
-        "versions": lambda record: _is_table(record, lambda value: isinstance(value, str)),
-        "references": lambda record: _is_table(record, lambda value: _is_number(value) and math.isfinite(value)),
-        "cost": lambda record: isinstance(record, dict),
-        "error": lambda record: isinstance(record, dict),
-        "events": lambda record: isinstance(record, list) and all(map(_is_event, record)),
+        "versions": lambda record: _is_table(record, lambda _, value: _is_label(value)),
+        "references": lambda record: _is_table(record, _is_reference),
+        "cost": lambda record: _is_table(record, lambda _, value: _is_number(value)) and _is_complete(record),
+        "error": lambda record: _is_table(record, lambda _, value: value is None or _is_number(value))
+        and _is_complete(record),
+        "events": lambda record: isinstance(record, list)
+        and len(record) <= MOST_EVENTS
+        and all(map(_is_event, record)),
     }
     return next((name for name, holds in forms.items() if not holds(records[name])), "")
 
 
-def wrong_signal(signals: Mapping[str, NDArray[np.float64]]) -> str:
-    """The name of time or speed (n,) if it is not finite, or of a time that runs backwards, "" if all is well."""
-    for name in FINITE:
-        if name in signals and not np.isfinite(signals[name]).all():
+def untold(cost: Mapping[str, Any], error: Mapping[str, Any]) -> str:
+    """What a run that has ended does not tell of its cost and its error, "" if it tells all that every run does."""
+    numbers = [(cost, name) for name in COST_OF_ALL] + [(error, name) for name in ERROR_OF_ALL]
+    return next((name for record, name in numbers if not _is_number(record.get(name))), "")
+
+
+def wrong_unit(units: Mapping[str, str]) -> str:
+    """The name of the first signal that no run has, or that has another unit; "" if there is none."""
+    for name in (TIME, SPEED):
+        if name not in units:
             return name
-    return RISING if RISING in signals and (np.diff(signals[RISING]) < 0.0).any() else ""
+    return next((name for name, unit in units.items() if unit not in _units(name)), "")
 
 
-def _is_table(record: Any, holds: Callable[[Any], bool]) -> bool:
-    return isinstance(record, dict) and all(map(holds, record.values()))
+def wrong_values(signals: Mapping[str, Signal]) -> str:
+    """The name of the first signal with values that no run has, "" if there is none: a value that is not finite or
+    beyond all bounds, times that do not rise evenly. Reads all signals, a piece at a time."""
+    count = len(signals[TIME])
+    for name, signal in signals.items():
+        most = FASTEST_Hz if name.endswith("_Hz") else LARGEST
+        for first, last in pieces(0, count):
+            values = signal[first:last]
+            if not (-most <= values.min() and values.max() <= most):  # NaN is neither
+                return name
+    return "" if _is_even(signals[TIME]) else TIME
+
+
+def wrong_event(events: list[dict[str, Any]], time: Signal) -> bool:
+    """Whether an event lies outside of the samples of a run."""
+    if not len(time):
+        return bool(events)
+    begin, end = float(time[:1][0]), float(time[-1:][0])
+    reach = end + _step(time)
+    return any(not begin <= event["t_s"] <= reach for event in events)
+
+
+def _units(name: str) -> list[str]:
+    return [unit for form, unit in _UNITS.items() if form.fullmatch(name)]
+
+
+def _step(time: Signal) -> float:
+    return float(time[-1:][0] - time[:1][0]) / max(len(time) - 1, 1)
+
+
+def _is_even(time: Signal) -> bool:
+    if len(time) < 2:
+        return True
+    begin, step = float(time[:1][0]), _step(time)
+    rounding = 8.0 * math.ulp(max(abs(begin), abs(begin + step * len(time))))
+    for first, last in pieces(0, len(time)):
+        even = begin + step * np.arange(first, last)
+        if np.abs(time[first:last] - even).max() > UNEVEN * step + rounding:
+            return False
+    return step > rounding
+
+
+def _is_table(record: Any, holds: Callable[[str, Any], bool]) -> bool:
+    if not isinstance(record, dict) or len(record) > MOST_ENTRIES:
+        return False
+    return all(_KEY.fullmatch(name) and holds(name, value) for name, value in record.items())
+
+
+def _is_complete(record: dict[str, Any]) -> bool:
+    return all(record.get(name) is None or record.get(other) is not None for name, other in TOGETHER.items())
+
+
+def _is_reference(name: str, value: Any) -> bool:
+    return _is_finite(value) and (not name.startswith("clearance_m") or value >= SMALLEST)
 
 
 def _is_event(record: Any) -> bool:
     return (
         isinstance(record, dict)
-        and isinstance(record.get("kind"), str)
-        and all(_is_number(record.get(name)) for name in EVENT_NUMBERS)
-        and all(record.get(name) is None or _is_number(record[name]) for name in EVENT_OPTIONAL)
-        and isinstance(record.get("film"), str | None)
+        and len(record) <= MOST_ENTRIES
+        and all(name in record for name in EVENT_KEYS)
+        and isinstance(record["kind"], str)
+        and _KIND.fullmatch(record["kind"]) is not None
+        and all(_is_finite(record[name]) for name in EVENT_NUMBERS)
+        and all(record[name] is None or _is_finite(record[name]) for name in EVENT_OPTIONAL)
+        and (record["film"] is None or _is_label(record["film"]))
+        and all(value is None or _is_number(value) or _is_label(value) for value in record.values())
     )
 
 
+def _is_label(value: Any) -> bool:
+    return isinstance(value, str) and len(value) <= LONGEST_LABEL and value.isprintable()
+
+
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """Of a cost or an error: NaN and infinities stand for what was not to be had, counts are those of a processor."""
+    return isinstance(value, float) or (
+        isinstance(value, int) and not isinstance(value, bool) and value.bit_length() < LONGEST_COUNT
+    )
+
+
+def _is_finite(value: Any) -> bool:
+    return _is_number(value) and abs(value) <= LARGEST

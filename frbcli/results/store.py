@@ -17,30 +17,34 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.errors import RunFileError
-from frbcli.results.container import USER_BLOCK, check_output, part_file, read_whole, refuse, write_whole
-from frbcli.results.records import wrong_record, wrong_signal
+from frbcli.results import parts
+from frbcli.results.container import USER_BLOCK, check_output, open_whole, part_file, refuse, write_whole
+from frbcli.results.records import (
+    LARGEST,
+    MOST_EVENTS,
+    MOST_SAMPLES,
+    TIME,
+    wrong_event,
+    wrong_record,
+    wrong_text,
+    wrong_unit,
+    wrong_values,
+)
+from frbcli.results.signals import Signal, Values
+from frbcli.results.stored import Place, Stored, StoredArrays
 
 if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["Header", "Run", "RunWriter", "Signal", "check_output", "read_run"]
 
-Values = NDArray[np.float64]
-
 INTERRUPTED = "interrupted"
 CLEARANCE_STEP = "clearance_step"  # begins the names of the references that are times of one
-TIME = "time_s"
 TEXTS = ("title", "command", "case_name", "case_text", "status")
 RECORDS = ("versions", "references", "cost", "error", "events")  # kept as JSON text
-
-
-@dataclass(frozen=True)
-class Signal:
-    """One column of a run: values (n,) and their unit as people write it, "" for a ratio."""
-
-    values: Values
-    unit: str
+LARGEST_STATE = 128 * 1024**2  # bytes of a checkpoint; cells have some hundred thousand numbers
+LARGEST_REST = 8 * 1024**2  # bytes of a file that are not numbers of signals and checkpoint
+UNREADABLE = (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError, OverflowError, MemoryError)
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,9 @@ class Header:
 class Run:
     """A run as its file tells it. `run["eccentricity"]` gives the values (n,) of a signal, in the unit of its name.
 
-    checkpoint: the state from which the run can go on, or None; checkpoint_samples: how many samples there were then.
+    Of a run that was read from a file they are read when they are asked for, and a long run is better read in pieces:
+    `run.read("eccentricity", 0, 1000)`. checkpoint: the state from which the run can go on, or None;
+    checkpoint_samples: how many samples there were then.
     """
 
     path: Path
@@ -80,20 +86,29 @@ class Run:
     cost: dict[str, Any]
     error: dict[str, Any]
     references: dict[str, float]
-    checkpoint: dict[str, NDArray[Any]] | None
+    checkpoint: Mapping[str, NDArray[Any]] | None
     checkpoint_samples: int = 0
 
     def __getitem__(self, name: str) -> Values:
+        """All values (n,) of a signal. Raises RunFileError if there is no such signal, or its file has changed."""
+        return self.signal(name).values
+
+    def read(self, name: str, start: int = 0, stop: int | None = None) -> Values:
+        """The values (m,) of a signal from the sample `start` to before `stop`; raises as run[name] does."""
+        return self.signal(name)[start:stop]
+
+    def signal(self, name: str) -> Signal:
+        """A signal, not yet read. Raises RunFileError if there is no such signal."""
         if name not in self.signals:
             raise refuse(self.path, f'has no signal "{name}".', f"It has: {', '.join(self.signals)}.")
-        return self.signals[name].values
+        return self.signals[name]
 
     def __contains__(self, name: str) -> bool:
         return name in self.signals
 
     def __len__(self) -> int:
         """The number of samples."""
-        return min((len(signal.values) for signal in self.signals.values()), default=0)
+        return min((len(signal) for signal in self.signals.values()), default=0)
 
     def to_pandas(self) -> pd.DataFrame:
         """The signals as a table with one column each, named as the signals are."""
@@ -136,8 +151,9 @@ class RunWriter:
         header = Header(run.title, run.command, run.case_name, run.case_text, units, run.versions, run.references)
         writer = cls.__new__(cls)
         writer.path, writer._header = run.path, header
-        writer._state, writer._state_samples = run.checkpoint, run.checkpoint_samples
-        writer._chunks = {name: [run[name][: run.checkpoint_samples]] for name in run.signals}
+        writer._state = None if run.checkpoint is None else dict(run.checkpoint)
+        writer._state_samples = run.checkpoint_samples
+        writer._chunks = {name: [run.read(name, 0, run.checkpoint_samples)] for name in run.signals}
         writer._cost, writer._error, writer._t_end_s = run.cost, run.error, run.t_end_s
         part_file(run.path).unlink(missing_ok=True)
         return writer
@@ -181,8 +197,8 @@ class RunWriter:
             self._t_end_s = float(t)
         elif times is not None and len(times):
             self._t_end_s = float(times[-1])
-        self._write(status, list(events))
-        return self.so_far(status, events)
+        self._write(status, list(events[:MOST_EVENTS]))
+        return self.so_far(status, events[:MOST_EVENTS])
 
     def so_far(self, status: str = INTERRUPTED, events: Sequence[dict[str, Any]] = ()) -> Run:
         """The run with the samples taken so far, without a look at the disk: to find its events, say."""
@@ -239,40 +255,59 @@ def _plain(value: Any) -> Any:
 
 
 def read_run(path: str | Path) -> Run:
-    """Read a run file. Raises RunFileError for anything that is not a whole run."""
+    """Read a run file. Its signals and its checkpoint stay in the file until they are asked for.
+
+    Raises RunFileError for anything that is not a whole run, whoever wrote it: see parts.py, records.py.
+    """
     path = Path(path)
-    content = read_whole(path)
-    try:
-        with h5py.File(io.BytesIO(content), "r") as file:
-            return _read(path, file)
-    except RunFileError:
-        raise
-    except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError, RecursionError) as error:
-        raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from error
+    with open_whole(path) as content:
+        try:
+            with h5py.File(content, "r") as file:
+                return _read(path, file, Place.of(path, content))
+        except parts.WrongPart as error:
+            raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from None
+        except UNREADABLE as error:
+            raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from error
 
 
-def _read(path: Path, file: h5py.File) -> Run:
-    texts = {name: file[name].asstr()[()] for name in TEXTS}
-    records = {name: json.loads(file[name].asstr()[()]) for name in RECORDS}
-    signals = {
-        name: Signal(np.array(dataset[()], dtype=np.float64), str(dataset.attrs["unit"]))
-        for name, dataset in file["signals"].items()
-    }
-    checkpoint, samples = None, 0
-    if "checkpoint" in file:
-        group = file["checkpoint"]
-        checkpoint, samples = {name: np.array(data[()]) for name, data in group.items()}, int(group.attrs["samples"])
-    shapes = {signal.values.shape for signal in signals.values()}
-    if len(shapes) != 1 or len(shapes.pop()) != 1:
-        raise refuse(path, "is not a whole run: its signals are missing or differ in length.", "Run the case again.")
-    if wrong := wrong_record(records) or wrong_signal({name: signal.values for name, signal in signals.items()}):
-        raise refuse(path, f"is not a whole run: {wrong} has a wrong form.", "Run the case again.")
+def _read(path: Path, file: h5py.File, place: Place) -> Run:
+    """The run in a file that is as frb wrote it, or as somebody did who knows how frb seals it."""
+    group = parts.group(file, "signals")
+    columns = {name: parts.array(group, name, place, dimensions=1) for name in parts.names(group, "signals")}
+    units = {name: parts.text_attribute(group[name], "unit") for name in columns}
+    state, samples = _checkpoint(file, place)
+    rest = parts.rest([*columns.values(), *({} if state is None else state).values()], place.size - USER_BLOCK)
+    if not 0 <= rest <= LARGEST_REST:
+        raise parts.WrongPart("the sizes of its parts do not make up that of the file")
+    if sum(array.bytes for array in ({} if state is None else state).values()) > LARGEST_STATE:
+        raise parts.WrongPart("its checkpoint is too large")
+    texts: dict[str, Any] = {name: parts.text(file, name) for name in TEXTS}
+    records = {name: parts.record(file, name) for name in RECORDS}
+    t_end_s = float(parts.number_attribute(file, "t_end_s"))
+    signals = {name: Signal(column, units[name]) for name, column in columns.items()}
+    counts = {len(column) for column in columns.values()}
+    if len(counts) != 1 or (count := counts.pop()) > MOST_SAMPLES or not 0 <= samples <= count:
+        raise parts.WrongPart("its signals are missing, or differ in length")
+    if any(column.dtype != np.float64 for column in columns.values()) or not 0.0 <= t_end_s <= LARGEST:
+        raise parts.WrongPart("a number has a wrong form")
+    wrong = wrong_text(texts) or wrong_record(records) or wrong_unit(units) or wrong_values(signals)
+    if wrong or wrong_event(records["events"], signals[TIME]):
+        raise parts.WrongPart(f"{wrong or 'events'} has a wrong form")
     return Run(
         path=path,
         signals=signals,
-        t_end_s=float(file.attrs["t_end_s"]),
-        checkpoint=checkpoint,
+        t_end_s=t_end_s,
+        checkpoint=None if state is None else StoredArrays(state),
         checkpoint_samples=samples,
         **texts,
         **records,
     )
+
+
+def _checkpoint(file: h5py.File, place: Place) -> tuple[dict[str, Stored] | None, int]:
+    """Where the arrays of the checkpoint lie, None if there is none, and how many samples there were then."""
+    if not parts.has(file, "checkpoint"):
+        return None, 0
+    group = parts.group(file, "checkpoint")
+    state = {name: parts.array(group, name, place) for name in parts.names(group, "checkpoint")}
+    return state, int(parts.number_attribute(group, "samples"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,6 +28,7 @@ from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import System
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.published.time_loop import advance_published
+from frbcli.solve.restored import array, restored
 from frbcli.solve.state import (
     CONTACT,
     FINISHED,
@@ -39,7 +40,6 @@ from frbcli.solve.state import (
     TIME,
     TURNS,
     Array,
-    State,
 )
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
@@ -190,12 +190,15 @@ class March:
         clock = np.array([self._cpu_s, self._wall_s])
         return {**self._state._asdict(), "film_samples": self._samples, "clock": clock}
 
-    def restore(self, checkpoint: dict[str, Array]) -> None:
-        """Take up the state of a checkpoint."""
-        self._state = State(*(np.array(checkpoint[name]) for name in State._fields))
+    def restore(self, checkpoint: Mapping[str, Array]) -> None:
+        """Take up the state of a checkpoint. Raises WrongCheckpoint if it is not one of this run."""
+        state = restored(checkpoint, self._state, self._profile, self._control.output_step)
+        rows = math.ceil(state.numbers[OUTPUTS] / self._sample_every)
+        samples = array(checkpoint, "film_samples", (rows, self._samples.shape[1]))
+        clock = array(checkpoint, "clock", (2,))
+        self._state, self._samples = state, samples
         self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
-        self._samples = checkpoint["film_samples"].reshape(-1, self._samples.shape[1])
-        self._cpu_s, self._wall_s = (float(value) for value in checkpoint["clock"])
+        self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def cost(self) -> dict[str, float]:
         """What the run has cost so far, without compilation and without tabulating the films."""

@@ -10,6 +10,8 @@ from pathlib import Path
 from frbcli.case.load import describes
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.results.container import refuse
+from frbcli.results.records import untold
 from frbcli.results.store import Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.runs.error_budget import quiet_until
@@ -20,6 +22,7 @@ from frbcli.runs.march import March, Progress
 from frbcli.scene.plan import make_plan
 from frbcli.scene.segments import make_stretches
 from frbcli.scene.system import run_down_profile, run_up_profile
+from frbcli.solve.restored import WrongCheckpoint
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0
@@ -56,8 +59,12 @@ def _run(
     stretches = make_stretches(case, plan)
     march = March(case, plan, stretches, profile)
     if earlier is not None and earlier.checkpoint is not None:
+        try:
+            march.restore(earlier.checkpoint)
+        except WrongCheckpoint as error:
+            problem = f"cannot be resumed: of its checkpoint, {error}."
+            raise refuse(earlier.path, problem, "Remove it, or give another --output.") from None
         writer = RunWriter.resume(output)
-        march.restore(earlier.checkpoint)
     else:
         writer = RunWriter(output, header(command, case, stretches))
     march.compile()
@@ -110,4 +117,6 @@ def _earlier(command: str, case: Case, path: Path) -> Run | None:
         problem = f"holds a {run.command} of another case ({name}) or of this one with other keys."
         remedy = "Give the case and the --set of that run, or another --output."
         raise InputError(str(path), (Fault("--resume", str(path), None, problem, remedy),))
+    if run.status != "interrupted" and (missing := untold(run.cost, run.error)):
+        raise refuse(path, f"does not tell its {missing}.", "Remove it, or give another --output.")
     return run

@@ -1,0 +1,50 @@
+"""The state of a checkpoint, held to what a run of its machine can have: the compiled time loop trusts it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from frbcli.rotor.excitation import SpeedProfile
+from frbcli.solve.state import NUMBERS, OUTPUTS, PIECE, RUN_END, STEP, STEP_DONE, TIME, Array, State
+
+LARGEST = 1e30  # of any number, in SI
+
+
+class WrongCheckpoint(Exception):
+    """A checkpoint is not one of this run; says why."""
+
+
+def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfile, output_step: float) -> State:
+    """The state of a checkpoint. fresh: that at the beginning of the run; output_step: of its samples, s.
+
+    Raises WrongCheckpoint unless all arrays are there, of the shape of those at the beginning, with finite numbers, and
+    time, piece of the profile and number of samples fit together.
+    """
+    state = State(*(array(checkpoint, name, part.shape) for name, part in fresh._asdict().items()))
+    numbers, times = state.numbers, profile.times
+    t, piece, outputs = numbers[TIME], numbers[PIECE], numbers[OUTPUTS]
+    fits = (
+        numbers[RUN_END] == fresh.numbers[RUN_END]
+        and np.all(numbers[:NUMBERS] >= 0.0)
+        and min(numbers[STEP], numbers[STEP_DONE]) > 0.0
+        and piece in range(len(times) - 1)
+        and times[int(piece)] <= t <= times[int(piece) + 1]
+        and float(outputs).is_integer()
+        and math.isclose(outputs, t / output_step + 0.5, abs_tol=0.5 + 1e-6)
+    )
+    if not fits:
+        raise WrongCheckpoint("its numbers do not fit together")
+    return state
+
+
+def array(checkpoint: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Array:
+    """A copy of an array of a checkpoint. Raises WrongCheckpoint unless it has that shape and finite numbers."""
+    found = np.array(checkpoint[name]) if name in checkpoint else None
+    if found is None or found.dtype != np.float64 or found.shape != shape:
+        raise WrongCheckpoint(f"{name} is missing or has another shape")
+    if not np.all(np.abs(found) <= LARGEST):
+        raise WrongCheckpoint(f"{name} holds numbers that no run has")
+    return found
