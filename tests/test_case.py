@@ -327,11 +327,13 @@ mesh = [1, 2.5]
             "viscosity inf",
         ),
         ("[oil]", "[oil]\nvogel = { eta_0 = 1e-4, A = 900, C = -178 }\ntemperature=400", "oil.vogel", "second time"),
+        ("[oil]", '[oil]\ntemperature = "95 degC"', "oil.temperature", "no effect: the viscosity is constant"),
         ("[oil]", '[oil]\ncavitation_pressure = "2 bar"', "oil.cavitation_pressure", "above the ambient"),
         ("[oil]", "[oil]\nambient_pressure = -1", "oil.ambient_pressure", "greater than"),
         ('clearance = "35 um"', "clearance = 35", "bearing.clearance", "no thin film"),
         ('clearance = "35 um"', 'clearance = "1e-30 m"', "bearing.clearance", "beyond"),
         ('clearance = "35 um"', 'clearance = "35 um"\ntemperature = 350', "bearing.temperature", "no effect"),
+        ('clearance = "35 um"', 'clearance = 35e-6\ntemperature = 350\nviscosity = 0.01', "bearing.temperature", "own"),
         ('kind = "single-film"', "", "bearing.kind", "missing"),
         ("[bearing]", "[contact]\npolicy = 'elastic'\n[bearing]", "contact.stiffness", "missing"),
         ("[bearing]", "[contact]\neccentricity = 1\n[bearing]", "contact.eccentricity", "less than 1"),
@@ -357,6 +359,13 @@ def test_single_faults(old: str, new: str, key: str, problem: str) -> None:
     assert old in SMALL
     faults = faults_of(SMALL.replace(old, new, 1))
     assert problem in faults[key].problem
+
+
+def test_film_of_an_oil_with_a_law_has_a_temperature_or_a_viscosity() -> None:
+    faults = faults_of(TURBOCHARGER, "bearing.0.inner.viscosity=12 mPa*s")
+    assert set(faults) == {"bearing.0.inner.temperature"}
+    assert faults["bearing.0.inner.temperature"].value == '"95 degC"'
+    assert "viscosity of its own" in faults["bearing.0.inner.temperature"].problem
 
 
 @pytest.mark.parametrize(

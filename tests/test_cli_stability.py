@@ -88,3 +88,53 @@ def test_command_refuses_what_makes_no_sense(
 def test_command_ends_with_3_if_nothing_rests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert frb(["stability", "jeffcott", "--speed", "1e-4 Hz", "--no-picture", "--quiet"]) == 3
+
+
+def one_speed(case: str, speed_Hz: float) -> list[str]:
+    """Words that ask for the stability of a case at one speed and no other one."""
+    settings = ("film.cavitation=half-sommerfeld", f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz")
+    return ["stability", case, *(word for setting in settings for word in ("--set", setting))]
+
+
+def test_turbocharger_shows_its_growing_modes_and_names_its_films(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    picture = tmp_path / "campbell.svg"
+    assert frb([*one_speed("turbocharger-heavy", 600), "-o", str(picture), "--json"]) == 0
+    said = capsys.readouterr()
+    (point,) = json.loads(said.out)["points"]
+    names = ["compressor_inner", "compressor_outer", "turbine_inner", "turbine_outer"]
+    assert [film["film"] for film in point["films"]] == names
+    growing = [mode for mode in point["modes"] if mode["growth_1_s"] > 0.0]
+    assert len(growing) == 3
+    assert point["modes"][:3] == growing
+    assert all(mode["damping"] < 0.0 for mode in growing)
+    rows = [line.split() for line in said.err.splitlines() if "°" in line]
+    assert [row[-6] for row in rows] == names
+    for row, mode in zip(rows, growing, strict=False):
+        assert row[-3:] == [f"{mode['frequency_Hz']:.1f}", f"{mode['damping']:.4f}", f"{mode['growth_1_s']:.1f}"]
+    assert max(len(line) for line in said.err.splitlines() if "°" in line or "film" in line) <= 80
+    assert picture.read_text().lower().count("#d55e00") >= 2 * len(growing)  # in both panels
+
+
+def test_springs_of_films_without_direct_stiffness_are_left_out_and_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """The compressor's inner film is full all around there: its half-Sommerfeld pressure holds nothing."""
+    assert frb([*one_speed("turbocharger-heavy", 1200), "--no-picture", "--json"]) == 0
+    said = capsys.readouterr()
+    assert "no direct stiffness" in said.err
+    assert len(json.loads(said.out)["natural_frequencies"]) == 1
+
+
+def test_speeds_that_are_asked_for_are_all_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    speeds = [word for speed in range(101, 126) for word in ("--speed", f"{speed} Hz")]
+    assert frb(["stability", "jeffcott", "--no-picture", "--set", "film.theory=short", *speeds]) == 0
+    assert "".join(capsys.readouterr()).count("°") == 25
+
+
+def test_many_speeds_without_a_resting_position_are_told_in_short(capsys: pytest.CaptureFixture[str]) -> None:
+    slow = ["--set", "film.theory=short", "--set", "speed.to=1e-8 Hz"]
+    assert frb(["stability", "jeffcott", "--no-picture", *slow]) == 3
+    said = "".join(capsys.readouterr())
+    assert "No resting position at 60 of 60 speeds" in said
+    assert said.count("Ask for a higher speed") == 1

@@ -18,10 +18,10 @@ from frbcli.film.rectangles.bearing import evaluate, make_film
 from frbcli.film.rectangles.table import Mesh
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.linear.resting import resting_position
-from frbcli.linear.stability import Stability, eigenvalues, stability
+from frbcli.linear.stability import Stability, StabilityPoint, eigenvalues, stability
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.system import System, make_system
 
 EQUILIBRIUM = Path(__file__).parent / "data" / "equilibrium.csv"
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}
@@ -248,6 +248,52 @@ def test_eigenvalues_come_in_the_stated_order() -> None:
     assert values.sum().imag == pytest.approx(0.0, abs=1e-9 * np.abs(values).max())
 
 
+def test_modes_begin_with_those_that_grow_whether_they_oscillate_or_not() -> None:
+    pairs = np.array([-8 + 10j, 5 + 400j, -1 + 9000j, 70 + 90j])
+    point = StabilityPoint(100.0, (), np.concatenate([[-900.0, 30.0], pairs, pairs.conj()]))
+    assert point.modes.tolist() == [70 + 90j, 30, 5 + 400j, -1 + 9000j, -8 + 10j]
+    assert point.growing.tolist() == [70 + 90j, 30, 5 + 400j]
+    assert len(StabilityPoint(100.0, (), np.zeros(0, dtype=complex)).modes) == 0
+
+
+def test_film_that_keeps_oil_is_refused_under_the_key_that_says_so() -> None:
+    with pytest.raises(InputError) as refused:
+        stability(load_case("floating-ring", ["bearing.inner.cavitation=elrod"]), [100.0])
+    assert [fault.key for fault in refused.value.faults] == ["bearing.inner.cavitation"]
+    with pytest.raises(InputError) as refused:
+        stability(load_case("jeffcott-two-phase"), [100.0])
+    assert [fault.key for fault in refused.value.faults] == ["film.cavitation"]
+
+
+def test_one_speed_has_no_threshold_and_says_whether_it_is_stable() -> None:
+    for speed, found in ((100, "every motion dies out"), (250, "a motion grows")):
+        settings = ["film.theory=short", f"speed.from={speed} Hz", f"speed.to={speed} Hz"]
+        result = stability(load_case("jeffcott", settings))
+        assert result.threshold is None
+        assert f"one speed only, {speed} Hz, where {found}" in result.note
+        assert "speed.to" in result.note
+
+
+def test_rotor_that_becomes_stable_again_is_told_beside_its_threshold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Growth of a made-up rotor: negative, positive from 177 Hz on, and negative again beyond 250 Hz."""
+    import frbcli.linear.stability as module
+
+    real = module._linearised
+
+    def calms_down(system: System, speed: float, resting: np.ndarray) -> StabilityPoint:
+        point = real(system, speed, resting)
+        return point if speed < 250.0 else replace(point, eigenvalues=-np.abs(point.eigenvalues.real) + 1j)
+
+    monkeypatch.setattr(module, "_linearised", calms_down)
+    found = stability(load_case("jeffcott", ["film.theory=short"]))
+    assert found.threshold is not None
+    assert "No motion grows at 11 higher speeds, from 250 to 300 Hz." in found.note
+    late = stability(load_case("jeffcott", ["film.theory=short", "speed.from=200 Hz"]))
+    assert late.threshold is None
+    assert "Unstable from the lowest speed" in late.note
+    assert "No motion grows" in late.note
+
+
 def test_speed_without_resting_position_is_reported_and_the_rest_computed() -> None:
     found = stability(load_case("jeffcott"), [1e-4, 50.0])
     slow, fast = found.points
@@ -300,3 +346,14 @@ def test_table_of_a_result_has_a_row_per_point() -> None:
     assert table["stiffness_xy_N_m"][0] == first.stiffness[0, 1]
     assert table["damping_yx_N_s_m"][0] == first.damping[1, 0]
     assert table["growth_1_s"][2] == found.points[2].growth
+
+
+def test_table_of_several_films_names_them() -> None:
+    one_speed = ["film.cavitation=half-sommerfeld", "speed.from=600 Hz", "speed.to=600 Hz"]
+    found = frbcli.stability(load_case("floating-ring", one_speed))
+    table = found.to_pandas()
+    inner, outer = found.points[0].films
+    assert (inner.name, outer.name) == ("inner", "outer")
+    assert table["eccentricity_inner"][0] == inner.eccentricity
+    assert table["stiffness_xy_N_m_outer"][0] == outer.stiffness[0, 1]
+    assert "eccentricity" not in table

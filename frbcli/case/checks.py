@@ -53,6 +53,9 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach(("oil", "viscosity"), "is missing.", 'Add e.g. viscosity = "12 mPa*s" to [oil].')
     if "viscosity" not in oil and "vogel" in oil and "temperature" not in oil:
         yield Breach(("oil", "temperature"), "is missing; Vogel's law needs it.", 'Add e.g. temperature = "100 degC".')
+    if "temperature" in oil and "viscosity" in oil and "vogel" not in oil:
+        problem = "has no effect: the viscosity is constant."
+        yield Breach(("oil", "temperature"), problem, "Remove it, or give oil.vogel in place of the viscosity.")
     yield from vogel_breaches(oil, number(oil, "temperature", "K"), ("oil", "temperature"))
     ambient, cavitation = number(oil, "ambient_pressure", "Pa", ATMOSPHERE), number(oil, "cavitation_pressure", "Pa")
     if ambient and cavitation and cavitation > ambient:

@@ -29,7 +29,10 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     elif diameter and clearance is not None:
         yield from _lobes((*path, "lobes"), table(film, "lobes"), clearance, diameter)
     yield from _clearance_steps(path, film, diameter, data)
-    if "temperature" in film and "vogel" not in oil:
+    if "temperature" in film and "viscosity" in film:
+        problem = "has no effect: the film has a viscosity of its own."
+        yield Breach((*path, "temperature"), problem, "Keep one of the two.")
+    elif "temperature" in film and "vogel" not in oil:
         yield Breach((*path, "temperature"), "has no effect: [oil] has no Vogel's law.", "Add oil.vogel or remove it.")
     elif "temperature" in film:
         yield from vogel_breaches(oil, number(film, "temperature", "K"), (*path, "temperature"))

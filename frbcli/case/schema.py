@@ -76,7 +76,7 @@ class Oil(Model):
 
     given_viscosity: Viscosity | None = Field(default=None, alias="viscosity", description="dynamic viscosity, warm")
     vogel: Vogel | None = None
-    temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law")
+    temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law alone")
     density: Density = 850.0
     ambient_pressure: Pressure = ATMOSPHERE
     cavitation_pressure: Pressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")

@@ -13,16 +13,12 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
 from frbcli.cli.runs import OUTPUT
+from frbcli.cli.stability_table import tell_points
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from frbcli.case.schema import Case
     from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
 
-LONGEST_TABLE = 20  # rows for people; JSON and the picture have every speed
-MODES = 2  # the slowest oscillating motions, shown with frequency and damping
-COLUMNS = ("Hz", "eps", "attitude", *("mode Hz", "damping") * MODES, "growth 1/s")
 
 
 class RotorSpeed(click.ParamType[float]):
@@ -83,10 +79,13 @@ def command(
     found = stability(case, speeds or None)
     if picture is not None:
         save_figure(campbell_figure(found), picture)
-    _tell(terminal, found, picture)
+    _tell(terminal, found, bool(speeds), picture)
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
+    if len(natural) == 1 and found.points[-1].films:
+        at = f"{found.points[-1].speed_Hz:.4g} Hz"
+        terminal.say(f"None on its films at {at}: one has no direct stiffness there.")
     terminal.emit(
         {
             "command": "stability",
@@ -101,17 +100,10 @@ def command(
     return None if any(point.films for point in found.points) else NotConverged.exit_code
 
 
-def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
+def _tell(terminal: Terminal, found: Stability, every_speed: bool, picture: Path | None) -> None:
     from frbcli.scene.clearance_steps import step_times
 
-    every = math.ceil(len(found.points) / LONGEST_TABLE)
-    shown = found.points[every - 1 :: every]
-    title = found.case.title or found.case.name
-    terminal.table(title, COLUMNS, [_cells(point) for point in shown])
-    if every > 1:
-        terminal.say(f"{len(shown)} of {len(found.points)} speeds; --json gives all, --speed exactly those you want.")
-    for problem in (point.problem for point in found.points if point.problem):
-        terminal.say(problem)
+    tell_points(terminal, found, every_speed)
     terminal.say(_sentence(found))
     if step_times(found.case):
         terminal.say("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
@@ -128,7 +120,7 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
     for point in found.points[-1:]:
         springs = film_springs(found.case, point.films) if point.films else ()
-        if springs and min(springs) > 0:
+        if springs:
             wanted.append((springs, point.speed_Hz))
     return wanted
 
@@ -139,21 +131,8 @@ def _sentence(found: Stability) -> str:
         return found.note
     return (
         f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, at first with "
-        f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed."
+        f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed.{found.note}"
     )
-
-
-def _cells(point: StabilityPoint) -> Sequence[str]:
-    """A row of the table. Damping: share of the critical damping, negative where the motion grows."""
-    if not point.films:
-        return (f"{point.speed_Hz:.4g}", "none", *[""] * (len(COLUMNS) - 2))
-    modes: list[str] = []
-    for value in point.oscillating[:MODES]:
-        modes += [f"{value.imag / (2 * math.pi):.1f}", f"{-value.real / abs(value):.4f}"]
-    modes += [""] * (2 * MODES - len(modes))
-    eccentricity = ", ".join(f"{film.eccentricity:.4f}" for film in point.films)
-    attitude = ", ".join("-" if math.isnan(film.attitude_deg) else f"{film.attitude_deg:.1f}°" for film in point.films)
-    return (f"{point.speed_Hz:.4g}", eccentricity, attitude, *modes, f"{point.growth:.1f}")
 
 
 def _point(point: StabilityPoint) -> dict[str, object]:
@@ -162,11 +141,16 @@ def _point(point: StabilityPoint) -> dict[str, object]:
     films = [_film(film) for film in point.films]
     document |= films[0] if films else dict.fromkeys(_FILM_KEYS)
     if len(films) > 1:
-        document["films"] = films
+        named = zip(point.films, films, strict=True)
+        document["films"] = [{"film": film.name} | values for film, values in named]
     if point.ring_speeds_Hz:
         document["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
     if point.problem:
         document["problem"] = point.problem
+    document["modes"] = [
+        {"frequency_Hz": value.imag / (2 * math.pi), "damping": -value.real / abs(value), "growth_1_s": value.real}
+        for value in point.modes.tolist()
+    ]
     return document | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
 
 

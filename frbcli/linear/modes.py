@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 
 SPEEDS = 25  # of the default sweep
 SHOWN = 4  # slowest modes of each direction
+NO_STIFFNESS = 1e-9  # direct over largest stiffness of a film that is round-off
 RIGID_SHARE = 0.5  # of the kinetic energy, from which on a motion is that of a rigid body
 
 
@@ -127,8 +128,13 @@ def natural_modes(
 
 def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
     """Isotropic stiffness in N/m of each bearing of a case out of its films at rest: the mean of both directions, in
-    series where a ring floats between two films. Cross stiffness is left out: it drives a whirl and holds nothing."""
-    single = iter(0.5 * float(np.trace(film.stiffness)) for film in films)
+    series where a ring floats between two films. Cross stiffness is left out: it drives a whirl and holds nothing.
+    Empty where a film has no direct stiffness, as one without a cavity in its center."""
+    means = [0.5 * float(np.trace(film.stiffness)) for film in films]
+    sizes = [float(np.abs(film.stiffness).max()) for film in films]
+    if any(mean <= NO_STIFFNESS * size for mean, size in zip(means, sizes, strict=True)):
+        return ()
+    single = iter(means)
     return tuple(
         1 / (1 / next(single) + 1 / next(single)) if isinstance(bearing, FloatingRingBearing) else next(single)
         for bearing in case.bearings

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.rectangles.bearing import FilmForce
@@ -24,7 +25,8 @@ from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.channels import coupled
-from frbcli.scene.films import rings
+from frbcli.scene.coupling import REMEMBERING
+from frbcli.scene.keys import bearing_key, cavitation_keys
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
 
@@ -37,6 +39,7 @@ Eigenvalues = NDArray[np.complex128]
 SPEEDS = 60  # of the default sweep: 5 Hz apart from 0 to 300 Hz
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed: one step of brentq beyond 1e-6, and below what anybody measures
 OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
+DIVERGENT = 1e-9  # real part over the largest absolute value from which a motion grows without oscillating
 
 
 @dataclass(frozen=True)
@@ -44,13 +47,15 @@ class RestingFilm:
     """A film at its resting position.
 
     displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the displacement, positive
-    counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m: of one bearing.
+    counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m: of one bearing;
+    name: as in the signals of a run, "" of a single film without a name.
     """
 
     displacement: Array
     attitude_deg: float
     stiffness: Array
     damping: Array
+    name: str = ""
 
     @property
     def eccentricity(self) -> float:
@@ -85,6 +90,21 @@ class StabilityPoint:
         return self.eigenvalues[self.eigenvalues.imag > OSCILLATING * np.abs(self.eigenvalues)]
 
     @property
+    def modes(self) -> Eigenvalues:
+        """One eigenvalue of each motion that oscillates or grows: those that grow, the fastest first, then those that
+        die out, the slowest first."""
+        size = np.abs(self.eigenvalues)
+        divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
+        told: Eigenvalues = self.eigenvalues[(self.eigenvalues.imag > OSCILLATING * size) | divergent]
+        return told[np.argsort(-told.real, kind="stable")]
+
+    @property
+    def growing(self) -> Eigenvalues:
+        """Those of the modes that grow."""
+        modes = self.modes
+        return modes[modes.real > 0.0]
+
+    @property
     def critical(self) -> complex:
         """The eigenvalue with the largest real part among those that oscillate, or among all where none does."""
         candidates = self.oscillating if len(self.oscillating) else self.eigenvalues
@@ -114,7 +134,7 @@ class Stability:
     """Linear stability of a case.
 
     points: at the speeds asked for; sweep: at all speeds that were computed, ascending; threshold: None if none lies
-    in the swept range; note then says why.
+    in the swept range; note then says why, and where the rotor is stable once more above it.
     """
 
     case: Case
@@ -140,15 +160,9 @@ def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability
     """
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
-    if any(coupled(bearing) for bearing in rings(case)):
-        problem = "ties the two films of a ring together: neither has coefficients of its own."
-        fault = Fault("bearing.channels", "coupled", None, problem, 'Take channels = "pressure" here.')
-        raise InputError(case.name or "case", (fault,))
+    if faults := _without_coefficients(case):
+        raise InputError(case.name or "case", tuple(faults))
     system = make_system(case, make_plan(case))
-    if system.remembers:
-        problem = "keeps oil of its own: eight coefficients per speed do not say whether the rotor is stable."
-        remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
-        raise InputError(case.name or "case", (Fault("film.cavitation", case.film.cavitation, None, problem, remedy),))
     speeds = sorted(set(default_speeds(case)) | set(asked))
     found: dict[float, StabilityPoint] = {}
     start: Array | None = None
@@ -196,33 +210,61 @@ def _linearised(system: System, speed: float, resting: Array) -> StabilityPoint:
     journals = system.rotor.journals @ resting
     turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
     films = tuple(
-        _resting_film(system.film_force(i, place, np.zeros(2), float(total)), place / system.clearances[i])
-        for i, (place, total) in enumerate(zip(journals, system.omegas(omega, turning), strict=True))
+        _resting_film(name, system.film_force(i, place, np.zeros(2), float(total)), place / system.clearances[i])
+        for i, (name, place, total) in enumerate(
+            zip(system.names, journals, system.omegas(omega, turning), strict=True)
+        )
     )
     stiffness, damping = np.stack([film.stiffness for film in films]), np.stack([film.damping for film in films])
     values = eigenvalues(without_spins(system.rotor, system.ring_count), omega, stiffness, damping)
     return StabilityPoint(speed, films, values, ring_speeds_Hz=tuple((turning / (2 * math.pi)).tolist()))
 
 
-def _resting_film(force: FilmForce, displacement: Array) -> RestingFilm:
+def _resting_film(name: str, force: FilmForce, displacement: Array) -> RestingFilm:
     load, attitude = -force.force, math.nan
     if load.any():
         across = load[0] * displacement[1] - load[1] * displacement[0]
         attitude = math.degrees(math.atan2(across, load @ displacement))
-    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity)
+    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name)
 
 
 def _threshold(system: System, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
-    """The lowest speed at which the growth passes zero from below, and a note where there is none."""
+    """The lowest speed at which the growth passes zero from below; a note where there is none, or where the rotor
+    becomes stable once more."""
     resting = [point for point in sweep if point.films]
     if not resting:
         return None, "No threshold: there is no resting position in the whole range of speeds."
-    if resting[0].growth > 0.0:
-        return None, f"Unstable from the lowest speed on: the threshold lies below {resting[0].speed_Hz:.4g} Hz."
-    for below, above in itertools.pairwise(resting):
-        if below.growth <= 0.0 < above.growth:
-            return _crossing(system, below.speed_Hz, above.speed_Hz)
-    return None, f"Stable up to the highest speed: the threshold lies above {resting[-1].speed_Hz:.4g} Hz."
+    slowest, fastest = resting[0], resting[-1]
+    if len(resting) == 1:
+        return None, _one_speed(slowest, len(sweep))
+    if slowest.growth > 0.0:
+        unstable = "Unstable from the lowest speed on: a threshold, if there is one, lies below"
+        beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
+        return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
+    for place, (below, above) in enumerate(itertools.pairwise(resting)):
+        if above.growth > 0.0:
+            threshold, problem = _crossing(system, below.speed_Hz, above.speed_Hz)
+            return threshold, problem + _stable_again(resting[place + 1 :])
+    return None, f"Stable up to the highest speed: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
+
+
+def _one_speed(point: StabilityPoint, tried: int) -> str:
+    """Why a single speed has no threshold."""
+    speed, found = f"{point.speed_Hz:.4g} Hz", "a motion grows" if point.growth > 0.0 else "every motion dies out"
+    if tried > 1:
+        return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {found}."
+    return (
+        f"No threshold is sought: there is one speed only, {speed}, where {found}. "
+        "Widen the range of speed.from and speed.to."
+    )
+
+
+def _stable_again(points: Sequence[StabilityPoint]) -> str:
+    """Where no motion grows any more, of points that begin with an unstable one."""
+    stable = [point.speed_Hz for point in points if point.growth <= 0.0]
+    if not stable:
+        return ""
+    return f" No motion grows at {len(stable)} higher speeds, from {stable[0]:.4g} to {stable[-1]:.4g} Hz."
 
 
 def _crossing(system: System, low: float, high: float) -> tuple[Threshold | None, str]:
@@ -238,6 +280,21 @@ def _crossing(system: System, low: float, high: float) -> tuple[Threshold | None
         return None, f"A threshold lies between {low:.4g} and {high:.4g} Hz, but was not found: {error}"
 
 
+def _without_coefficients(case: Case) -> list[Fault]:
+    """The films that no stiffness and damping of their own describe."""
+    faults = []
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
+            problem = "ties the two films of a ring together: neither has coefficients of its own."
+            key = f"{bearing_key(case, index)}.channels"
+            faults.append(Fault(key, "coupled", None, problem, 'Write channels = "pressure" here.'))
+    problem = "keeps oil of its own: eight coefficients per speed do not say whether the rotor is stable."
+    remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
+    named = dict(cavitation_keys(case))
+    faults += [Fault(key, name, None, problem, remedy) for key, name in named.items() if name in REMEMBERING]
+    return faults
+
+
 def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
     if not speeds:
         given = f"{case.speed.end:g} Hz"
@@ -249,13 +306,14 @@ def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
 
 
 def _row(point: StabilityPoint) -> dict[str, float | str]:
-    """The columns of to_pandas; names of a second and later film end with their number."""
+    """The columns of to_pandas; with several films each carries the name of its film at its end."""
     row: dict[str, float | str] = {"speed_Hz": point.speed_Hz, "status": point.status}
-    for number, film in enumerate(point.films):
-        end = f"_{number + 1}" if number else ""
+    for film in point.films:
+        end = f"_{film.name}" if len(point.films) > 1 else ""
         row |= {f"eccentricity{end}": film.eccentricity, f"attitude_deg{end}": film.attitude_deg}
         row |= {f"d{axis}{end}": value for axis, value in zip("xy", film.displacement.tolist(), strict=True)}
         for name, matrix in (("stiffness_{}_N_m", film.stiffness), ("damping_{}_N_s_m", film.damping)):
             row |= {name.format("xy"[i] + "xy"[j]) + end: float(value) for (i, j), value in np.ndenumerate(matrix)}
     critical = point.critical
-    return row | {"growth_1_s": critical.real, "frequency_Hz": critical.imag / (2 * math.pi)}
+    row |= {"growth_1_s": critical.real, "frequency_Hz": critical.imag / (2 * math.pi)}
+    return row | {"growing_modes": len(point.growing)}

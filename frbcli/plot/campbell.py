@@ -1,4 +1,4 @@
-"""The Campbell diagram: eigenfrequencies over rotor speed, and how fast the least damped of them grows or dies."""
+"""The Campbell diagram: eigenfrequencies over rotor speed, those that grow marked, and how fast each of these grows."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 Values = NDArray[np.float64]
 
 ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode
-DOT = 15.0  # pt^2
+DOT, SMALL_DOT = 15.0, 6.0  # pt^2
+BESIDE_ONE = 1.1  # times the speed of a single point, which the edge would cut
 GROWTH_FLOOR = 1.0  # 1/s, smallest half height of the growth panel: round-off is no news
 
 
 def campbell_figure(stability: Stability) -> Figure:
     """Damped eigenfrequencies of all oscillating motions over the swept speeds, and the growth of the critical one.
 
-    Overdamped motions have no frequency and are left out; motions faster than the frequency axis as well.
+    Motions that grow are filled dots in both panels, at zero frequency where they do not oscillate. Motions that die
+    out without oscillating have no frequency and are left out, those faster than the frequency axis as well.
     """
     points = [point for point in stability.sweep if point.films]
     case = stability.case
@@ -36,12 +38,12 @@ def campbell_figure(stability: Stability) -> Figure:
 
 
 def _draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
-    pairs = [(point.speed_Hz, value) for point in points for value in point.oscillating]
-    speeds, values = np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs])
+    pairs = [(point.speed_Hz, value) for point in points for value in point.modes]
+    speeds, values = np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs], dtype=complex)
     frequencies, grows = values.imag / (2 * np.pi), values.real > 0.0
     fastest = max((point.speed_Hz for point in points), default=1.0)
     critical = [point.critical.imag / (2 * np.pi) for point in points if len(point.oscillating)]
-    top = max(fastest, ABOVE_LOWEST * max(critical, default=0.0))
+    top = max(fastest, ABOVE_LOWEST * max([*critical, *frequencies[grows]], default=0.0))
     ends = np.array([0.0, fastest])
     for label, order, dashes in (("rotor speed", 1.0, (0, (5, 3))), ("half of it", 0.5, (0, (1, 2)))):
         axes.plot(ends, order * ends, color=GREY, linestyle=dashes, linewidth=1.1, label=label, zorder=1.5)
@@ -49,7 +51,7 @@ def _draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
         speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="dies out"
     )
     axes.scatter(speeds[grows], frequencies[grows], DOT, color=VERMILION, label="grows", zorder=3)
-    axes.set_xlim(0.0, fastest)
+    axes.set_xlim(0.0, fastest * (1.0 if len(points) > 1 else BESIDE_ONE))
     axes.set_ylim(0.0, top)
     axes.set_ylabel("damped frequency in Hz")
 
@@ -57,7 +59,10 @@ def _draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
 def _draw_growth(axes: Axes, points: list[StabilityPoint]) -> None:
     speeds = np.array([point.speed_Hz for point in points])
     growth = np.array([point.growth for point in points])
-    axes.plot(speeds, growth, color=BLACK)
+    axes.plot(speeds, growth, color=BLACK, marker="." if len(points) == 1 else "")
+    at = [point.speed_Hz for point in points for _ in point.growing]
+    rates = [float(value.real) for point in points for value in point.growing]
+    axes.scatter(at, rates, SMALL_DOT, color=VERMILION, zorder=3)
     for sign, colour, alpha in ((1.0, VERMILION, 0.3), (-1.0, BLUE, 0.15)):
         part = sign * growth > 0.0
         axes.fill_between(speeds, growth, 0.0, where=part, interpolate=True, color=colour, alpha=alpha, linewidth=0)

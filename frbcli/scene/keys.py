@@ -1,0 +1,33 @@
+"""The keys of a case's bearings and films, as a case file or --set writes them."""
+
+from __future__ import annotations
+
+from frbcli.case.bearing import FloatingRingBearing, RingFilm
+from frbcli.case.schema import Case
+
+
+def bearing_key(case: Case, index: int) -> str:
+    """The key of a bearing: "bearing", or "bearing.0" where there are several."""
+    return "bearing" if len(case.bearings) == 1 else f"bearing.{index}"
+
+
+def film_keys(case: Case) -> tuple[str, ...]:
+    """The keys of all films in the order of film_places, e.g. "bearing" or "bearing.1.inner"."""
+    keys: list[str] = []
+    for index, bearing in enumerate(case.bearings):
+        key = bearing_key(case, index)
+        keys += [f"{key}.inner", f"{key}.outer"] if isinstance(bearing, FloatingRingBearing) else [key]
+    return tuple(keys)
+
+
+def cavitation_keys(case: Case) -> tuple[tuple[str, str], ...]:
+    """Where the cavitation model of each film is written, a key of its own or film.cavitation, and the model."""
+    films = [
+        film
+        for bearing in case.bearings
+        for film in ((bearing.inner, bearing.outer) if isinstance(bearing, FloatingRingBearing) else (bearing,))
+    ]
+    return tuple(
+        (f"{key}.cavitation" if isinstance(film, RingFilm) and film.cavitation else "film.cavitation", name)
+        for key, film, name in zip(film_keys(case), films, case.cavitations, strict=True)
+    )
