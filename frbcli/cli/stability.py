@@ -12,6 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
+from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def command(
     from frbcli.analysis.stability import stability
     from frbcli.errors import NotConverged
     from frbcli.plot.campbell import campbell_figure
-    from frbcli.plot.style import check_picture, save_figure
+    from frbcli.plot.style import check_picture
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
@@ -81,9 +82,9 @@ def command(
         emit_modes(terminal, case, stiffness, speeds, picture)
         return None
     found = stability(case, speeds or None)
+    _tell(terminal, found)
     if picture is not None:
-        save_figure(campbell_figure(found), picture)
-    _tell(terminal, found, picture)
+        picture = draw(terminal, lambda: campbell_figure(found), picture, "Campbell diagram")
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
@@ -101,7 +102,7 @@ def command(
     return None if any(point.films for point in found.points) else NotConverged.exit_code
 
 
-def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
+def _tell(terminal: Terminal, found: Stability) -> None:
     from frbcli.scene.clearance_steps import step_times
 
     every = math.ceil(len(found.points) / LONGEST_TABLE)
@@ -109,14 +110,13 @@ def _tell(terminal: Terminal, found: Stability, picture: Path | None) -> None:
     title = found.case.title or found.case.name
     terminal.table(title, COLUMNS, [_cells(point) for point in shown])
     if every > 1:
-        terminal.say(f"{len(shown)} of {len(found.points)} speeds; --json gives all, --speed exactly those you want.")
+        told = f"{len(shown)} of {len(found.points)} speeds"
+        terminal.result(f"{told}; --json gives all, --speed exactly those you want.")
     for problem in (point.problem for point in found.points if point.problem):
-        terminal.say(problem)
-    terminal.say(_sentence(found))
+        terminal.result(problem)
+    terminal.result(_sentence(found))
     if step_times(found.case):
-        terminal.say("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
-    if picture is not None:
-        terminal.say(f"Campbell diagram: {picture}")
+        terminal.result("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
 
 
 def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
