@@ -1,5 +1,5 @@
 """`python -m frbcli` is `frb`."""
 
-from frbcli.cli.main import main
+from frbcli.cli.process import main
 
 main()

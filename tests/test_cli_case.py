@@ -52,9 +52,9 @@ def test_every_command_of_the_table_has_help(name: str, capsys: pytest.CaptureFi
 def test_check_shows_values_and_plan_to_people(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["check", "jeffcott", "--set", "bearing.clearance=40 um"]) == 0
     captured = capsys.readouterr()
-    assert captured.out == ""
+    assert captured.err == ""
     for expected in ("bearing.clearance", "4e-05 m", "40 um", "[width] of jeffcott", "expected error", "of CPU time"):
-        assert expected in captured.err
+        assert expected in captured.out
 
 
 @pytest.mark.usefixtures("_planned")
@@ -184,8 +184,8 @@ def test_schema_is_the_json_schema(capsys: pytest.CaptureFixture[str]) -> None:
 def test_cases_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["cases"]) == 0
     captured = capsys.readouterr()
-    assert captured.out == ""
-    assert all(name in captured.err for name in shipped_names())
+    assert all(name in captured.out for name in shipped_names())
+    assert "`frb cases NAME`" in captured.err
     assert run(["cases", "--json"]) == 0
     assert [case["name"] for case in document(capsys)["cases"]] == list(shipped_names())
 
@@ -218,12 +218,19 @@ def test_json_knows_no_nan(capsys: pytest.CaptureFixture[str]) -> None:
     assert document(capsys) == {"a": None, "b": [[1.0, None]], "c": 2.0, "d": 3, "e": "x", "f": [True, None]}
 
 
-def test_quiet_terminal_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    for terminal in (Terminal(quiet=True), Terminal()):
-        terminal.say("hello")
-        terminal.table("title", ("a",), [("[b]",)])
-        terminal.emit({"a": 1})
-        captured = capsys.readouterr()
-        assert captured.out == ""
-        assert (captured.err == "") == terminal.quiet
-    assert "[b]" in captured.err
+@pytest.mark.parametrize("terminal", [Terminal(json, quiet) for json in (False, True) for quiet in (False, True)])
+def test_a_terminal_tells_results_and_remarks_apart(terminal: Terminal, capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.result("a result")
+    terminal.table("title", ("a",), [("[b]",)])
+    terminal.remark("a remark")
+    terminal.emit({"a": 1})
+    captured = capsys.readouterr()
+    document = '{\n  "a": 1\n}\n'
+    if terminal.quiet:
+        assert captured == (document if terminal.json else "", "")
+        return
+    results = captured.err if terminal.json else captured.out
+    assert all(text in results for text in ("a result", "title", "[b]"))
+    assert "a remark" in captured.err
+    assert "a remark" not in captured.out
+    assert (captured.out == document) == terminal.json

@@ -59,14 +59,14 @@ def test_starving_film_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     found = document(capsys, *words, code=3)
     assert found["results"][0]["status"] == "not-converged"
     assert run(list(words)) == 3
-    assert "carries 0 N, at any eccentricity" in capsys.readouterr().err
+    assert "carries 0 N, at any eccentricity" in capsys.readouterr().out
 
 
 def test_tables_fit_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "80")
     models = "half-sommerfeld,two-phase"
     assert run(["rotation", "bearing-axial-groove", "--cavitation", models, *COARSE, "--no-picture"]) == 0
-    told = capsys.readouterr().err
+    told = capsys.readouterr().out
     assert max(map(len, told.splitlines())) <= 80
     assert "half-sommerfeld" in told  # not folded
 

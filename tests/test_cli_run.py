@@ -191,14 +191,17 @@ def test_progress_moves_on_a_terminal() -> None:
                 except OSError:  # the other end is closed
                     break
             assert process.stdout is not None
-            assert process.stdout.read() == b""
+            told = process.stdout.read().decode()
     finally:
         os.close(ours)
     assert process.returncode == 0
     lines = [line for line in shown.decode().replace("\r", "\n").splitlines() if "steps/rev" in line]
     assert len(lines) > 3
     assert len(set(lines)) > 3
-    assert "finished at 80 s" in shown.decode()
+    assert "finished at 80 s" in told
+    assert "finished" not in shown.decode()
+    assert "\x1b" not in told
+    assert max(map(len, told.splitlines())) <= 80
 
 
 def test_no_progress_where_nobody_watches(capsys: pytest.CaptureFixture[str]) -> None:

@@ -46,11 +46,11 @@ def test_command_speaks_in_eighty_columns(
     monkeypatch.setenv("COLUMNS", "80")
     assert frb(["stability", "jeffcott", "--no-picture", "--set", "film.theory=short"]) == 0
     said = capsys.readouterr()
-    assert said.out == ""
-    rows = [line for line in said.err.splitlines() if line.startswith("  ") and "°" in line]
+    assert said.err == ""
+    rows = [line for line in said.out.splitlines() if line.startswith("  ") and "°" in line]
     assert len(rows) == 20
     assert max(len(row) for row in rows) <= 80
-    assert "Threshold of stability: above 179.8 Hz" in said.err
+    assert "Threshold of stability: above 179.8 Hz" in said.out
     assert list(tmp_path.iterdir()) == []
 
 

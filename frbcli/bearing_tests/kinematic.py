@@ -57,11 +57,13 @@ class KinematicResult:
 
 @dataclass(frozen=True)
 class KinematicTest:
-    """A test, "rotation", "squeeze" or "whirl", with one result per cavitation model, in their order."""
+    """A test, "rotation", "squeeze" or "whirl", with one result per cavitation model, in their order; complete: not
+    interrupted before the last of them."""
 
     case: Case
     test: str
     results: tuple[KinematicResult, ...]
+    complete: bool = True
 
     def to_pandas(self) -> pd.DataFrame:
         """One row per model for a rotation; for a squeeze or a whirl one per model and moment."""
@@ -75,7 +77,8 @@ class KinematicTest:
 def rotation(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
     """A journal that turns at a displacement, or rests under a load; () stands for the case's own model.
 
-    Raises InputError if the case does not fit; a model that does not converge is a result with that status.
+    Raises InputError if the case does not fit; a model that does not converge is a result with that status. Ctrl-C ends
+    it with the models that are done, or is raised on if there are none.
     """
     return _test(case, cavitations, "rotation", _rotation)
 
@@ -95,7 +98,14 @@ def _test(
 ) -> KinematicTest:
     names = dict.fromkeys(cavitations or (case.film.cavitation,))
     plans = [kinematic_plan(case, name, test) for name in names]
-    return KinematicTest(case, test, tuple(solve(case, plan) for plan in plans))
+    results: list[KinematicResult] = []
+    try:
+        for plan in plans:
+            results.append(solve(case, plan))
+    except KeyboardInterrupt:
+        if not results:
+            raise
+    return KinematicTest(case, test, tuple(results), len(results) == len(plans))
 
 
 def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:

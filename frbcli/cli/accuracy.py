@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
+from frbcli.cli.pictures import draw
+from frbcli.cli.process import INTERRUPTED
 from frbcli.cli.runs import OUTPUT, SECONDS, here
 from frbcli.cli.transient import live_lines, progress_line
 
@@ -24,7 +26,6 @@ EXPLANATION = (
     "thr.: of that from which on it grows by linear stability; force: relative error\n"
     "of the film forces."
 )
-INTERRUPTED = 130
 RESOLVED = 0.01  # Hz; two decimals tell no more
 
 
@@ -50,26 +51,26 @@ def command(
     from frbcli.studies.accuracy import accuracy
 
     target = output or here(case.name, "-accuracy.png")
-    check_picture(target)
+    if picture:
+        check_picture(target)
     with live_lines(terminal) as show:
         watch = None if show is None else lambda rung, progress: show(f"{rung.name}\n{progress_line(progress)}")
         found = accuracy(case, until, theory, coupling, watch)
     _report(found, terminal)
-    if picture and found.ladder:
-        from frbcli.plot.accuracy import accuracy_figure
-        from frbcli.plot.style import save_figure
-
-        save_figure(accuracy_figure(found), target)
-        terminal.say(f"picture: {target}")
     reference = _document(found.reference) | {"compared_with": _rung(found.coarser)}
     reference["change"] = reference.pop("error")
     terminal.emit({
         "command": "accuracy",
         "case": case.name,
+        **({} if found.complete else {"status": "interrupted"}),
         "until_s": found.until_s,
         "reference": reference,
         "ladder": [_document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder],
     })
+    if picture and found.ladder:
+        from frbcli.plot.accuracy import accuracy_figure
+
+        draw(terminal, lambda: accuracy_figure(found), target)
     return 0 if found.complete else INTERRUPTED
 
 
@@ -78,9 +79,9 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     rows = [_cells(item, several, ("*" if item.planned else "") + ("+" if item in found.front else ""))
             for item in found.ladder]
     terminal.table(f"{found.case.title or found.case.name}, first {found.until_s:g} s", COLUMNS, rows)
-    terminal.say(EXPLANATION)
+    terminal.result(EXPLANATION)
     reference, change = found.reference.rung, found.reference.error
-    terminal.say(
+    terminal.result(
         f"reference: {reference.name}; on a coarser mesh and with\n"
         f"twice the tolerance it changes by {short_number(change.eccentricity_largest)} (max) and "
         f"{short_number(change.eccentricity_rms)} (rms)."
@@ -88,13 +89,15 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     for item in (item for item in found.ladder if item.planned):
         stated = item.stated.get("eccentricity")
         told = "" if stated is None else f", its error is stated as {short_number(stated)}"
-        terminal.say(f"the choice of the plan costs {found.above_front():.2g} times the front{told}.")
+        terminal.result(f"the choice of the plan costs {found.above_front():.2g} times the front{told}.")
     ended = {item.error.until_s for item in found.ladder} - {found.until_s}
     if ended:
-        terminal.say(f"errors of the eccentricity until {min(ended):.4g} s, where a whirl begins to grow.")
+        terminal.result(f"errors of the eccentricity until {min(ended):.4g} s, where a whirl begins to grow.")
     for item in found.ladder:
         if item.status != "finished":
-            terminal.say(f"{item.rung.name}: {item.status}")
+            terminal.result(f"{item.rung.name}: {item.status}")
+    if not found.complete:
+        terminal.result(f"Interrupted: {len(found.ladder)} rungs are done, without thresholds.")
 
 
 def _cells(item: RungResult, several: bool, mark: str) -> tuple[str, ...]:

@@ -46,9 +46,10 @@ def _show(name: str, output: Path | None, hard: bool, terminal: Terminal) -> Non
     text = text_of(name)
     if output is not None:
         _write(text, output)
-        terminal.say(f"{output} written; `frb check {output}` checks it.")
-    elif not terminal.json:
-        click.echo(text, nl=False)
+        terminal.result(f"case: {output}")
+        terminal.remark(f"`frb check {output}` checks it.")
+    else:
+        terminal.text(text)
     terminal.emit({"command": "cases", "case": name, "output": output, "text": text})
 
 
@@ -57,7 +58,7 @@ def _list(terminal: Terminal) -> None:
 
     cases = shipped_cases()
     terminal.table("shipped cases", ("name", "title"), list(cases.items()))
-    terminal.say("`frb cases NAME` prints a case, `frb cases NAME -o FILE` copies it; --hard lists hard cases.")
+    terminal.remark("`frb cases NAME` prints a case, `frb cases NAME -o FILE` copies it; --hard lists hard cases.")
     terminal.emit({"command": "cases", "cases": [{"name": name, "title": title} for name, title in cases.items()]})
 
 

@@ -38,7 +38,7 @@ def command(case: Case, terminal: Terminal) -> None:
     terminal.table(f"{case.name}: {case.title}".rstrip(": "), ("key", "SI", "reads"), rows)
     bare = [value for value in listed if value.bare]
     for value in bare:
-        terminal.say(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
+        terminal.result(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
     films = operating_points(case)
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
@@ -116,12 +116,12 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
     terminal.table("films at the top speed", columns, rows)
     for film in films:
         if not film.laminar:
-            terminal.say(
+            terminal.result(
                 f"Warning: {film.name}: the Reynolds number {film.reynolds:.0f} is not below 2300: its flow is not\n"
                 "laminar, as the equations of a film have it."
             )
         if abs(film.turning) > TURNING_TOLD * film.clearance:
-            terminal.say(
+            terminal.result(
                 f"Note: {film.name}: steel shafts and brass rings that turn so fast change the gap by "
                 f"{film.turning / film.clearance:+.0%};\nthat is left out. Add it to the clearance where it matters."
             )

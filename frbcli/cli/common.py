@@ -16,12 +16,14 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
+from frbcli.cli.streams import OutputLost
 from frbcli.errors import printable
 
 if TYPE_CHECKING:
@@ -31,15 +33,19 @@ if TYPE_CHECKING:
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+PIPE_WIDTH = 80  # columns of a table that nobody sees on a screen
+
 _JSON = "frbcli.json"
 _SETTINGS = "frbcli.settings"
 
 
 @dataclass(frozen=True)
 class Terminal:
-    """Where a command speaks: text for people to stderr, one JSON document to stdout.
+    """Where a command speaks.
 
-    json: --json was given; quiet: --quiet was given.
+    Results are the answer, with what limits it and the files it is in: they go to stdout. Remarks are what helps the
+    person who waits, progress and advice: they go to stderr. With json stdout holds one JSON document alone, and
+    results for people go to stderr; with quiet people are told nothing.
     """
 
     json: bool = False
@@ -50,26 +56,17 @@ class Terminal:
         """Whether somebody watches: progress may move on the screen."""
         return not self.quiet and sys.stderr.isatty()
 
-    def console(self) -> Console:
-        """A rich console on stderr; silent with --quiet."""
-        from rich.console import Console
+    def live_console(self) -> Console:
+        """A rich console for progress."""
+        return _console(sys.stderr)
 
-        return Console(stderr=True, quiet=self.quiet, highlight=False, markup=False, emoji=False)
-
-    def say(self, text: str = "") -> None:
-        """Print `text` for people; of control characters, which names of files may have, only new lines."""
+    def result(self, text: str = "") -> None:
+        """Tell people a part of the answer; of control characters, which file names may have, only new lines."""
         if not self.quiet:
-            click.echo(printable(text), err=True)
-
-    def progress(self, line: str, show: Callable[[str], None] | None) -> None:
-        """How far a command is: by `show`, which moves a line where somebody watches, else a line of its own."""
-        if show is None:
-            self.say(line)
-        else:
-            show(line)
+            _write(self._results, f"{printable(text)}\n")
 
     def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-        """Print a table for people. rows: as many cells as columns each; cells are shown by str()."""
+        """Tell people a table, a part of the answer. rows: as many cells as columns each, shown by str()."""
         if self.quiet:
             return
         from rich import box
@@ -81,13 +78,53 @@ class Terminal:
             table.add_column(column, overflow="fold")
         for row in rows:
             table.add_row(*(Text(printable(str(cell))) for cell in row))
-        self.console().print(table)
+        with suppress(OutputLost):
+            _console(self._results).print(table)
+
+    def remark(self, text: str) -> None:
+        """Tell people what is not part of the answer."""
+        if not self.quiet:
+            _write(sys.stderr, f"{printable(text)}\n")
+
+    def progress(self, line: str, show: Callable[[str], None] | None) -> None:
+        """How far a command is: by `show`, which moves a line where somebody watches, else a line of its own."""
+        if show is None:
+            self.remark(line)
+        else:
+            show(line)
+
+    def text(self, text: str) -> None:
+        """Print a text that was asked for, quiet or not; with json the document has it."""
+        if not self.json:
+            _write(sys.stdout, text)
 
     def emit(self, document: Mapping[str, object]) -> None:
         """Print the command's one JSON document on stdout if --json was given; NaN and infinities become null."""
         if self.json:
             text = json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False)
-            click.echo("".join(map(_as_json, text)))
+            _write(sys.stdout, "".join(map(_as_json, text)) + "\n")
+
+    @property
+    def _results(self) -> TextIO:
+        return sys.stderr if self.json else sys.stdout
+
+
+def _write(stream: TextIO, text: str) -> None:
+    """Write at once. A stdout that takes no more is told at the end, by `frbcli.cli.process`: the work goes on."""
+    with suppress(OutputLost):
+        stream.write(text)
+        stream.flush()
+
+
+def _console(stream: TextIO) -> Console:
+    """A rich console on a stream; in a pipe or file its tables have no colours, and one width on all machines."""
+    from rich.console import Console
+
+    if stream.isatty():
+        return Console(file=stream, highlight=False, markup=False, emoji=False)
+    return Console(
+        file=stream, force_terminal=False, no_color=True, width=PIPE_WIDTH, highlight=False, markup=False, emoji=False
+    )
 
 
 def short_number(value: float | None) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import exit_code, live_lines, progress_line
 from frbcli.errors import Fault, InputError
@@ -68,20 +69,20 @@ def command(
             problem = f"is not for a {test}, in which no rotor moves."
             raise InputError(case.name, (Fault("--coupling", ",".join(coupling), None, problem, "Leave it out."),))
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
-    check_picture(target)
+    if picture:
+        check_picture(target)
     with live_lines(terminal) as show:
         watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
         found = compare(case, cavitation, theory, test, keep, watch, coupling)
     _report(found, bool(coupling), terminal)
+    results = [_document(result) for result in found.results]
+    whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
+    terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results})
     if picture and all(len(result.run) > 1 for result in found.results):
         from frbcli.plot.compare import comparison_figure
-        from frbcli.plot.style import save_figure
 
-        save_figure(comparison_figure(found), target)
-        terminal.say(f"picture: {target}")
-    results = [_document(result) for result in found.results]
-    terminal.emit({"command": "compare", "case": case.name, "test": found.test, "results": results})
-    return max((exit_code(result.run.status) for result in found.results), default=0)
+        draw(terminal, lambda: comparison_figure(found), target)
+    return max(exit_code(status) for status in (found.status, *(result.run.status for result in found.results)))
 
 
 def _kinematic(
@@ -108,13 +109,15 @@ def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
     if couplings:
         several = len({(result.variant.cavitation, result.variant.theory) for result in found.results}) > 1
         terminal.table(title, COUPLING_COLUMNS, (_coupling_cells(result, several) for result in found.results))
-        terminal.say(COUPLING_EXPLANATION)
+        terminal.result(COUPLING_EXPLANATION)
     else:
         terminal.table(title, COLUMNS, map(_cells, found.results))
-        terminal.say(EXPLANATION)
+        terminal.result(EXPLANATION)
     for result in found.results:
         if result.run.status != "finished":
-            terminal.say(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
+            terminal.result(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
+    if found.status != "finished":
+        terminal.result(f"Not all models were run: {' '.join(found.message.split()) or found.status}")
 
 
 def _cells(result: VariantResult) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
@@ -34,14 +33,11 @@ def command(run_file: Path, table_format: str, output: Path | None, terminal: Te
         raise click.UsageError("Only CSV goes to stdout, and not together with --json.")
     run = read_run(run_file)
     if to_stdout:
-        try:
-            write_csv(run, sys.stdout)
-            sys.stdout.flush()
-        except BrokenPipeError:  # the reader has seen enough, as `head` does; nothing more can be said there
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        write_csv(run, sys.stdout)  # ends where its reader does, as `head`
+        sys.stdout.flush()
         return
     target = export_run(run, output or beside(run_file, f".{table_format}"), table_format)
-    terminal.say(f"{len(run)} samples of {len(run.signals)} signals: {target}")
+    terminal.result(f"{len(run)} samples of {len(run.signals)} signals: {target}")
     terminal.emit(
         {
             "command": "export",

@@ -9,6 +9,7 @@ from typing import Any
 
 from frbcli.case.hard import HardCase, hard_cases
 from frbcli.cli.common import Terminal, short_number
+from frbcli.cli.process import INTERRUPTED
 from frbcli.cli.transient import live_lines
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
@@ -26,7 +27,7 @@ def list_hard(terminal: Terminal) -> None:
     """The table of all hard cases."""
     found = hard_cases()
     terminal.table("hard cases", ("case", "what is hard", "ends"), [(h.name, h.hard, h.end) for h in found])
-    terminal.say("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
+    terminal.remark("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
     terminal.emit({"command": "cases", "hard": [_entry(hard) for hard in found]})
 
 
@@ -44,16 +45,23 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
     with live_lines(terminal) as show:
         found = run_hard_cases(names, _progress(terminal, show))
     terminal.table("hard cases", COLUMNS, map(_cells, found.results))
-    terminal.say(EXPLANATION)
+    terminal.result(EXPLANATION)
     for result in found.results:
         if result.message:
-            terminal.say(fill(f"{result.hard.name}: {_cause(result)}", WIDTH))
+            terminal.result(fill(f"{result.hard.name}: {_cause(result)}", WIDTH))
     wrong = [result for result in found.results if not result.ok]
     for result in wrong:
-        terminal.say(fill(f"NOT AS LISTED: {result.hard.name}: {'; '.join(result.problems)}", WIDTH))
+        terminal.result(fill(f"NOT AS LISTED: {result.hard.name}: {'; '.join(result.problems)}", WIDTH))
     cpu_s = sum(result.cpu_s for result in found.results)
-    terminal.say(f"{len(found.results) - len(wrong)} of {len(found.results)} end as listed; {cpu_s:.0f} s of CPU time.")
-    terminal.emit({"command": "cases", "hard": [_document(result) for result in found.results], "ok": found.ok})
+    done = len(found.results)
+    terminal.result(f"{done - len(wrong)} of {done} end as listed; {cpu_s:.0f} s of CPU time.")
+    if not found.complete:
+        terminal.result("Interrupted: the other cases were not run.")
+    whole = {} if found.complete else {"status": "interrupted"}
+    documents = [_document(result) for result in found.results]
+    terminal.emit({"command": "cases", **whole, "hard": documents, "ok": found.ok})
+    if not found.complete:
+        return INTERRUPTED
     return 0 if found.ok else NOT_AS_LISTED
 
 

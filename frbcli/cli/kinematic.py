@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal
+from frbcli.cli.pictures import draw
+from frbcli.cli.process import INTERRUPTED
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import NotConverged
 
@@ -60,29 +62,30 @@ def run_test(
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
     found = tests[test](case, cavitation)
     report(found, terminal)
-    if picture:
-        draw(found, target, terminal)
     results = [result_document(result) for result in found.results]
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
-    terminal.emit({**head, "results": results})
+    whole = {} if found.complete else {"status": "interrupted"}
+    terminal.emit({**head, **whole, "results": results})
+    if picture:
+        draw_test(found, target, terminal)
     return exit_code(found)
 
 
 def exit_code(found: KinematicTest) -> int | None:
-    """3 if a model did not converge."""
+    """130 if it was interrupted, 3 if a model did not converge."""
+    if not found.complete:
+        return INTERRUPTED
     return NotConverged.exit_code if any(result.status != "ok" for result in found.results) else None
 
 
-def draw(found: KinematicTest, target: Path, terminal: Terminal) -> None:
+def draw_test(found: KinematicTest, target: Path, terminal: Terminal) -> None:
     """The picture of a test, if there is anything to see."""
     from frbcli.plot.film import film_figure
     from frbcli.plot.history import history_figure
-    from frbcli.plot.style import save_figure
 
     if all(result.loads is None for result in found.results):
         return
-    save_figure(film_figure(found) if found.test == "rotation" else history_figure(found), target)
-    terminal.say(f"picture: {target}")
+    draw(terminal, lambda: film_figure(found) if found.test == "rotation" else history_figure(found), target)
 
 
 def report(found: KinematicTest, terminal: Terminal) -> None:
@@ -90,12 +93,14 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
     title = found.case.title or found.case.name
     terminal.table(f"{title}: {found.test}", FORCES, map(_forces, found.results))
     terminal.table("", OIL, map(_oil, found.results))
-    terminal.say(EXPLANATION)
+    terminal.result(EXPLANATION)
     if found.test != "rotation":
-        terminal.say(LARGEST)
+        terminal.result(LARGEST)
     for result in found.results:
         if result.problem:
-            terminal.say(f"{result.cavitation}: {result.status}: {result.problem}")
+            terminal.result(f"{result.cavitation}: {result.status}: {result.problem}")
+    if not found.complete:
+        terminal.result("Interrupted: the other models were not computed.")
 
 
 def _forces(result: KinematicResult) -> tuple[str, ...]:

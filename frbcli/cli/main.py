@@ -1,18 +1,20 @@
 """`frb`: the table of commands, and the one place where errors become exit codes.
 
-Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug.
+Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug;
+`process.main` adds what streams that take no more make of 0. docs/command-line.md tells it of each command.
 """
 
 from __future__ import annotations
 
 import importlib
 import io
-import sys
 from collections.abc import Sequence
 
 import click
 
 from frbcli.cli.common import Terminal
+from frbcli.cli.process import INTERRUPTED
+from frbcli.cli.process import main as main  # where installed scripts look for it
 from frbcli.errors import Fault, FrbError, InputError, NotConverged, printable
 from frbcli.version import __version__
 
@@ -34,8 +36,6 @@ COMMANDS = {
     "cases": ("frbcli.cli.cases", "List, show or copy the cases that come with frb."),
     "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),
 }
-
-INTERRUPTED = 130
 
 
 class LazyGroup(click.Group):
@@ -66,11 +66,6 @@ def frb() -> None:
     Describe rotor, bearings and oil in one TOML file (CASE: a file, or the name of a shipped case), run it up, and look
     at the waterfall.
     """
-
-
-def main() -> None:
-    """The console script."""
-    sys.exit(run(sys.argv[1:]))
 
 
 def run(arguments: Sequence[str]) -> int:

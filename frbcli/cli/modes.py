@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from frbcli.cli.pictures import draw
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -44,15 +46,13 @@ def emit_modes(
     """Table, picture and JSON of the rotor, free and on springs of a stiffness in N/m, at speeds in Hz."""
     from frbcli.linear.modes import natural_modes
     from frbcli.plot.modes import modes_figure
-    from frbcli.plot.style import save_figure
 
     found = [natural_modes(case, None, [0.0]), natural_modes(case, stiffness, speeds or None)]
-    if picture is not None:
-        save_figure(modes_figure(natural_modes(case, stiffness) if speeds else found[1]), picture)
     for modes in found:
         tell_modes(terminal, modes)
     if picture is not None:
-        terminal.say(f"Natural modes: {picture}")
+        drawn = natural_modes(case, stiffness) if speeds else found[1]
+        picture = draw(terminal, lambda: modes_figure(drawn), picture, "Natural modes")
     terminal.emit(
         {
             "command": "stability",
@@ -71,7 +71,7 @@ def tell_modes(terminal: Terminal, modes: Modes) -> None:
 
     if not modes.stiffness_N_m:
         bending = ", ".join(f"{frequency:.4g}" for frequency in modes.free_Hz[:TOLD])
-        terminal.say(f"Free rotor of {modes.mass_kg:.4g} kg: bending modes of {bending} Hz at rest.")
+        terminal.result(f"Free rotor of {modes.mass_kg:.4g} kg: bending modes of {bending} Hz at rest.")
         return
     springs = ", ".join(display(spring, "N/m") for spring in dict.fromkeys(modes.stiffness_N_m))
     every = -(-len(modes.points) // LONGEST_TABLE)
@@ -84,7 +84,8 @@ def tell_modes(terminal: Terminal, modes: Modes) -> None:
     terminal.table(title, columns, rows)
     if modes.error is not None:
         missing = 100 * modes.error.frequency
-        terminal.say(f"The reduction to {modes.kept} modes of each plane changes these frequencies by {missing:.2g} %.")
+        kept = f"{modes.kept} modes of each plane"
+        terminal.result(f"The reduction to {kept} changes these frequencies by {missing:.2g} %.")
 
 
 def _cells(modes: Sequence[Mode]) -> list[str]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside, here
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def command(
 ) -> None:
     """Draw one picture of one or several runs, overlaid; or, with --what law, of a case: its oil fraction over
     pressure."""
-    from frbcli.plot.style import check_picture, save_figure
+    from frbcli.plot.style import check_picture
     from frbcli.results.store import read_run
 
     if what == LAW:
@@ -67,8 +68,8 @@ def command(
         raise click.UsageError(f"--over belongs to --what {', '.join(CURVES)}.")
     target = output or beside(run_files[0], f"-{what}.png")
     check_picture(target)
-    save_figure(_draw(what, [read_run(path) for path in run_files], (from_time, to_time), over, signal), target)
-    terminal.say(f"{what}: {target}")
+    runs = [read_run(path) for path in run_files]
+    draw_wanted(terminal, lambda: _figure(what, runs, (from_time, to_time), over, signal), target, what)
     first = run_files[0] if len(run_files) == 1 else list(run_files)
     terminal.emit({"command": "plot", "run": first, "output": target, "what": what})
 
@@ -76,17 +77,16 @@ def command(
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
     from frbcli.case.load import load_case
     from frbcli.plot.law import law_figure
-    from frbcli.plot.style import check_picture, save_figure
+    from frbcli.plot.style import check_picture
 
     case = load_case(source, settings)
     target = output or here(case.name, f"-{LAW}.png")
     check_picture(target)
-    save_figure(law_figure(case), target)
-    terminal.say(f"{LAW}: {target}")
+    draw_wanted(terminal, lambda: law_figure(case), target, LAW)
     terminal.emit({"command": "plot", "case": case.name, "output": target, "what": LAW})
 
 
-def _draw(
+def _figure(
     what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, signal: str | None
 ) -> Picture:
     from frbcli.plot.displacement import displacement_figure

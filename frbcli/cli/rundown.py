@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 @case_argument
 @run_options
 @output_options
-def command(case: Case, output: Path | None, resume: bool, picture: bool, verify: bool, terminal: Terminal) -> int:
+def command(
+    case: Case, output: Path | None, resume: bool, force: bool, picture: bool, verify: bool, terminal: Terminal
+) -> int:
     """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture beside it."""
     from frbcli.runs.run import rundown
 
-    return transient("rundown", rundown, case, output, resume, picture, verify, terminal)
+    return transient("rundown", rundown, case, output, resume, force, picture, verify, terminal)

@@ -32,7 +32,7 @@ SECONDS = Seconds()
 
 def beside(run: Path, what: str) -> Path:
     """Where a result goes if nothing is said: beside its run."""
-    return run.with_name(run.stem + what)
+    return run.parent / (run.stem + what)
 
 
 def here(case_name: str, what: str) -> Path:

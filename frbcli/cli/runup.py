@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 @case_argument
 @run_options
 @output_options
-def command(case: Case, output: Path | None, resume: bool, picture: bool, verify: bool, terminal: Terminal) -> int:
+def command(
+    case: Case, output: Path | None, resume: bool, force: bool, picture: bool, verify: bool, terminal: Terminal
+) -> int:
     """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
     from frbcli.runs.run import runup
 
-    return transient("runup", runup, case, output, resume, picture, verify, terminal)
+    return transient("runup", runup, case, output, resume, force, picture, verify, terminal)

@@ -12,6 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
+from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT
 from frbcli.cli.stability_table import tell_points
 
@@ -65,7 +66,7 @@ def command(
     from frbcli.linear.modes import natural_modes
     from frbcli.linear.stability import stability
     from frbcli.plot.campbell import campbell_figure
-    from frbcli.plot.style import check_picture, save_figure
+    from frbcli.plot.style import check_picture
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
@@ -77,15 +78,15 @@ def command(
         emit_modes(terminal, case, stiffness, speeds, picture)
         return None
     found = stability(case, speeds or None)
+    _tell(terminal, found, bool(speeds))
     if picture is not None:
-        save_figure(campbell_figure(found), picture)
-    _tell(terminal, found, bool(speeds), picture)
+        picture = draw(terminal, lambda: campbell_figure(found), picture, "Campbell diagram")
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
     if len(natural) == 1 and found.points[-1].films:
         at = f"{found.points[-1].speed_Hz:.4g} Hz"
-        terminal.say(f"None on its films at {at}: one has no direct stiffness there.")
+        terminal.result(f"None on its films at {at}: one has no direct stiffness there.")
     terminal.emit(
         {
             "command": "stability",
@@ -100,15 +101,13 @@ def command(
     return None if any(point.films for point in found.points) else NotConverged.exit_code
 
 
-def _tell(terminal: Terminal, found: Stability, every_speed: bool, picture: Path | None) -> None:
+def _tell(terminal: Terminal, found: Stability, every_speed: bool) -> None:
     from frbcli.scene.clearance_steps import step_times
 
     tell_points(terminal, found, every_speed)
-    terminal.say(_sentence(found))
+    terminal.result(_sentence(found))
     if step_times(found.case):
-        terminal.say("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
-    if picture is not None:
-        terminal.say(f"Campbell diagram: {picture}")
+        terminal.result("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
 
 
 def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:

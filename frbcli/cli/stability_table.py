@@ -31,9 +31,10 @@ def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None
     rows = [line for point in shown for line in (_film_lines(point) if several else _lines(point))]
     terminal.table(found.case.title or found.case.name, FILMS if several else ONE_FILM, rows)
     if several:
-        terminal.say("Modes of the machine: all that grow (damping below 0), then the least damped.")
+        terminal.result("Modes of the machine: all that grow (damping below 0), then the least damped.")
     if every > 1:
-        terminal.say(f"{len(shown)} of {len(found.points)} speeds; --json gives all, --speed exactly those you want.")
+        told = f"{len(shown)} of {len(found.points)} speeds"
+        terminal.result(f"{told}; --json gives all, --speed exactly those you want.")
     _tell_problems(terminal, found.points)
 
 
@@ -42,9 +43,9 @@ def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None
     if len(missing) > 1:
         speeds = [point.speed_Hz for point in missing]
         span = f"from {min(speeds):.4g} to {max(speeds):.4g} Hz"
-        terminal.say(f"No resting position at {len(missing)} of {len(points)} speeds {span}. The first of them:")
+        terminal.result(f"No resting position at {len(missing)} of {len(points)} speeds {span}. The first of them:")
     for point in missing[:1]:
-        terminal.say(point.problem)
+        terminal.result(point.problem)
 
 
 def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES, live_lines
 from frbcli.errors import Fault, InputError
@@ -62,17 +63,32 @@ def command(
     points = _points(axes, list_file)
     check_table_format(table_format)
     folder = output or here(case.name, "-sweep")
+    table, target = folder / f"sweep.{table_format}", folder / "sweep.png"
+    _check_places(table, target if picture else None)
     method = "stability" if stability else "runup"
     with live_lines(terminal) as show:
         observe = _progress(terminal, show)
         found = sweep(case, points, folder, method, not no_runs, Workers(backend, jobs, scheduler), observe)
-    table = write_table(found, folder / f"sweep.{table_format}", table_format)
     _report(found, terminal)
-    terminal.say(f"table: {table}")
-    target = _picture(found, folder / "sweep.png", terminal) if picture else None
+    write_table(found, table, table_format)
+    terminal.result(f"table: {table}")
+    drawn = _picture(found, target, terminal) if picture else None
     documents = [_document(point) for point in found.points]
-    terminal.emit({"command": "sweep", "case": case.name, "points": documents, "table": table, "picture": target})
+    terminal.emit({"command": "sweep", "case": case.name, "points": documents, "table": table, "picture": drawn})
     return _exit_code(found)
+
+
+def _check_places(table: Path, picture: Path | None) -> None:
+    """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
+    from frbcli.plot.style import check_picture
+    from frbcli.results.place import wrong_place
+
+    if not table.parent.is_dir():
+        return  # it is made, or that is refused
+    if wrong := wrong_place(table):
+        raise _fault("--output", str(table), *wrong)
+    if picture is not None:
+        check_picture(picture)
 
 
 def _axes(settings: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, ...]]]:
@@ -136,12 +152,12 @@ def _report(found: Sweep, terminal: Terminal) -> None:
     title = found.case.title or found.case.name
     terminal.table(title, columns, [_cells(point, found.keys, event) for point in found.points[:LONGEST_TABLE]])
     if len(found.points) > LONGEST_TABLE:
-        terminal.say(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
+        terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
     failed = [point for point in found.points if point.status != "finished"]
     if any(point.status == "interrupted" for point in failed):
-        terminal.say("Interrupted; the same command goes on.")
+        terminal.remark("Interrupted; the same command goes on.")
     elif failed:
-        terminal.say(f"{len(failed)} of {len(found.points)} points did not finish; the table's file says why.")
+        terminal.result(f"{len(failed)} of {len(found.points)} points did not finish; the table's file says why.")
 
 
 def _cells(point: SweepPoint, keys: Sequence[str], kind: str) -> tuple[str, ...]:
@@ -155,15 +171,12 @@ def _hertz(value: float | None) -> str:
 
 
 def _picture(found: Sweep, target: Path, terminal: Terminal) -> Path | None:
-    from frbcli.plot.style import save_figure
     from frbcli.plot.sweep import can_draw, sweep_figure
 
     if not can_draw(found):
-        terminal.say("No picture: it needs one or two keys with several values, and a point with a whirl.")
+        terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
         return None
-    save_figure(sweep_figure(found), target)
-    terminal.say(f"picture: {target}")
-    return target
+    return draw(terminal, lambda: sweep_figure(found), target)
 
 
 def _document(point: SweepPoint) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal
+from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
 
 if TYPE_CHECKING:
@@ -22,10 +23,11 @@ if TYPE_CHECKING:
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
 
-EXIT_CODES = {"finished": 0, "interrupted": 130}  # anything else ended early for a reason that it names: 3
-ENDED_EARLY = 3
+EXIT_CODES = {"finished": 0, "input-error": 2, "interrupted": 130}
+ENDED_EARLY = 3  # for any other reason, which is named
 REFRESH_Hz = 8
 COLUMNS = 80  # of a terminal
+SUMMARY = "-summary.png"
 LONGEST_LEFT_s = 1e9  # no guess that anybody waits for
 REASONS = {
     "contact": "The journal reached the shell (contact.eccentricity). "
@@ -38,16 +40,17 @@ REASONS = {
 
 
 def run_options(function: Function) -> Function:
-    """Give a command --output, --resume, --no-picture and --verify."""
+    """Give a command --output, --resume, --force, --no-picture and --verify."""
     output = click.option(
         "--output", "-o", type=OUTPUT, default=None, metavar="RUN.h5", help="Run file. Default: CASE.h5 here."
     )
     resume = click.option("--resume", is_flag=True, help="Go on with an interrupted run in the run file.")
+    force = click.option("--force", is_flag=True, help="Replace an interrupted run in the run file.")
     picture = click.option("--picture/--no-picture", default=True, help="A summary picture beside the run.")
     verify = click.option(
         "--verify", is_flag=True, help="Run again with half the tolerance and half the step, and say what changes."
     )
-    return output(resume(picture(verify(function))))
+    return output(resume(force(picture(verify(function)))))
 
 
 def transient(
@@ -56,24 +59,20 @@ def transient(
     case: Case,
     output: Path | None,
     resume: bool,
+    force: bool,
     picture: bool,
     verify: bool,
     terminal: Terminal,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     path = output or here(case.name, ".h5")
+    if picture:
+        _check_summary(path)
     with live_lines(terminal) as show:
         observe: Observer | None = None if show is None else lambda progress: show(progress_line(progress))
-        run = run_case(case, path, resume=resume, observe=observe)
+        run = run_case(case, path, resume=resume, observe=observe, force=force)
     _report(run, terminal)
-    if picture and len(run) > 1:
-        from frbcli.plot.style import save_figure
-        from frbcli.plot.summary import summary_figure
-
-        target = beside(path, "-summary.png")
-        save_figure(summary_figure(run), target)
-        terminal.say(f"picture: {target}")
-    terminal.say(f"run: {path}")
+    terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
     terminal.emit(
         {
@@ -86,23 +85,43 @@ def transient(
             "error": run.error if verified is None else {**run.error, "verified": verified},
         }
     )
-    return exit_code(run.status)
+    if picture and len(run) > 1:
+        from frbcli.plot.summary import summary_figure
+
+        draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))
+    interrupted = verified is not None and verified["status"] == "interrupted"
+    return exit_code("interrupted" if interrupted else run.status)
+
+
+def _check_summary(path: Path) -> None:
+    """Raises InputError if the summary of a run cannot have its place; a run that cannot have its own says that."""
+    from frbcli.plot.style import check_picture
+    from frbcli.results.store import check_output
+
+    check_output(path)
+    check_picture(beside(path, SUMMARY))
 
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     """What a finer run says, told and as part of the JSON document."""
     from frbcli.studies.verify import verify
 
-    with live_lines(terminal) as show:
-        found = verify(case, run, None if show is None else lambda progress: show(f"again\n{progress_line(progress)}"))
+    try:
+        with live_lines(terminal) as show:
+            watch = None if show is None else lambda progress: show(f"again\n{progress_line(progress)}")
+            found = verify(case, run, watch)
+    except KeyboardInterrupt:
+        terminal.remark("Interrupted before it was verified.")
+        return {"status": "interrupted"}
     onset = "" if math.isnan(found.onset_Hz) else f", and the whirl begins {abs(found.onset_Hz):.2g} Hz away"
-    terminal.say(
+    terminal.result(
         f"verified: with half the tolerance and half the step the eccentricity changes by {found.eccentricity:.1e}\n"
         f"until {found.until_s:.3g} s{onset} ({found.status}, {found.cpu_s:.3g} s of CPU time)."
     )
     if found.coupling is not None:
-        terminal.say(f"with rotor and films solved together it changes by {found.coupling:.1e}.")
+        terminal.result(f"with rotor and films solved together it changes by {found.coupling:.1e}.")
     return {
+        "status": found.status,
         "eccentricity": found.eccentricity,
         "quiet_until_s": found.until_s,
         "onset_speed_Hz": found.onset_Hz,
@@ -125,7 +144,7 @@ def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
     from rich.live import Live
     from rich.text import Text
 
-    with Live(console=terminal.console(), refresh_per_second=REFRESH_Hz, transient=True) as live:
+    with Live(console=terminal.live_console(), refresh_per_second=REFRESH_Hz, transient=True) as live:
         yield lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis"))
 
 
@@ -152,9 +171,9 @@ def _clock(seconds: float) -> str:
 
 def _report(run: Run, terminal: Terminal) -> None:
     """Status and its remedy, events, cost and error, for people."""
-    terminal.say(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
+    terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
     if run.status in REASONS:
-        terminal.say(REASONS[run.status])
+        terminal.remark(REASONS[run.status])
     if run.events:
         terminal.table(
             "events", ("event", "time in s", "speed in Hz", "frequency in Hz", "ratio"), map(_event_row, run.events)

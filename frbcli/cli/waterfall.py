@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside
 
 if TYPE_CHECKING:
@@ -43,15 +44,16 @@ def command(
     terminal: Terminal,
 ) -> None:
     """Draw the spectra of RUN.h5 in dB relative to the clearance, over time or rotor speed."""
-    from frbcli.plot.style import check_picture, save_figure
+    from frbcli.plot.style import check_picture
     from frbcli.plot.waterfall import waterfall_figure
     from frbcli.results.store import read_run
 
     target = output or beside(run_file, "-waterfall.png")
     check_picture(target)
-    figure = waterfall_figure(read_run(run_file), over, signal, cascade, window, direction, log)
-    save_figure(figure, target)
-    terminal.say(f"waterfall: {target}")
+    run = read_run(run_file)
+    draw_wanted(
+        terminal, lambda: waterfall_figure(run, over, signal, cascade, window, direction, log), target, "waterfall"
+    )
     terminal.emit(
         {
             "command": "waterfall",

@@ -5,6 +5,7 @@ Figures are made without pyplot: nothing is kept in global state, and no window 
 
 from __future__ import annotations
 
+import io
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -17,6 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.errors import Fault, InputError, printable
+from frbcli.results.place import remove_part, wrong_place
 
 # Okabe and Ito: told apart by the colour-blind too
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -62,7 +64,8 @@ def styled() -> Iterator[None]:
 def new_figure(title: str, subtitle: str, width: float = 7.2, height: float = 4.4) -> Figure:
     """An empty figure, width and height in inches, under the title of the case and what was computed."""
     figure = Figure(figsize=(width, height))
-    figure.suptitle(plain(f"{title}\n{subtitle}" if subtitle else title), x=0.01, ha="left", fontsize=10.0)
+    words = printable(f"{title}\n{subtitle}" if subtitle else title)
+    figure.suptitle(words, x=0.01, ha="left", fontsize=10.0, parse_math=False)  # a $ in a title is one
     return figure
 
 
@@ -105,21 +108,33 @@ def legend_below(figure: Figure, axes: Axes) -> None:
 
 
 def check_picture(path: Path) -> None:
-    """Raises InputError if a picture cannot have this name: before the work, not after."""
+    """Raises InputError if a picture cannot have this name or this place: before the work, not after."""
     if path.suffix.lower() not in FORMATS:
         raise _refuse(path, "is no picture frb can write.", f"End it with {', '.join(FORMATS)}.")
+    if wrong := wrong_place(path):
+        raise _refuse(path, *wrong)
 
 
 def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
-    """Write a figure as PNG, PDF or SVG, as the suffix of `path` says. Raises InputError if that does not work."""
+    """Write a figure as PNG, PDF or SVG, as the suffix of `path` says. Raises InputError if that does not work.
+
+    It is drawn before the file is touched; what is written of it in part is removed.
+    """
     path = Path(path)
     check_picture(path)
+    content = io.BytesIO()
+    suffix = path.suffix.lower()
     try:
         with styled(), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Glyph")  # a letter that no font has is drawn as a box
-            figure.savefig(path, dpi=dpi, metadata=FORMATS[path.suffix.lower()])
+            figure.savefig(content, dpi=dpi, format=suffix[1:], metadata=FORMATS[suffix])
     except (OSError, ValueError) as error:
-        raise _refuse(path, f"cannot be written: {error}.", "Choose another place with -o.") from error
+        raise _refuse(path, f"cannot be drawn: {error}.", "") from error
+    try:
+        path.write_bytes(content.getbuffer())
+    except OSError as error:
+        remove_part(path)
+        raise _refuse(path, f"cannot be written: {error.strerror}.", "Choose another place with -o.") from error
     return path
 
 

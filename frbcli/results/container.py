@@ -14,6 +14,7 @@ from io import BufferedReader
 from pathlib import Path
 
 from frbcli.errors import Fault, RunFileError
+from frbcli.results.place import wrong_place
 
 MAGIC = b"frb-run 1 "
 USER_BLOCK = 512  # bytes; the smallest that HDF5 allows
@@ -103,36 +104,27 @@ def _user_block(length: int, checksum: int) -> bytes:
 def check_output(path: Path) -> None:
     """See that a run can be written to `path`: a new file, or in place of an older run of frb.
 
-    Raises RunFileError for a file that is something else, a missing directory or one without permission to write.
+    Raises RunFileError for a file that is something else, a missing directory or one without permission to write, a
+    name that is too long, or a directory where the next state of the run is to be written.
     """
-    folder = path.parent
+    if wrong := wrong_place(path):
+        raise refuse(path, *wrong)
+    part = part_file(path)
+    if wrong := wrong_place(part):
+        raise refuse(path, f"{part.name}, where it is written first, {wrong[0]}", "Choose another name with -o.")
     try:
-        if not folder.is_dir():
-            raise refuse(path, f"the directory {folder} does not exist.", "Create it, or choose another with -o.")
-        exists = _exists(path)
-        if exists and not path.is_file():
+        if path.exists() and not path.is_file():
             raise refuse(path, "is not a file.", "Give -o the name of a file.")
-        if exists and not is_run(path):
+        if path.exists() and not is_run(path):
             raise refuse(path, "exists and is not a run of frb; it is left alone.", "Choose another name.")
-        if not os.access(folder, os.W_OK) or (exists and not os.access(path, os.W_OK)):
-            raise refuse(path, "there is no permission to write it.", "Choose another place with -o.")
-    except (OSError, ValueError) as error:
-        raise refuse(path, f"cannot be used: {error}.", "Choose another name with -o.") from error
+    except OSError as error:
+        raise refuse(path, f"cannot be used: {error.strerror}.", "Choose another name with -o.") from error
 
 
 def is_run(path: Path) -> bool:
     """Whether a file begins as the runs of frb do. Raises OSError if it cannot be read."""
     with path.open("rb") as file:
         return file.read(len(MAGIC)) == MAGIC
-
-
-def _exists(path: Path) -> bool:
-    """Unlike Path.exists this lets an impossible name raise its error."""
-    try:
-        path.stat()
-    except FileNotFoundError:
-        return False
-    return True
 
 
 def part_file(path: Path) -> Path:

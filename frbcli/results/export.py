@@ -11,6 +11,7 @@ from typing import IO, Any
 
 from frbcli.errors import Fault, InputError
 from frbcli.results.container import is_run
+from frbcli.results.place import remove_part, wrong_place
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
 
@@ -27,11 +28,17 @@ def export_run(run: Run, path: str | Path, table_format: str) -> Path:
     path = Path(path)
     if table_format not in FORMATS:
         raise _refuse("format", f'there is no format "{table_format}".', f"Use one of {', '.join(FORMATS)}.")
+    if wrong := wrong_place(path):
+        raise _refuse("output", f"{path} {wrong[0]}", wrong[1])
     try:
         if path.is_file() and is_run(path):
             raise _refuse("output", f"{path} is a run of frb; it is left alone.", "Choose another name with -o.")
+    except OSError as error:
+        raise _refuse("output", f"{path} cannot be used: {error}.", "Choose another place with -o.") from error
+    try:
         FORMATS[table_format](run, path)
     except (OSError, ValueError) as error:
+        remove_part(path)
         raise _refuse("output", f"{path} cannot be written: {error}.", "Choose another place with -o.") from error
     return path
 

@@ -8,9 +8,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+# Those that ask a process to end, so that it can keep what it has. Windows does not have the last one.
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
 
 class Interrupt:
-    """asked: whether Ctrl-C was pressed."""
+    """asked: whether Ctrl-C was pressed, or another signal came that means the same."""
 
     def __init__(self) -> None:
         self.asked = False
@@ -21,18 +24,34 @@ class Interrupt:
 
 
 @contextmanager
+def deaf() -> Iterator[None]:
+    """Within it Ctrl-C is lost. Processes that begin within it stay deaf: where this one hears it, it ends them."""
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield
+        return
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
 def held_back() -> Iterator[Interrupt]:
     """Within it, Ctrl-C does nothing but be remembered: the caller looks at `asked` when it suits.
 
-    Only the main thread is interrupted by Ctrl-C, and only where it is not ignored altogether (as under nohup).
+    So do other signals that are to end the process, where it has a handler for them, as the command line does. Only the
+    main thread is interrupted, and only by what is not ignored altogether (as under nohup).
     """
     interrupt = Interrupt()
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield interrupt
-        return
-    signal.signal(signal.SIGINT, interrupt.ask)
+    before = {number: handler for number in SIGNALS if callable(handler := signal.getsignal(number))}
+    if threading.current_thread() is not threading.main_thread():
+        before = {}
+    for number in before:
+        signal.signal(number, interrupt.ask)
     try:
         yield interrupt
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from frbcli.case.load import describes
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, InputError, RunFileError
 from frbcli.results.container import refuse
 from frbcli.results.records import untold
 from frbcli.results.store import Run, RunWriter, check_output, read_run
@@ -32,28 +32,44 @@ STATUS, STARVED = {FINISHED: "finished", CONTACT: "contact"}, "starved"
 Observer = Callable[[Progress], None]
 
 
-def runup(case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None) -> Run:
+def runup(
+    case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None, force: bool = False
+) -> Run:
     """Run the rotor of a case up as its [speed] says and write the run to `output` (HDF5) as it goes.
 
-    resume: go on with an interrupted run of the same case in `output`. observe: called some times a second.
-    Raises InputError for a case that cannot be modelled or an output that cannot be written. Any end for a physical or
-    numerical reason is the status of the run: "finished", "contact", "starved", "not-converged"; Ctrl-C ends it
-    as "interrupted".
+    A run that has ended there before is replaced. resume: go on with an interrupted run of the same case in `output`;
+    force: replace also an interrupted run, which is refused else. observe: called some times a second.
+    Raises InputError for a case that cannot be modelled, an output that cannot be written, or an interrupted run in its
+    place. Any end for a physical or numerical reason is the status of the run: "finished", "contact", "starved",
+    "not-converged"; Ctrl-C ends it as "interrupted".
     """
-    return _run("runup", case, run_up_profile(case), output, resume, observe)
+    return _run("runup", case, run_up_profile(case), output, resume, observe, force)
 
 
-def rundown(case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None) -> Run:
+def rundown(
+    case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None, force: bool = False
+) -> Run:
     """Run up, hold, and run down again (section 7.2.2); otherwise as runup."""
-    return _run("rundown", case, run_down_profile(case), output, resume, observe)
+    return _run("rundown", case, run_down_profile(case), output, resume, observe, force)
 
 
 def _run(
-    command: str, case: Case, profile: SpeedProfile, output: str | Path, resume: bool, observe: Observer | None
+    command: str,
+    case: Case,
+    profile: SpeedProfile,
+    output: str | Path,
+    resume: bool,
+    observe: Observer | None,
+    force: bool,
 ) -> Run:
     plan = make_plan(case)
     check_output(Path(output))
-    earlier = _earlier(command, case, Path(output)) if resume else None
+    if resume and force:
+        raise _refuse(Path(output), "--force", "begins anew, and --resume goes on.", "Give one of them.")
+    if not resume and not force and is_interrupted(Path(output)):
+        problem = "holds an interrupted run, which would be lost."
+        raise _refuse(Path(output), "--output", problem, "Go on with it: --resume. Or replace it: --force.")
+    earlier = earlier_run(command, case, Path(output)) if resume else None
     if earlier is not None and earlier.status != "interrupted":
         return earlier
     stretches = make_stretches(case, plan)
@@ -107,8 +123,20 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
     return writer.finish(ended, cost, error, events, march.time)
 
 
-def _earlier(command: str, case: Case, path: Path) -> Run | None:
-    """The run in `path` if it is one of this case; None if there is no file yet."""
+def is_interrupted(path: Path) -> bool:
+    """Whether a file is an interrupted run with samples. One that is damaged is none: nothing can go on from it, and
+    whoever reads it is told to run the case again."""
+    if not path.exists():
+        return False
+    try:
+        run = read_run(path)
+    except RunFileError:
+        return False
+    return run.status == "interrupted" and len(run) > 0
+
+
+def earlier_run(command: str, case: Case, path: Path) -> Run | None:
+    """The run in `path` if it is one of this case; None if there is no file yet. Raises InputError for another one."""
     if not path.exists():
         return None
     run = read_run(path)
@@ -116,7 +144,11 @@ def _earlier(command: str, case: Case, path: Path) -> Run | None:
         name = run.case_name or "unnamed"
         problem = f"holds a {run.command} of another case ({name}) or of this one with other keys."
         remedy = "Give the case and the --set of that run, or another --output."
-        raise InputError(str(path), (Fault("--resume", str(path), None, problem, remedy),))
+        raise _refuse(path, "--resume", problem, remedy)
     if run.status != "interrupted" and (missing := untold(run.cost, run.error)):
         raise refuse(path, f"does not tell its {missing}.", "Remove it, or give another --output.")
     return run
+
+
+def _refuse(path: Path, option: str, problem: str, remedy: str) -> InputError:
+    return InputError(str(path), (Fault(option, str(path), None, problem, remedy),))

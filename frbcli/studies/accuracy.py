@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -46,7 +47,8 @@ def accuracy(
 
     until: in s, shortens the run; the rotor speeds up as before. theories, couplings: to be tried, () for all theories
     that can be had and for the coupling of the plan. observe: called some times a second. Ctrl-C ends it with the rungs
-    done so far. Raises InputError for names that there are not, and for a case that cannot be modelled.
+    done so far; before the reference is there it is raised on. Raises InputError for names that there are not, and for
+    a case that cannot be modelled.
     """
     _check_names(case, theories, couplings)
     short = _until(case, until)
@@ -58,19 +60,20 @@ def accuracy(
 
         def run(rung: Rung) -> Run:
             watch = None if observe is None else lambda progress: observe(rung, progress)
-            return runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch)
+            one = runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch, force=True)
+            if one.status == INTERRUPTED:
+                raise KeyboardInterrupt
+            return one
 
         exact = run(fine)
         reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
-        found = []
-        for rung in rungs:
-            one = run(rung)
-            if one.status == INTERRUPTED:
-                break
-            found.append(_result(rung, one, exact, _tabulating(short, rung), rung == own))
-    complete = len(found) == len(rungs)
-    if complete:
-        reference, *found = _with_thresholds(case, reference, coarser, found)
+        found: list[RungResult] = []
+        complete = False
+        with suppress(KeyboardInterrupt):
+            for rung in rungs:
+                found.append(_result(rung, run(rung), exact, _tabulating(short, rung), rung == own))
+            reference, *found = _with_thresholds(case, reference, coarser, found)
+            complete = True
     found.sort(key=lambda item: item.cpu_s)
     return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete)
 

@@ -16,10 +16,10 @@ from frbcli.bearing_tests.plan import MODELS
 from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
-from frbcli.results.store import Run
+from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
-from frbcli.runs.run import runup
+from frbcli.runs.run import earlier_run, is_interrupted, runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.film_choice import CLOSED
 from frbcli.scene.plan import THEORIES, make_plan
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TESTS = ("runup",)
-INTERRUPTED = "interrupted"
+FINISHED, INTERRUPTED = "finished", "interrupted"
 UNTIL = ("onset", "contact")  # from there on two runs differ in phase, whatever their films
 
 
@@ -84,11 +84,17 @@ class VariantResult:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Results in the order of the variants; the first is what the others are compared with."""
+    """Results in the order of the variants; the first is what the others are compared with.
+
+    status: "finished", or why not all variants have a result: "interrupted", "not-converged", "input-error"; message
+    says more then.
+    """
 
     case: Case
     test: str
     results: tuple[VariantResult, ...]
+    status: str = FINISHED
+    message: str = ""
 
     def to_pandas(self) -> pd.DataFrame:
         """One row per variant: models, coupling, status, first events, deviation, cost, error."""
@@ -113,10 +119,10 @@ def compare(
     the case.
 
     With none given, that of the case is compared with all that have no state and cost little. keep: a directory for
-    the run files, made if need be; observe: called some times a second. Ctrl-C ends the comparison with an
-    "interrupted" run.
+    the run files, made if need be; interrupted runs there go on. observe: called some times a second. Ctrl-C, or a
+    variant that does not begin, ends the comparison with the runs that there are by then.
     Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
-    allow, or files that cannot be written; nothing is run then.
+    allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
     """
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings)
@@ -125,17 +131,37 @@ def compare(
         make_plan(its_case)
         _check_own_models(case, variant, its_case)
     runs: list[Run] = []
+    status, message = FINISHED, ""
     with _directory(keep) as folder:
-        for variant, its_case in zip(variants, cases, strict=True):
-            path = folder / f"{variant.name.replace(' ', '-')}.h5"
-            tell = None if observe is None else _telling(observe, variant)
-            runs.append(runup(its_case, path, observe=tell))
-            if runs[-1].status == INTERRUPTED:
-                break
+        paths = [folder / f"{variant.name.replace(' ', '-')}.h5" for variant in variants]
+        begun = [_is_begun(its_case, path) for its_case, path in zip(cases, paths, strict=True)]
+        try:
+            for variant, its_case, path, resume in zip(variants, cases, paths, begun, strict=True):
+                tell = None if observe is None else _telling(observe, variant)
+                runs.append(runup(its_case, path, resume, tell))
+                if runs[-1].status == INTERRUPTED:
+                    raise KeyboardInterrupt
+        except (KeyboardInterrupt, NotConverged, InputError) as end:
+            if not runs:
+                raise
+            status, message = _status(end), str(end)
     results = [
         VariantResult(variant, run, deviation(run, runs[0])) for variant, run in zip(variants, runs, strict=False)
     ]
-    return Comparison(case, test, tuple(results))
+    return Comparison(case, test, tuple(results), status, message)
+
+
+def _is_begun(case: Case, path: Path) -> bool:
+    """Whether the run of a variant was interrupted before and goes on. Raises InputError if its file cannot be written,
+    or holds an interrupted run of another case."""
+    check_output(path)
+    return is_interrupted(path) and earlier_run("runup", case, path) is not None
+
+
+def _status(end: BaseException) -> str:
+    if isinstance(end, KeyboardInterrupt):
+        return INTERRUPTED
+    return "not-converged" if isinstance(end, NotConverged) else "input-error"
 
 
 def make_variants(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -65,9 +66,10 @@ Observer = Callable[[HardResult, int, int], None]  # a result, how many are done
 
 @dataclass(frozen=True)
 class HardResults:
-    """All results, in the order of the list."""
+    """All results, in the order of the list; complete: not interrupted before the last of them."""
 
     results: tuple[HardResult, ...]
+    complete: bool = True
 
     @property
     def ok(self) -> bool:
@@ -89,11 +91,12 @@ class HardResults:
 def run_hard_cases(names: Sequence[str] = (), observe: Observer | None = None) -> HardResults:
     """Compute the hard cases of these names, () for all, one after the other in a process beside this one.
 
-    A case that takes too long is stopped and "hung". observe: called after each. Raises InputError for a name that
-    there is not.
+    A case that takes too long is stopped and "hung". observe: called after each. Ctrl-C ends it with the cases that are
+    done. Raises InputError for a name that there is not.
     """
-    chosen, known, found = hard_cases(names), references(), []
-    with Worker(hard_case_result) as worker:
+    chosen, known = hard_cases(names), references()
+    found: list[HardResult] = []
+    with suppress(KeyboardInterrupt), Worker(hard_case_result) as worker:
         for hard in chosen:
             task = hard, known.get(hard.name)
             answer = worker.ask(task, hard.within_s)
@@ -102,7 +105,7 @@ def run_hard_cases(names: Sequence[str] = (), observe: Observer | None = None) -
             found.append(answer)
             if observe is not None:
                 observe(answer, len(found), len(chosen))
-    return HardResults(tuple(found))
+    return HardResults(tuple(found), len(found) == len(chosen))
 
 
 def hard_case_result(task: tuple[HardCase, Reference | None]) -> HardResult:

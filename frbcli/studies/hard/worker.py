@@ -8,6 +8,8 @@ from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any
 
+from frbcli.runs.interrupt import deaf
+
 HUNG, DIED = "hung", "died"
 ENDS_WITHIN_s = 5.0
 
@@ -44,7 +46,8 @@ class Worker:
         context = multiprocessing.get_context("spawn")  # a fork would share locks that threads hold
         self._here, there = context.Pipe()
         self._process = context.Process(target=_serve, args=(self._work, there), daemon=True)
-        self._process.start()
+        with deaf():
+            self._process.start()
         there.close()
 
     def _end(self) -> None:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.results.place import remove_part
 from frbcli.scene.plan import make_plan
 from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid
@@ -111,6 +112,8 @@ def sweep(
         with closing(solved(tasks, workers)) as points_solved:
             for point in points_solved:
                 take(point)
+                if point.status == INTERRUPTED:  # of a run in this process, which heard it first
+                    break
     except KeyboardInterrupt:
         pass
     missing = {n: SweepPoint(n, chosen, INTERRUPTED) for n, chosen in enumerate(settings, 1) if n not in found}
@@ -127,7 +130,9 @@ def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Pa
         else:
             found.to_pandas().to_parquet(path, index=False)
     except (OSError, ValueError) as error:
-        raise _refuse("--output", str(path), f"cannot be written: {error}.", "Choose another directory.") from error
+        remove_part(path)
+        remedy = "Make room, or choose another directory; the same sweep then goes on."
+        raise _refuse("--output", str(path), f"cannot be written: {error}.", remedy) from error
     return path
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 import warnings
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor
@@ -15,6 +13,7 @@ from typing import Any
 import joblib
 
 from frbcli.errors import Fault, InputError
+from frbcli.runs.interrupt import deaf
 from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
 
 BACKENDS = ("loky", "dask")
@@ -117,15 +116,9 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
 
 
 def _start(jobs: int) -> None:
-    """Start the processes deaf to Ctrl-C, which reaches them, too: this one hears it, and then ends them quietly."""
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        return
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
+    """Start the processes deaf to Ctrl-C, which reaches them, too."""
+    with deaf():
         joblib.Parallel(n_jobs=jobs)(joblib.delayed(abs)(0) for _ in range(joblib.effective_n_jobs(jobs)))
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _refuse(option: str, value: str, problem: str, remedy: str) -> InputError:

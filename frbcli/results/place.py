@@ -1,0 +1,43 @@
+"""Whether a file can be written at a place: asked before the work, not after."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+
+def wrong_place(path: Path) -> tuple[str, str] | None:
+    """What is wrong with a file that is to be written, and what to do about it; None if nothing is.
+
+    Its directory has to be there, its name possible, and both open for writing. Whether the disk has room for it is
+    known when it is written.
+    """
+    folder = path.parent
+    try:
+        if not folder.is_dir():
+            return f"the directory {folder} does not exist.", "Create it, or choose another with -o."
+        exists = _exists(path)
+        if path.is_dir():
+            return "is not a file.", "Give -o the name of a file."
+        if not os.access(folder, os.W_OK) or (exists and not os.access(path, os.W_OK)):
+            return "there is no permission to write it.", "Choose another place with -o."
+    except (OSError, ValueError) as error:
+        return f"cannot be used: {getattr(error, 'strerror', None) or error}.", "Choose another name with -o."
+    return None
+
+
+def remove_part(path: Path) -> None:
+    """Remove a file that could be written in part only, so that nobody takes it for whole; devices stay."""
+    with suppress(OSError):
+        if path.is_file():
+            path.unlink()
+
+
+def _exists(path: Path) -> bool:
+    """Unlike Path.exists this lets an impossible name raise its error."""
+    try:
+        path.stat()
+    except FileNotFoundError:
+        return False
+    return True
