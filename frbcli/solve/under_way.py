@@ -18,7 +18,7 @@ from frbcli.scene.plan import Plan
 from frbcli.scene.stretches import Stretch, make_stretches
 from frbcli.scene.system import System
 from frbcli.solve.clearance_step import largest_eccentricity, with_clearances
-from frbcli.solve.control import LONGEST_STEP, control_of
+from frbcli.solve.control import control_of
 from frbcli.solve.cosimulation import in_turn, micro_cost
 from frbcli.solve.error_budget import budget_of_stretches, quick_budget, summed
 from frbcli.solve.fewer_cells import FewerCells
@@ -85,7 +85,7 @@ class March:
         self._advance: Callable[..., Any] = advance_in_turn if self._apart else advance
         if isinstance(system.films, PublishedFilm):
             self._advance = advance_published
-        rows = max(BUFFER, 4 * (int(LONGEST_STEP / self._control.output_step) + 2))
+        rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
         # States at some fixed output times, at which the films are solved again and runs compared.
