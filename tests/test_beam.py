@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, expm
 from scipy.optimize import brentq
 
+from frbcli.rotor import reduction
 from frbcli.rotor.beam import Plane, Section, beam
-from frbcli.rotor.reduction import free_modes, reduction_error, whirl_modes
+from frbcli.rotor.reduction import MOST, free_modes, reduction_error, whirl_modes
 from frbcli.rotor.turbocharger import Journal, Wheel, wheels_on_shaft
 
 Array = NDArray[np.float64]
@@ -24,12 +26,12 @@ NO_SHAFT = Section(0.1, 0.02, 0.0, 1e-6, 1e22, 0.3)  # next to no mass, next to 
 
 def pinned(plane: Plane) -> Array:
     """Indices of the degrees of freedom that are left when both ends are held."""
-    return np.delete(np.arange(len(plane.mass)), [0, len(plane.mass) - 2])
+    return np.delete(np.arange(plane.mass.shape[0]), [0, plane.mass.shape[0] - 2])
 
 
 def pinned_frequencies(plane: Plane) -> Array:
     kept = np.ix_(pinned(plane), pinned(plane))
-    return np.sqrt(eigh(plane.stiffness[kept], plane.mass[kept], eigvals_only=True))
+    return np.sqrt(eigh(plane.stiffness.toarray()[kept], plane.mass.toarray()[kept], eigvals_only=True))
 
 
 def exact_pinned(section: Section, half_waves: int, omega: float = 0.0) -> float:
@@ -99,7 +101,7 @@ def test_gyroscopic_whirl_of_a_thick_pinned_shaft(direction: float) -> None:
     """Backward whirl is forward whirl of a shaft that turns the other way."""
     omega, plane = direction * 3000.0, beam([THICK], [], 160)
     kept = np.ix_(pinned(plane), pinned(plane))
-    mass, stiffness, polar = plane.mass[kept], plane.stiffness[kept], plane.polar[kept]
+    mass, stiffness, polar = (part.toarray()[kept] for part in (plane.mass, plane.stiffness, plane.polar))
     n = len(mass)
     state = np.block([[np.zeros((n, n)), np.eye(n)], list(np.linalg.solve(mass, np.hstack([stiffness, omega * polar]))
                                                           .reshape(n, 2, n).swapaxes(0, 1))])  # fmt: skip
@@ -142,7 +144,7 @@ def test_a_rigid_body_keeps_mass_and_inertias_and_is_not_strained() -> None:
     assert tilt @ plane.mass @ tilt == pytest.approx(sum(about_origin) + 2.0 * 0.05**2 + 2e-3, rel=1e-12)
     assert tilt @ plane.polar @ tilt == pytest.approx(sum(polar) + 3e-3, rel=1e-12)
     assert shift @ plane.polar @ tilt == pytest.approx(0.0, abs=1e-15)
-    scale = np.max(np.abs(plane.stiffness))
+    scale = np.max(np.abs(plane.stiffness.data))
     assert np.max(np.abs(plane.stiffness @ np.column_stack([shift, tilt]))) < 1e-10 * scale
     modes = free_modes(plane)
     assert modes.frequencies[0] == modes.frequencies[1] == 0.0 < modes.frequencies[2]
@@ -180,3 +182,18 @@ def test_what_a_reduction_leaves_out() -> None:
     assert few.missing_flexibility - more.missing_flexibility == pytest.approx(step @ step.T, rel=1e-9)
     assert 0 < more.frequency < few.frequency < 0.05
     assert np.all(few.reduced >= few.full)  # Rayleigh: fewer modes are stiffer, where nothing turns quickly
+
+
+def test_slowest_modes_of_many_sections_are_those_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    wheel, ends = Wheel("w", 0.04, 2.0, 3e-3, 2e-3, 0.0, 0.0), [Journal("a", 0.01), Journal("b", 0.12)]
+    sections = [replace(STEPPED[i % 2], length=0.13 / 320) for i in range(320)]
+    plane = wheels_on_shaft(sections, [wheel], ends)
+    slowest = free_modes(plane)
+    monkeypatch.setattr(reduction, "DENSE", 1000)
+    all_of_them = free_modes(plane)
+    assert len(slowest.frequencies) == MOST < len(all_of_them.frequencies)
+    assert slowest.frequencies == pytest.approx(all_of_them.frequencies[:MOST], rel=1e-7)
+    springs = [np.stack([modes.at(end.position) for end in ends]) for modes in (slowest, all_of_them)]
+    both = zip((slowest, all_of_them), springs, strict=True)
+    found = [whirl_modes(modes, at, np.full(2, 1e7), 500.0) for modes, at in both]
+    assert found[0].frequencies[:8] == pytest.approx(found[1].frequencies[:8], rel=1e-4)  # what stiff springs bend locally

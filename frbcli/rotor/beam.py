@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array, csc_array
 
 Array = NDArray[np.float64]
 
@@ -59,14 +60,14 @@ class Section:
 class Plane:
     """A free rotor in one plane with the degrees of freedom v_1, psi_1, v_2, psi_2, ... of its k nodes.
 
-    positions: (k,) m along the shaft, ascending. mass, stiffness, polar: (2 k, 2 k); polar is the inertia about the
-    axis of rotation that the slopes carry along: M v'' - i Omega G v' + K v = f for v = x + i y.
+    positions: (k,) m along the shaft, ascending. mass, stiffness, polar: (2 k, 2 k), sparse; polar is the inertia about
+    the axis of rotation that the slopes carry along: M v'' - i Omega G v' + K v = f for v = x + i y.
     """
 
     positions: Array
-    mass: Array
-    stiffness: Array
-    polar: Array
+    mass: csc_array
+    stiffness: csc_array
+    polar: csc_array
 
     def node(self, position: float) -> int:
         """Index of the node at a position in m. Raises ValueError if there is none."""
@@ -149,10 +150,8 @@ def _nodes(places: Array, length: float, elements: int) -> Array:
     return np.concatenate([*pieces, [length]])
 
 
-def _assembled(local: Array) -> Array:
+def _assembled(local: Array) -> csc_array:
     """The matrix (2 k, 2 k) of a chain of k - 1 elements (k - 1, 4, 4)."""
-    size = 2 * len(local) + 2
-    matrix = np.zeros((size, size))
-    for index, block in enumerate(local):
-        matrix[2 * index : 2 * index + 4, 2 * index : 2 * index + 4] += block
-    return matrix
+    places = 2 * np.arange(len(local))[:, None] + np.arange(4)
+    rows, columns = np.repeat(places, 4, axis=1).ravel(), np.tile(places, 4).ravel()
+    return coo_array((local.ravel(), (rows, columns)), shape=(2 * len(local) + 2,) * 2).tocsc()

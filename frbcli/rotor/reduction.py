@@ -18,8 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
+from scipy.linalg import LinAlgError, eigh
 
+from frbcli.errors import NotConverged
 from frbcli.rotor.beam import Plane
 
 Array = NDArray[np.float64]
@@ -27,6 +28,9 @@ Array = NDArray[np.float64]
 RIGID = 2  # modes of a rigid body in one plane: translation, tilt
 STILL = 1e-9  # of the fastest mode: slower motions are none
 COMPARED = 3  # whirling modes of each direction whose frequencies a reduction is judged by
+# Degrees of freedom of a plane whose modes are all computed; of more, the slowest MOST: dense matrices
+# of a thousand sections would take minutes.
+DENSE, MOST = 600, 240
 
 
 @dataclass(frozen=True)
@@ -92,8 +96,17 @@ class ReductionError:
 
 
 def free_modes(plane: Plane) -> FreeModes:
-    """All modes of a free rotor at rest."""
-    squares, vectors = eigh(plane.stiffness, plane.mass)
+    """The modes of a free rotor at rest: all, or of a plane with many degrees of freedom the slowest MOST.
+
+    Raises NotConverged if rounding leaves none: where masses or stiffnesses differ by too many powers of ten.
+    """
+    try:
+        if len(plane.positions) * 2 <= DENSE:
+            squares, vectors = eigh(plane.stiffness.toarray(), plane.mass.toarray())
+        else:
+            squares, vectors = _slowest(plane)
+    except (LinAlgError, RuntimeError, ValueError) as error:
+        raise NotConverged(f"The modes of the free rotor cannot be computed: {error}.") from None
     frequencies = np.sqrt(np.maximum(squares, 0.0))
     # A solver finds the motions of the rigid body mixed and to round-off only; they are known.
     frequencies[:RIGID], vectors[:, :RIGID] = 0.0, _rigid_motions(plane)
@@ -102,9 +115,23 @@ def free_modes(plane: Plane) -> FreeModes:
         plane.positions,
         frequencies,
         np.asarray(vectors[::2], dtype=np.float64),
-        np.asarray(vectors.T @ plane.polar @ vectors, dtype=np.float64),
-        np.asarray(vectors.T @ plane.mass @ uniform, dtype=np.float64),
+        np.asarray(vectors.T @ (plane.polar @ vectors), dtype=np.float64),
+        np.asarray(vectors.T @ (plane.mass @ uniform), dtype=np.float64),
     )
+
+
+def _slowest(plane: Plane) -> tuple[Array, Array]:
+    """Squares of the frequencies (MOST,), ascending, and the modes (2 k, MOST), by Lanczos' method around a negative
+    square: there the matrix of a free rotor is not singular."""
+    from scipy.sparse.linalg import eigsh
+
+    # The least that a bending rotor of its mass and length may have, by Rayleigh's quotient of a parabola.
+    bent = np.column_stack([plane.positions**2, 2.0 * plane.positions]).ravel()
+    square = float(bent @ (plane.stiffness @ bent)) / float(bent @ (plane.mass @ bent))
+    start = np.random.default_rng(0).standard_normal(len(bent))  # the same modes at every call, to the last digit
+    squares, vectors = eigsh(plane.stiffness, MOST, plane.mass, sigma=-square, v0=start)
+    order = np.argsort(squares)
+    return squares[order], vectors[:, order]
 
 
 def whirl_modes(modes: FreeModes, springs: Array, stiffness: Array, omega: float) -> WhirlModes:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import diags_array
 
 from frbcli.rotor.beam import Plane, Section, beam
 from frbcli.rotor.linear import LinearRotor
@@ -42,13 +43,13 @@ def wheels_on_shaft(sections: Sequence[Section], wheels: Sequence[Wheel], journa
     """The free rotor in one plane, with nodes at all wheels and journals."""
     places = [wheel.position for wheel in wheels] + [journal.position for journal in journals]
     shaft = beam(sections, places)
-    mass, polar = shaft.mass.copy(), shaft.polar.copy()
+    mass, polar = np.zeros((2, 2 * len(shaft.positions)))  # diagonals
     for wheel in wheels:
         v = 2 * shaft.node(wheel.position)
-        mass[v, v] += wheel.mass
-        mass[v + 1, v + 1] += wheel.diametral
-        polar[v + 1, v + 1] += wheel.polar
-    return replace(shaft, mass=mass, polar=polar)
+        mass[v : v + 2] += wheel.mass, wheel.diametral
+        polar[v + 1] += wheel.polar
+    heavier, turning = shaft.mass + diags_array(mass), shaft.polar + diags_array(polar)
+    return replace(shaft, mass=heavier.tocsc(), polar=turning.tocsc())
 
 
 def turbocharger_rotor(

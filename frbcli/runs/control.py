@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from frbcli.case.schema import Case
+from frbcli.scene.cost import longest_step
 from frbcli.scene.plan import Plan
 from frbcli.solve.state import Control
-
-LONGEST_STEP = 1e-3  # s; a slow rotor still falls, and its shaft still vibrates
 
 
 def control_of(case: Case, plan: Plan) -> Control:
@@ -16,7 +15,7 @@ def control_of(case: Case, plan: Plan) -> Control:
     return Control(
         tolerance=plan.tolerance,
         steps_per_revolution=plan.steps_per_revolution,
-        longest_step=LONGEST_STEP if plan.macro_step is None else min(LONGEST_STEP, plan.macro_step),
+        longest_step=longest_step(case, plan),
         output_step=case.output.step,
         contact_eccentricity=contact.eccentricity,
         contact_stiffness=stiffness,

@@ -15,9 +15,10 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
-from frbcli.runs.control import LONGEST_STEP, control_of
+from frbcli.runs.control import control_of
 from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.error_budget import budget_of_stretches, quick_budget, summed
+from frbcli.runs.fewer_cells import FewerCells
 from frbcli.runs.film_error import sample_count
 from frbcli.runs.header import named, ring_names
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
@@ -85,7 +86,7 @@ class March:
         self._advance: Callable[..., Any] = advance_in_turn if self._apart else advance
         if isinstance(system.films, PublishedFilm):
             self._advance = advance_published
-        rows = max(BUFFER, 4 * (int(LONGEST_STEP / self._control.output_step) + 2))
+        rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
         # States at some fixed output times, at which the films are solved again and runs compared.

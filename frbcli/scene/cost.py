@@ -42,7 +42,8 @@ CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows w
 CELL_COUNT, CELL_POWER = 288, 1.4  # 48 x 6
 # Of the time of a solve on cells; others: 1.
 LAW_FACTORS = {"sommerfeld": 0.7, "half-sommerfeld": 0.7, "reynolds": 0.8, "two-phase": 1.2, "peeken": 1.2}
-LONGEST_STEP_s = 1e-3  # of a run, see runs/march.py
+LONGEST_STEP_s = 1e-3  # of a run: a slow rotor still falls, and its shaft still vibrates
+MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
 MICRO_STEPS = 2.0  # of a film in a macro step of a co-simulation
 TABLE_POINTS = 400  # of the speed profile
 
@@ -58,7 +59,7 @@ class ExpectedCost:
 
 def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost:
     """What a run along a speed profile will cost."""
-    steps = _steps(plan, profile)
+    steps = _steps(case, plan, profile)
     if case.contact.policy == "elastic":
         steps *= ELASTIC
     films = len(film_places(case))
@@ -69,6 +70,12 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     if plan.coupling == APART:
         solves *= MICRO_STEPS
     return ExpectedCost(round(steps), round(solves), 1e-6 * solves * solve_us(plan))
+
+
+def longest_step(case: Case, plan: Plan) -> float:
+    """Of a run, s: also no more than some samples, which are held in memory until they are written."""
+    longest = LONGEST_STEP_s if plan.macro_step is None else min(LONGEST_STEP_s, plan.macro_step)
+    return min(longest, MOST_SAMPLES * case.output.step)
 
 
 def solve_us(plan: Plan) -> float:
@@ -89,9 +96,9 @@ def _fields_us(mesh: Mesh) -> float:
     return SOLVE_us[FIELDS] * mesh.circumferential / FIELD_ELEMENTS
 
 
-def _steps(plan: Plan, profile: SpeedProfile) -> float:
+def _steps(case: Case, plan: Plan, profile: SpeedProfile) -> float:
     """Steps of a run: some per revolution, and some per second where the rotor is slow."""
-    longest = LONGEST_STEP_s if plan.macro_step is None else min(LONGEST_STEP_s, plan.macro_step)
+    longest = longest_step(case, plan)
     times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
     turns = np.abs(profile.speed(times)) / (2.0 * np.pi)
     rate = np.maximum(1.0 / longest, CROWDED[plan.form] * plan.steps_per_revolution * turns)

@@ -7,7 +7,7 @@ import math
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.rotor.beam import Section
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.reduction import RIGID, FreeModes, free_modes
@@ -43,7 +43,8 @@ def turbocharger_of(case: Case) -> TurbochargerRotor:
 
 
 def all_modes(case: Case) -> FreeModes:
-    """All modes of the free rotor of a case, before any reduction."""
+    """The modes of the free rotor of a case, before any reduction, see free_modes. Raises InputError if its masses and
+    stiffnesses differ by too many powers of ten for them."""
     sections = [
         Section(
             part.length,
@@ -55,7 +56,13 @@ def all_modes(case: Case) -> FreeModes:
         )
         for part in case.shaft
     ]
-    return free_modes(wheels_on_shaft(sections, wheels(case), journals(case)))
+    try:
+        return free_modes(wheels_on_shaft(sections, wheels(case), journals(case)))
+    except NotConverged as error:
+        problem = f"is no shaft whose motion can be computed. {error}"
+        remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."
+        fault = Fault("shaft", f"{len(sections)} sections", None, problem, remedy)
+        raise InputError(case.name or "case", (fault,)) from None
 
 
 def kept_modes(rotor: TurbochargerRotor, modes: FreeModes) -> int:
