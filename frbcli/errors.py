@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+INTERRUPTED = 130  # exit code: 128 + SIGINT
+
 
 def printable(text: str) -> str:
     """`text` without what a terminal would obey: control and escape characters, but for new lines, become "?"."""

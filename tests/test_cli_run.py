@@ -173,7 +173,7 @@ def test_time_left_is_told_in_few_columns(left: float, words: str) -> None:
 def frb_process(*words: str, often: bool = False, **options: Any) -> subprocess.Popen[bytes]:
     """frb in a process of its own; often: with many checkpoints."""
     hurry = "import frbcli.runs.run as r; r.CHECKPOINT_EVERY_s, r.CHECKPOINT_SHARE = 0.05, 1.0;" if often else ""
-    code = f"import sys; {hurry} from frbcli.cli.main import main; main()"
+    code = f"import sys; {hurry} from frbcli.cli.process import main; main()"
     environment = os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "100", "TERM": "xterm"}
     return subprocess.Popen([sys.executable, "-c", code, *words], env=environment, **options)
 

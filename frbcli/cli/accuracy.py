@@ -10,9 +10,9 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.pictures import draw
-from frbcli.cli.process import INTERRUPTED
 from frbcli.cli.runs import OUTPUT, SECONDS, here
 from frbcli.cli.transient import live_lines, progress_line
+from frbcli.errors import INTERRUPTED
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case

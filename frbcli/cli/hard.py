@@ -9,8 +9,8 @@ from typing import Any
 
 from frbcli.case.hard import HardCase, hard_cases
 from frbcli.cli.common import Terminal, short_number
-from frbcli.cli.process import INTERRUPTED
 from frbcli.cli.transient import live_lines
+from frbcli.errors import INTERRUPTED
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug

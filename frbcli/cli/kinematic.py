@@ -11,9 +11,8 @@ import click
 
 from frbcli.cli.common import Names, Terminal
 from frbcli.cli.pictures import draw
-from frbcli.cli.process import INTERRUPTED
 from frbcli.cli.runs import OUTPUT, here
-from frbcli.errors import NotConverged
+from frbcli.errors import INTERRUPTED, NotConverged
 
 if TYPE_CHECKING:
     from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest

@@ -13,9 +13,7 @@ from collections.abc import Sequence
 import click
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.process import INTERRUPTED
-from frbcli.cli.process import main as main  # where installed scripts look for it
-from frbcli.errors import Fault, FrbError, InputError, NotConverged, printable
+from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, printable
 from frbcli.version import __version__
 
 # name: (module, one line of help); the module is imported when its command is called

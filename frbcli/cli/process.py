@@ -14,12 +14,12 @@ from types import FrameType
 from typing import TYPE_CHECKING, NoReturn
 
 from frbcli.cli.streams import OutputLost, closing_code, take_streams
+from frbcli.errors import INTERRUPTED
 from frbcli.runs.interrupt import SIGNALS
 
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
-INTERRUPTED = 130  # 128 + SIGINT
 AGAIN_s = 0.01
 
 

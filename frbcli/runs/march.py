@@ -18,7 +18,6 @@ from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.control import control_of
 from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.error_budget import budget_of_stretches, quick_budget, summed
-from frbcli.runs.fewer_cells import FewerCells
 from frbcli.runs.film_error import sample_count
 from frbcli.runs.header import named, ring_names
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
