@@ -6,6 +6,7 @@ import math
 import re
 from contextlib import suppress
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
@@ -102,9 +103,12 @@ def command(
 
 def _tell(terminal: Terminal, found: Stability, every_speed: bool, picture: Path | None) -> None:
     from frbcli.scene.clearance_steps import step_times
+    from frbcli.scene.supply import unfed_films
 
     tell_points(terminal, found, every_speed)
     terminal.say(_sentence(found))
+    for film in unfed_films(found.case):
+        terminal.say(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
     if step_times(found.case):
         terminal.say("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
     if picture is not None:

@@ -15,7 +15,8 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.loads import Loads
 from frbcli.film.volumes import Motion
-from frbcli.scene.kinematic import KinematicPlan, kinematic_plan
+from frbcli.scene.kinematic import KinematicPlan, kinematic_plan, with_model
+from frbcli.scene.remedies import advised, film_advice
 from frbcli.solve.film_at_rest import resting_displacement
 from frbcli.solve.film_history import History, film_course
 from frbcli.solve.journal_path import squeeze_path, whirl_path
@@ -118,10 +119,11 @@ def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
             rates = [motion.eccentricity_rate * a + turn * b for a, b in zip(along, across, strict=True)]
             velocity = (rates[0], rates[1])
         lasting = Motion(displacement, velocity, omega)
-        if plan.published:
-            moment = published_moment(case, plan, lasting, start)
-        else:
-            moment = film_moment(case, plan, lasting, plan.cells)
+        with advised(with_model(case, plan.cavitation)):
+            if plan.published:
+                moment = published_moment(case, plan, lasting, start)
+            else:
+                moment = film_moment(case, plan, lasting, plan.cells)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
     return KinematicResult(
@@ -151,7 +153,8 @@ def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
     count = max(round(motion.periods * plan.steps), FEWEST_TIMES)
     times = np.linspace(0.0, motion.periods / motion.frequency, count + 1)
     try:
-        course = film_course(case, plan, path, times)
+        with advised(with_model(case, plan.cavitation)):
+            course = film_course(case, plan, path, times)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
     worst = int(np.argmax(np.hypot(*course.history.force.T)))
@@ -169,7 +172,7 @@ def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
         unknowns=course.unknowns,
         newton_iterations=course.iterations,
         plan=plan,
-        problem=course.problem,
+        problem=f"{course.problem}. {film_advice(with_model(case, plan.cavitation))}" if course.problem else "",
     )
 
 

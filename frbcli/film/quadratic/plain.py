@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.errors import NotConverged
+from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
 from frbcli.film.gap import Section, gap_height
@@ -84,7 +84,7 @@ class PlainQuadraticFilm:
             self.unknown = self.unknown + change
             if np.max(np.abs(change)) <= TOLERANCE * np.max(np.abs(self.unknown)):
                 return np.asarray(pressure + step, dtype=np.float64)
-        raise NotConverged("Newton's method does not end for the penalty model")
+        raise FilmUnsolved("Newton's method does not end for the penalty model")
 
 
 def _forms() -> tuple[Any, Any, Any]:
