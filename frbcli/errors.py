@@ -57,3 +57,8 @@ class NotConverged(FrbError):
     """A numerical method found no solution; says what was tried and what to change."""
 
     exit_code = 3
+
+
+class FilmUnsolved(NotConverged):
+    """A film found no solution; says what happened. What to change depends on the case, which a film does not know:
+    `frbcli.scene.remedies.advised` adds it."""

@@ -402,7 +402,9 @@ def test_geometry_that_cannot_be_is_named_by_its_key(setting: str, key: str) -> 
         ((), "two-phase", True),
         ((), "reynolds", False),
         (("bearing.supply.pressure='1.2 bar'",), "elrod", False),
-        (("bearing.ends='oil-bath'",), "elrod", False),
+        (("bearing.ends='oil-bath'",), "elrod", True),  # at the pressure of the cavities a bath pushes nothing in
+        (("bearing.ends='oil-bath'",), "two-phase", False),  # whose pressure falls below that of the bath
+        (("bearing.ends='oil-bath'", "oil.cavitation_pressure='0.8 bar'"), "elrod", False),
         (("oil.cavitation_pressure='0.8 bar'",), "elrod", False),
         (("bearing.supply={kind='axial-grooves', opening_angle='15 deg', pressure='1 bar'}",), "elrod", False),
     ],

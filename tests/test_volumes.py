@@ -212,11 +212,11 @@ def test_starving_films_converge_at_any_steepness(
     assert solution.state.fraction.min() > 0.0
 
 
-def test_failure_says_where_what_was_tried_and_what_to_change(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failure_says_where_and_what_was_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     section = section_of("circumferential-groove", 1e5)
     film = VolumeFilm(section, fitted_grid(section, ROTATION.d, 24, 6), TwoPhase(0.999), 50.0)
     monkeypatch.setattr(newton, "ATTEMPTS", (newton.Attempt(math.inf, 1.0, 2), newton.Attempt(1.0, 4.0, 2)))
-    with pytest.raises(NotConverged, match=r"4 Newton iterations.*cells do not balance, .* at phi = .* deg.*try"):
+    with pytest.raises(NotConverged, match=r"4 Newton iterations.*cells do not balance, .* at phi = .* deg"):
         film.steady(ROTATION)
 
 
@@ -224,7 +224,7 @@ def test_film_without_inlet_fails_with_a_reason() -> None:
     """Free ends and no supply: the equations have no solution but an empty film."""
     section = section_of("none", ends="free-to-air")
     film = VolumeFilm(section, fitted_grid(section, ROTATION.d, 16, 4), Elrod(), 50.0)
-    with pytest.raises(NotConverged, match=r"no oil can enter|runs dry|do not balance.*a supply above"):
+    with pytest.raises(NotConverged, match=r"no oil can enter|runs dry|do not balance"):
         film.steady(ROTATION)
 
 
@@ -301,5 +301,5 @@ def test_dry_film_is_an_error_and_no_number() -> None:
     section = section_of("circumferential-groove", 1e5, "free-to-air")
     motion = polar_motion(0.3, 0.0, 0.0, 0.0, 2.0 * math.pi)
     film = VolumeFilm(section, fitted_grid(section, motion.d, 24, 6), Elrod(), reference_pressure(section, motion))
-    with pytest.raises(NotConverged, match=r"runs dry|a supply above"):
+    with pytest.raises(NotConverged, match=r"runs dry|no oil can enter|do not balance"):
         film.steady(motion)

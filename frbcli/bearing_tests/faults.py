@@ -32,8 +32,8 @@ def motion_faults(motion: Motion | None, test: str) -> list[Fault]:
     return faults
 
 
-def bearing_faults(case: Case, test: str) -> list[Fault]:
-    """Of the bearing, for the test called "rotation", "squeeze" or "whirl"."""
+def bearing_faults(case: Case, test: str, keeps: bool) -> list[Fault]:
+    """Of the bearing, for the test called "rotation", "squeeze" or "whirl"; keeps: whether its film keeps its oil."""
     if len(case.bearings) != 1:
         problem = "are too many: a kinematic test is of one bearing."
         return [Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")]
@@ -42,7 +42,7 @@ def bearing_faults(case: Case, test: str) -> list[Fault]:
         problem = "is not modelled in this version of kinematic tests."
         return [Fault("bearing.kind", bearing.kind, None, problem, 'Modelled is: "single-film".')]
     supply, faults = bearing.supply, []
-    if supply.kind == "none" and bearing.ends == "free-to-air":
+    if keeps and supply.kind == "none" and bearing.ends == "free-to-air":
         problem = "with ends free to air gets no oil: the bearing runs dry."
         remedy = 'Add a supply to [bearing], or write ends = "oil-bath".'
         faults.append(Fault("bearing.supply.kind", supply.kind, None, problem, remedy))

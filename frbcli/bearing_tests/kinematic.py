@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from frbcli.bearing_tests.history import History, film_course
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
-from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
+from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.bearing_tests.published import published_moment, resting_in_published
 from frbcli.bearing_tests.resting import resting_displacement
 from frbcli.bearing_tests.steady_film import FilmField, film_moment
@@ -21,6 +21,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.plain.film import Motion
 from frbcli.film.cells.plain.loads import Loads
+from frbcli.scene.remedies import advised, film_advice
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -128,10 +129,11 @@ def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
             rates = [motion.eccentricity_rate * a + turn * b for a, b in zip(along, across, strict=True)]
             velocity = (rates[0], rates[1])
         lasting = Motion(displacement, velocity, omega)
-        if plan.published:
-            moment = published_moment(case, plan, lasting, start)
-        else:
-            moment = film_moment(case, plan, lasting, plan.cells)
+        with advised(with_model(case, plan.cavitation)):
+            if plan.published:
+                moment = published_moment(case, plan, lasting, start)
+            else:
+                moment = film_moment(case, plan, lasting, plan.cells)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
     return KinematicResult(
@@ -161,7 +163,8 @@ def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
     count = max(round(motion.periods * plan.steps), FEWEST_TIMES)
     times = np.linspace(0.0, motion.periods / motion.frequency, count + 1)
     try:
-        course = film_course(case, plan, path, times)
+        with advised(with_model(case, plan.cavitation)):
+            course = film_course(case, plan, path, times)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
     worst = int(np.argmax(np.hypot(*course.history.force.T)))
@@ -179,7 +182,7 @@ def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
         unknowns=course.unknowns,
         newton_iterations=course.iterations,
         plan=plan,
-        problem=course.problem,
+        problem=f"{course.problem}. {film_advice(with_model(case, plan.cavitation))}" if course.problem else "",
     )
 
 

@@ -18,9 +18,10 @@ from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
-from frbcli.film.section_faults import section_faults, starves
+from frbcli.film.section_faults import section_faults
 from frbcli.scene.plan import Decision
 from frbcli.scene.section import film_rectangle, film_section
+from frbcli.scene.supply import unfed_films
 
 TESTS = ("rotation", "squeeze", "whirl")
 MODELS = ("half-sommerfeld", "sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")
@@ -87,7 +88,8 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     assert isinstance(bearing, SingleFilmBearing)
     assert case.motion is not None
     section = film_section(case, bearing)
-    if problems := section_faults(section):
+    keeps = cavitation in REMEMBERING
+    if problems := section_faults(section if keeps else ends_at_ambient(section)):  # one that makes its oil has some
         faults = (Fault("bearing", "", None, f"cannot be solved: {p.problem}.", p.remedy) for p in problems)
         raise InputError(case.name or "case", tuple(faults))
     rectangle = film_rectangle(bearing, section)
@@ -100,10 +102,8 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     if closed:
         reason = f"{cavitation} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
         decisions.append(Decision("ends", "ambient pressure", reason))
-    conserving = cavitation in ("elrod", "two-phase") and not published
-    if conserving and starves(section):
-        reason = f"{cavitation} conserves oil, and none comes in: the ends are free to air and p_sup is not above p_cav"
-        decisions.append(Decision("supply", "starves", f"{reason}; the film loses oil and load"))
+    for film in unfed_films(with_model(case, cavitation)):
+        decisions.append(Decision("supply", "starves" if film.keeps else "missing", film.reason))
     cells, why = _elements(case) if published else _cells(case, test)
     choice = "elements" if published else "cells"
     decisions.append(Decision(choice, f"{cells[0]} x {cells[1]}", f"around x along; {why}"))
@@ -124,6 +124,11 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     return KinematicPlan(
         test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning, ramp, published
     )
+
+
+def with_model(case: Case, cavitation: str) -> Case:
+    """The case with a cavitation model for its film."""
+    return case.model_copy(update={"film": case.film.model_copy(update={"cavitation": cavitation})})
 
 
 def make_law(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
@@ -190,7 +195,8 @@ def _film_decision(cavitation: str, rectangular: bool) -> Decision:
 
 
 def _refuse(case: Case, cavitation: str, test: str) -> None:
-    faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test), *bearing_faults(case, test)]
+    faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test)]
+    faults += bearing_faults(case, test, cavitation in REMEMBERING)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
 

@@ -14,6 +14,7 @@ from frbcli.bearing_tests.steady_film import film_force
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.plain.film import Motion
+from frbcli.film.section_faults import no_inflow
 
 Array = NDArray[np.float64]
 
@@ -34,7 +35,7 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
     Sought with few cells first, then with those of the plan. Raises NotConverged if no start leads to one, or
     if the film cannot carry anything.
     """
-    if _is_unfed(plan):
+    if plan.cavitation == "elrod" and no_inflow(plan.section):
         cavity = plan.section.cavitation_pressure / BAR
         raise NotConverged(
             f"no resting position under {load:g} N: in the long run Elrod's film carries 0 N, at any eccentricity. "
@@ -61,16 +62,6 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
         f"{problems[-1].rstrip('.')}. {_capacity(case, plan, omega)} "
         "Give a higher speed or more viscosity, width or supply, or a smaller clearance."
     )
-
-
-def _is_unfed(plan: KinematicPlan) -> bool:
-    """Whether a film by Elrod's model has no load in the long run: it keeps its oil, no edge can push any into it, and
-    there is no groove or hole that it could be carried away from."""
-    section = plan.section
-    if plan.cavitation != "elrod" or section.grooves or section.holes:
-        return False
-    highest = section.far_pressure if section.far == "groove" else 0.0
-    return section.ambient_pressure + max(0.0, highest) <= section.cavitation_pressure
 
 
 def _capacity(case: Case, plan: KinematicPlan, omega: float) -> str:

@@ -6,6 +6,7 @@ import math
 import re
 from contextlib import suppress
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
@@ -103,9 +104,12 @@ def command(
 
 def _tell(terminal: Terminal, found: Stability, every_speed: bool) -> None:
     from frbcli.scene.clearance_steps import step_times
+    from frbcli.scene.supply import unfed_films
 
     tell_points(terminal, found, every_speed)
     terminal.result(_sentence(found))
+    for film in unfed_films(found.case):
+        terminal.result(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
     if step_times(found.case):
         terminal.result("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -29,14 +30,6 @@ REFRESH_Hz = 8
 COLUMNS = 80  # of a terminal
 SUMMARY = "-summary.png"
 LONGEST_LEFT_s = 1e9  # no guess that anybody waits for
-REASONS = {
-    "contact": "The journal reached the shell (contact.eccentricity). "
-    "To go on through contact: --set contact.policy=elastic --set contact.stiffness='1e9 N/m'.",
-    "starved": "The film ran out of oil: more left at its ends than came in, so that it carried nothing in the end. "
-    "Raise bearing.supply.pressure above oil.cavitation_pressure, or take ends = \"oil-bath\".",
-    "not-converged": "The step size fell to nothing. Try a smaller accuracy.target, or contact.policy=elastic.",
-    "interrupted": "Go on with the same command and --resume.",
-}
 
 
 def run_options(function: Function) -> Function:
@@ -71,7 +64,7 @@ def transient(
     with live_lines(terminal) as show:
         observe: Observer | None = None if show is None else lambda progress: show(progress_line(progress))
         run = run_case(case, path, resume=resume, observe=observe, force=force)
-    _report(run, terminal)
+    _report(case, run, terminal)
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
     terminal.emit(
@@ -169,11 +162,13 @@ def _clock(seconds: float) -> str:
     return f"{minutes // 60} h" if minutes < 6000 else f"{minutes // 1440} d"
 
 
-def _report(run: Run, terminal: Terminal) -> None:
-    """Status and its remedy, events, cost and error, for people."""
+def _report(case: Case, run: Run, terminal: Terminal) -> None:
+    """Status with its cause and remedy, events, cost and error, for people."""
+    from frbcli.runs.advice import run_advice, run_end
+
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
-    if run.status in REASONS:
-        terminal.remark(REASONS[run.status])
+    for sentence in run_advice(case, run_end(run)):
+        terminal.remark(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
     if run.events:
         terminal.table(
             "events", ("event", "time in s", "speed in Hz", "frequency in Hz", "ratio"), map(_event_row, run.events)

@@ -32,6 +32,15 @@ def starves(section: Section) -> bool:
     return section.far != "groove" or section.ambient_pressure + section.far_pressure <= section.cavitation_pressure
 
 
+def no_inflow(section: Section) -> bool:
+    """Whether no pressure pushes oil into the section: nothing opens into it, and no edge is above its cavities."""
+    if section.grooves or section.holes:
+        return False
+    edges = {"oil-bath": 0.0, "groove": section.far_pressure}
+    highest = max((edges[edge] for edge in (section.near, section.far) if edge in edges), default=-math.inf)
+    return section.ambient_pressure + highest <= section.cavitation_pressure
+
+
 def section_faults(section: Section, d: tuple[float, float] = (0.0, 0.0)) -> list[SectionFault]:
     """Everything that is wrong with a section and the displacement d (over the clearance), each with its remedy."""
     return [*_size_faults(section), *_gap_faults(section, d), *_inlet_faults(section), *_overlaps(section)]

@@ -28,6 +28,7 @@ from frbcli.scene.channels import coupled
 from frbcli.scene.coupling import REMEMBERING
 from frbcli.scene.keys import bearing_key, cavitation_keys
 from frbcli.scene.plan import make_plan
+from frbcli.scene.remedies import advised
 from frbcli.scene.system import System, make_system
 
 if TYPE_CHECKING:
@@ -167,9 +168,9 @@ def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability
     found: dict[float, StabilityPoint] = {}
     start: Array | None = None
     for speed in reversed(speeds):  # from near the centre, where a fast journal rests, outwards
-        found[speed], start = _point(system, speed, start)
+        found[speed], start = _point(case, system, speed, start)
     sweep = tuple(found[speed] for speed in speeds)
-    threshold, note = _threshold(system, sweep)
+    threshold, note = _threshold(case, system, sweep)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
 
 
@@ -195,13 +196,16 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
     return values[np.lexsort((-values.imag, values.real, np.abs(values.imag)))]
 
 
-def _point(system: System, speed: float, start: Array | None) -> tuple[StabilityPoint, Array | None]:
+def _point(
+    case: Case, system: System, speed: float, start: Array | None
+) -> tuple[StabilityPoint, Array | None]:
     """The point at a speed in Hz, sought from the displacements `start`, and those from which to seek the next one."""
     try:
-        resting = resting_position(system, 2 * math.pi * speed, start)
+        with advised(case):
+            resting = resting_position(system, 2 * math.pi * speed, start)
+            return _linearised(system, speed, resting), resting
     except NotConverged as error:
         return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), start
-    return _linearised(system, speed, resting), resting
 
 
 def _linearised(system: System, speed: float, resting: Array) -> StabilityPoint:
@@ -228,7 +232,7 @@ def _resting_film(name: str, force: FilmForce, displacement: Array) -> RestingFi
     return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name)
 
 
-def _threshold(system: System, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
+def _threshold(case: Case, system: System, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
     """The lowest speed at which the growth passes zero from below; a note where there is none, or where the rotor
     becomes stable once more."""
     resting = [point for point in sweep if point.films]
@@ -243,7 +247,7 @@ def _threshold(system: System, sweep: Sequence[StabilityPoint]) -> tuple[Thresho
         return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
     for place, (below, above) in enumerate(itertools.pairwise(resting)):
         if above.growth > 0.0:
-            threshold, problem = _crossing(system, below.speed_Hz, above.speed_Hz)
+            threshold, problem = _crossing(case, system, below.speed_Hz, above.speed_Hz)
             return threshold, problem + _stable_again(resting[place + 1 :])
     return None, f"Stable up to the highest speed: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
 
@@ -267,15 +271,16 @@ def _stable_again(points: Sequence[StabilityPoint]) -> str:
     return f" No motion grows at {len(stable)} higher speeds, from {stable[0]:.4g} to {stable[-1]:.4g} Hz."
 
 
-def _crossing(system: System, low: float, high: float) -> tuple[Threshold | None, str]:
+def _crossing(case: Case, system: System, low: float, high: float) -> tuple[Threshold | None, str]:
     """The threshold between two speeds in Hz."""
 
     def at(speed: float) -> StabilityPoint:
         return _linearised(system, speed, resting_position(system, 2 * math.pi * speed))
 
     try:
-        speed = brentq(lambda s: at(s).growth, low, high, xtol=THRESHOLD_TOLERANCE * low, rtol=THRESHOLD_TOLERANCE)
-        return Threshold(speed, at(speed).critical.imag / (2 * math.pi)), ""
+        with advised(case):
+            speed = brentq(lambda s: at(s).growth, low, high, xtol=THRESHOLD_TOLERANCE * low, rtol=THRESHOLD_TOLERANCE)
+            return Threshold(speed, at(speed).critical.imag / (2 * math.pi)), ""
     except NotConverged as error:
         return None, f"A threshold lies between {low:.4g} and {high:.4g} Hz, but was not found: {error}"
 

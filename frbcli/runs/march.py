@@ -24,6 +24,7 @@ from frbcli.runs.oil import no_oil_comes_in, oil_passed
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import Plan
+from frbcli.scene.remedies import advised
 from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import System
 from frbcli.solve.macro_step import advance_in_turn
@@ -78,7 +79,8 @@ class March:
         system = self._system
         self._control = control_of(case, plan)
         self._tableau = METHODS[plan.method].tableau
-        self._state = first_state(case.start, system, profile)
+        with advised(case):
+            self._state = first_state(case.start, system, profile)
         self._apart = plan.coupling == "co-simulation"
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))

@@ -8,7 +8,7 @@ from frbcli.film.cells.balances import CHANNELS_NET, ENDS_NET, INFLOW, OUTFLOW, 
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.published.film import PublishedFilm
-from frbcli.film.section_faults import starves
+from frbcli.scene.supply import is_unfed
 from frbcli.scene.system import System
 from frbcli.solve.films import OIL, PASSED, W
 from frbcli.solve.published.state import created_share, published_oil
@@ -73,6 +73,6 @@ def oil_passed(system: System, state: State) -> dict[str, float]:
 
 
 def no_oil_comes_in(system: System) -> bool:
-    """Whether a film that keeps its oil has no inflow, so that what it carries falls to nothing."""
-    films = zip(system.volumes, system.remembering, strict=True) if system.volumes else ()
-    return any(keeps and starves(film.section) for film, keeps in films)
+    """Whether no oil is pushed into a film that keeps its oil, so that what it carries falls, if not to nothing."""
+    films = zip(system.volumes, system.remembering, system.laws, strict=True) if system.volumes else ()
+    return any(keeps and is_unfed(film.section, law) for film, keeps, law in films)

@@ -140,7 +140,10 @@ def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int]) -> tuple[V
     """A film on volumes for a run, equal cells (around, along), and what its law follows."""
     geometry, cavitation = place.geometry, case.cavitation(place.geometry)
     section = film_section(case, geometry, place.mouths)
-    if cavitation in CLOSED_ENDS and geometry.ends == "free-to-air":
+    # Reynolds' pressure, never below that of the air then, lets oil out only, as into a bath. The flow of (4.37)
+    # at no pressure, which the law would have to make up, keeps Newton's method from converging.
+    only_out = cavitation == "reynolds" and section.cavitation_pressure >= section.ambient_pressure
+    if (cavitation in CLOSED_ENDS or only_out) and geometry.ends == "free-to-air":
         section = ends_at_ambient(section)
     law, follows = make_law(case, cavitation, section)
     speed = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)

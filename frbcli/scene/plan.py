@@ -13,7 +13,6 @@ from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.rectangles.table import Mesh
-from frbcli.film.section_faults import starves
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.coupling import REMEMBERING, plan_coupling
@@ -29,7 +28,7 @@ from frbcli.scene.film_choice import (
 from frbcli.scene.films import film_places, rings, turning_rings
 from frbcli.scene.plan_faults import plan_faults
 from frbcli.scene.published import PUBLISHED, published_decisions
-from frbcli.scene.section import film_section
+from frbcli.scene.supply import unfed_films
 from frbcli.scene.tabulated import SOLUTIONS
 
 THEORIES = ("short", "finite")
@@ -95,6 +94,8 @@ def make_plan(case: Case) -> Plan:
             decide("cavitation", told, "set in the case; the film conserves oil and keeps it from step to step")
         else:
             decide("cavitation", told, "set in the case; the film has no state of its own, oil is not balanced")
+    for film in unfed_films(case):
+        decide("supply", f"{film.name} {'starves' if film.keeps else 'missing'}".strip(), film.reason)
     coupling, reason = plan_coupling(case)
     decide("coupling", coupling, reason)
     _decide_film(case, films, decide)
@@ -175,11 +176,6 @@ def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
     decide("film", f"{films.cells[0]} x {films.cells[1]} cells", f"finite volumes, around x along; {films.mesh_why}")
     if case.film.grid != "fixed":
         decide("grid", case.film.grid, "set in the case; the cells go with the oil between journal and shell")
-    for place in film_places(case):
-        section = film_section(case, place.geometry, place.mouths)
-        if case.cavitation(place.geometry) in ("elrod", "two-phase") and starves(section):
-            reason = "no oil comes in: the ends are free to air and p_sup is not above p_cav; the film loses its load"
-            decide("supply", f"{place.name} starves".strip(), reason)
 
 
 def _time_integration(case: Case, films: FilmChoice, decide: Decide) -> tuple[str, float, float]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from frbcli.errors import NotConverged
+from frbcli.errors import FilmUnsolved, NotConverged
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.gap import Section, gap_height, gap_rate
@@ -131,9 +131,8 @@ class PublishedFilm:
 
     def _solution(self, motion: Motion, equations: Equations, point: Point, iterations: int) -> PublishedSolution:
         if not point.share < TOLERATED:
-            raise NotConverged(
-                f"the film did not converge: after {iterations} assemblies {point.share:.0e} of its flows are left; "
-                'try a shorter time step, a less steep model, diffusion = "consistent", or form = "conservative"'
+            raise FilmUnsolved(
+                f"the film did not converge: after {iterations} assemblies {point.share:.0e} of its flows are left"
             )
         pressure = point.pressure.reshape(self.mesh.phi.shape)
         change = self._newton.changes(equations, point).reshape(*pressure.shape, -1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.errors import NotConverged
+from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cells.grid import VolumeGrid, fitted_grid, volume_grid
 from frbcli.film.cells.plain.balance import Balance, Fluxes, Motion, Storage
@@ -113,7 +113,7 @@ class VolumeFilm:
     def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
         """Cells whose oil fraction does not change while the journal moves as it does.
 
-        start: (m, k) unknown to begin from, else a full film. Raises NotConverged.
+        start: (m, k) unknown to begin from, else a full film. Raises FilmUnsolved.
         """
         rate = gap_rate(motion.v, self.grid.centre)[:, None]
         storage = Storage(rate, np.zeros_like(rate))
@@ -122,7 +122,7 @@ class VolumeFilm:
     def step(self, motion: Motion, w: Array, content: Array, dt: float) -> tuple[VolumeSolution, Array]:
         """One implicit Euler step to the motion at its end.
 
-        content: (m, k) H theta at its start. Returns (solution, content). Raises NotConverged.
+        content: (m, k) H theta at its start. Returns (solution, content). Raises FilmUnsolved.
         """
         return self.keep(motion, w, 1.0 / dt, content / dt)
 
@@ -132,7 +132,7 @@ class VolumeFilm:
         """One step of any implicit formula: d(H theta)/dt = rate H theta - past with past (m, k) from earlier steps.
 
         motion: at the end of the step; flowing: motion whose gap the oil flows through, else that at the end; w: (m, k)
-        unknown to begin from. Returns (solution, content). Raises NotConverged.
+        unknown to begin from. Returns (solution, content). Raises FilmUnsolved.
         """
         storage = Storage(rate * gap_height(self.section, motion.d, self.grid.centre)[:, None], past)
         solution = self._solve(motion if flowing is None else flowing, w, storage)
@@ -143,10 +143,7 @@ class VolumeFilm:
         w, iterations = solve(self._unknowns, lambda x: balance.residual(self.cells(x), storage), w, motion.rate)
         state = self.cells(w)
         if np.min(state.fraction) < DRY:
-            raise NotConverged(
-                "the film runs dry: more oil leaves at its free ends than can enter it; raise the supply above the "
-                "cavitation pressure, or let the ends lie in an oil bath"
-            )
+            raise FilmUnsolved("the film runs dry: more oil leaves at its ends than can enter it")
         fluxes, _, _ = balance.fluxes(self.pressure(state), state.fraction)
         return VolumeSolution(w, state, iterations, self._flows(fluxes, state, storage, motion.rate))
 

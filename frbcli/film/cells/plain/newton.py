@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.errors import NotConverged
+from frbcli.errors import FilmUnsolved
 from frbcli.film.cells.grid import VolumeGrid
 from frbcli.film.cells.plain.balance import Stencil
 from frbcli.film.cells.plain.elimination import Elimination, eliminate, plan_elimination
@@ -79,7 +79,7 @@ class Unknowns:
 def solve(unknowns: Unknowns, assemble: Assembly, start: Array, rate: float) -> tuple[Array, int]:
     """w (m, k) with a residual of round-off, and the iterations that it took, by the first of ATTEMPTS that gets there.
 
-    assemble: w -> residual (m, k), size of its terms (m, k), stencil; rate: of the motion in 1/s. Raises NotConverged.
+    assemble: w -> residual (m, k), size of its terms (m, k), stencil; rate: of the motion in 1/s. Raises FilmUnsolved.
     """
     spent, failure = 0, ""
     for attempt in ATTEMPTS:
@@ -88,10 +88,7 @@ def solve(unknowns: Unknowns, assemble: Assembly, start: Array, rate: float) -> 
         if not failure:
             return w, spent
     tried = "plain, damped, and damped more"
-    raise NotConverged(
-        f"the film did not converge in {spent} Newton iterations ({tried}): {failure}; "
-        "try another mesh, a shorter time step, a less steep model, or a supply above the cavitation pressure"
-    )
+    raise FilmUnsolved(f"the film did not converge in {spent} Newton iterations ({tried}): {failure}")
 
 
 def _iterate(

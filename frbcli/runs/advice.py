@@ -1,0 +1,180 @@
+"""What to tell of the end of a run: what happened, why as far as that is known, and what to change.
+
+Advice follows from how the run ended, from the case and from what is set in it: nothing is advised that is set already.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from frbcli.analysis.signals import films, joined
+from frbcli.case.schema import Case
+from frbcli.results.store import Run
+from frbcli.scene.clearance_steps import case_at, step_times
+from frbcli.scene.coupling import APART
+from frbcli.scene.films import film_places
+from frbcli.scene.remedies import film_remedies
+from frbcli.scene.supply import unfed_films
+from frbcli.solve.state import STEP
+from frbcli.solve.step import SMALLEST_STEP
+from frbcli.units import display
+
+THIN = 0.99  # eccentricity from which a film that could not be solved is thin, and not another one
+AT_ONCE = 1e-9  # s within which a run ends at a step of the clearance
+SHORTER = 10.0  # what a target, tolerance or macro step is divided by
+FINEST_TARGET, FINEST_TOLERANCE = 1e-5, 1e-9  # what is smaller is not made smaller still
+SOFTER = 10.0  # what a contact's stiffness is divided by
+STIFFNESS = "1e9 N/m"  # of a contact, for those who have none
+
+
+@dataclass(frozen=True)
+class RunEnd:
+    """The end of a run: speed in Hz; film: the name of that with the largest eccentricity, which is given; step: the
+    last one in s that was tried, None if not known; whirl: the latest onset in it, an event of the run, or None."""
+
+    status: str
+    t_s: float
+    speed_Hz: float
+    film: str
+    eccentricity: float
+    step_s: float | None
+    whirl: dict[str, Any] | None
+
+    @property
+    def journal(self) -> str:
+        """The journal of the film in a sentence; of an outer film that is the ring."""
+        return f"journal in the film {self.film}" if self.film else "journal"
+
+
+def run_end(run: Run) -> RunEnd:
+    """How a run ended, from its last sample, its events and its state."""
+    last = {name: float(run[joined("eccentricity", name)][-1]) for name in films(run.signals) if len(run)}
+    film = max(last, key=last.__getitem__, default="")
+    numbers = None if run.checkpoint is None else run.checkpoint.get("numbers")
+    whirls = [event for event in run.events if event["kind"] in ("onset", "offset") and event["film"] in (film, None)]
+    return RunEnd(
+        status=run.status,
+        t_s=run.t_end_s,
+        speed_Hz=float(run["speed_Hz"][-1]) if len(run) else 0.0,
+        film=film,
+        eccentricity=last.get(film, 0.0),
+        step_s=None if numbers is None else float(numbers[STEP]),
+        whirl=whirls[-1] if whirls and whirls[-1]["kind"] == "onset" else None,
+    )
+
+
+def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
+    """Sentences on the end of a run of a case; none where there is nothing to tell."""
+    if end.status == "interrupted":
+        return ("Go on with the same command and --resume.",)
+    if end.status == "starved":
+        return _starved(case)
+    if end.status == "contact":
+        return _contact(case, end)
+    if end.status == "finished":
+        return tuple(film.remark for film in unfed_films(case) if not film.keeps)
+    return _stuck(case, end)
+
+
+def _starved(case: Case) -> tuple[str, ...]:
+    """A film that keeps its oil, and into which none is pushed, carried less and less."""
+    told = []
+    for film in unfed_films(case):
+        if film.keeps:
+            name = f"The film {film.name}" if film.name else "The film"
+            told.append(f"{name} ran out of oil: {film.cause}, so that more oil left than came in. {film.remedy}")
+    return tuple(told)
+
+
+def _contact(case: Case, end: RunEnd) -> tuple[str, ...]:
+    if closed := _closed_shell(case, end):
+        return (closed,)
+    limit = f"contact.eccentricity = {case.contact.eccentricity:g}"
+    touched = f"The {end.journal} reached the shell at {end.speed_Hz:.4g} Hz ({limit})"
+    through = () if case.contact.policy == "elastic" else (_through_contact(case),)
+    return (f"{touched}{_before(end)}.", *_missing_oil(case), *through)
+
+
+def _closed_shell(case: Case, end: RunEnd) -> str:
+    """A clearance step that leaves the journal no room, which no policy helps against."""
+    if not any(abs(time - end.t_s) <= AT_ONCE for time in step_times(case)):
+        return ""
+    names = [
+        f"{place.name} to {display(step.clearance, 'm')}".strip()
+        for place in film_places(case)
+        for step in place.geometry.clearance_steps
+        if abs(step.time - end.t_s) <= AT_ONCE
+    ]
+    return (
+        f"The step of the clearance {', '.join(names)} at {end.t_s:g} s closes the shell upon the journal. "
+        "Take a larger clearance, or a time at which the journal lies nearer to the middle."
+    )
+
+
+def _before(end: RunEnd) -> str:
+    """What was going on."""
+    if end.whirl is None:
+        return "; no whirl had begun before: the film did not carry weight and unbalance"
+    frequency, begun = end.whirl["frequency_Hz"], f"since {end.whirl['t_s']:.3f} s"
+    return f", whirling {begun}" + ("" if frequency is None else f" with about {frequency:.3g} Hz")
+
+
+def _through_contact(case: Case) -> str:
+    stiffness = "" if case.contact.stiffness is not None else f" --set contact.stiffness='{STIFFNESS}'"
+    return f"To go on through contact: --set contact.policy=elastic{stiffness}."
+
+
+def _missing_oil(case: Case) -> tuple[str, ...]:
+    """A cause of many ends: whatever the model, physics would not have it."""
+    return tuple(film.remark for film in unfed_films(case))
+
+
+def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
+    """Rotor and films were not solved in the shortest of steps."""
+    step = f"{SMALLEST_STEP:.0e} s" if end.step_s is None or end.step_s < SMALLEST_STEP else f"{end.step_s:.1e} s"
+    touching = end.eccentricity >= case.contact.eccentricity
+    place = "in contact with the shell" if touching else "not in contact"
+    told = (
+        f"Rotor and films were not solved at {end.speed_Hz:.4g} Hz, however short the step (below {step}): the "
+        f"{end.journal} was {place}, at an eccentricity of {end.eccentricity:.4f}{_while(end)}."
+    )
+    causes = (*_missing_oil(case), *_thin_film(case, end, touching))
+    return (told, *causes, f"What may help: {'; '.join((*_numerics(case), *film_remedies(case)))}.")
+
+
+def _while(end: RunEnd) -> str:
+    return "" if end.whirl is None else f", whirling since {end.whirl['t_s']:.3f} s"
+
+
+def _thin_film(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
+    """Of a journal in contact, or nearly so."""
+    contact = case.contact
+    if touching and contact.stiffness is not None:
+        softer = display(contact.stiffness / SOFTER, "N/m")
+        return (f"A softer shell is easier to solve: contact.stiffness = {softer}.",)
+    if touching or end.eccentricity < THIN:
+        return ()
+    gap = (1.0 - end.eccentricity) * _clearance(case_at(case, end.t_s), end.film)
+    thin = f"The gap is {1e6 * gap:.2g} um there, and its film the stiffer the thinner it is."
+    if contact.policy == "elastic":
+        return (f"{thin} Let the shell carry earlier: contact.eccentricity = {THIN:g}.",)
+    earlier = f"contact.policy = elastic with contact.eccentricity = {THIN:g} and contact.stiffness"
+    return (f"{thin} Let an elastic shell carry earlier: {earlier}.",)
+
+
+def _clearance(case: Case, film: str) -> float:
+    return next((place.geometry.clearance for place in film_places(case) if place.name == film), 0.0)
+
+
+def _numerics(case: Case) -> tuple[str, ...]:
+    """What the time integration may be told."""
+    found: list[str] = []
+    accuracy = case.accuracy
+    if case.film.coupling == APART:
+        found.append(f"accuracy.macro_step = {display(accuracy.macro_step / SHORTER, 's')}, or film.coupling = auto")
+    if accuracy.tolerance is None and accuracy.target > FINEST_TARGET:
+        found.append(f"accuracy.target = {accuracy.target / SHORTER:g} in place of {accuracy.target:g}")
+    elif accuracy.tolerance is not None and accuracy.tolerance > FINEST_TOLERANCE:
+        found.append(f"accuracy.tolerance = {accuracy.tolerance / SHORTER:g} in place of {accuracy.tolerance:g}")
+    return tuple(found)

@@ -1,0 +1,53 @@
+"""What may help where a film found no solution: of what the case does not have already."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from frbcli.case.schema import Case
+from frbcli.errors import FilmUnsolved, NotConverged
+from frbcli.scene.published import is_published
+from frbcli.scene.supply import unfed_films
+
+GENTLE = 0.9  # x_1 of a step that is not steep
+
+
+@contextmanager
+def advised(case: Case) -> Iterator[None]:
+    """Where a film of a case is solved: raises NotConverged with what happened and what to change, in place of
+    FilmUnsolved."""
+    try:
+        yield
+    except FilmUnsolved as failure:
+        raise NotConverged(f"{failure}. {film_advice(case)}") from failure
+
+
+def film_remedies(case: Case) -> tuple[str, ...]:
+    """What makes the films of a case easier to solve, best first, as far as it is not in the case already."""
+    models, film = set(case.cavitations), case.film
+    found = []
+    if "two-phase" in models and is_published(case):
+        found.append('film.two-phase.form = "conservative"')
+        if film.two_phase.diffusion != "consistent":
+            found.append('film.two-phase.diffusion = "consistent"')
+    if "two-phase" in models and film.two_phase.steepness > GENTLE:
+        found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {film.two_phase.steepness:g}")
+    if "penalty" in models and film.penalty.pressure == "absolute":
+        found.append('film.penalty.pressure = "dimensionless", which is less steep')
+    if "reynolds" in models:
+        found.append("the penalty model, which has no kink at the edge of the cavity")
+    if case.accuracy.mesh is None:
+        found.append("a mesh by hand, accuracy.mesh")
+    else:
+        along, around = case.accuracy.mesh
+        found.append(f"another accuracy.mesh than [{along}, {around}], or none: the plan then chooses one")
+    return tuple(found)
+
+
+def film_advice(case: Case) -> str:
+    """Why the films of a case may have no solution where that is known, and what to change."""
+    unfed = [film for film in unfed_films(case) if film.keeps]
+    if unfed:
+        return " ".join(f"No oil is pushed in: {film.cause}. {film.remedy}" for film in unfed)
+    return f"What may help: {'; '.join(film_remedies(case))}."

@@ -1,0 +1,91 @@
+"""Films that no oil is pushed into: which they are, why, and what each cavitation model makes of them.
+
+Oil is pushed into a film where its supply, or the bath around its ends, has a pressure above that of the cavities.
+Where that is nowhere, a film that keeps its oil loses it: Elrod's, whose pressure never falls below that of the
+cavities, all of it; Peeken's and the two-phase model draw some in from a groove. The other models make up the oil that
+they lack, and carry as if nothing were missing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from frbcli.case.bearing import FilmGeometry
+from frbcli.case.schema import Case, Oil
+from frbcli.film.gap import Section
+from frbcli.film.section_faults import no_inflow, runs_dry, starves
+from frbcli.scene.coupling import REMEMBERING
+from frbcli.scene.films import film_places
+from frbcli.scene.keys import film_keys
+from frbcli.scene.published import is_published
+from frbcli.scene.section import film_section
+from frbcli.units import display
+
+
+@dataclass(frozen=True)
+class UnfedFilm:
+    """A film that no oil is pushed into. name: as in results; key: of the film in the case; keeps: whether its model
+    keeps its oil, and so loses its load; cause, remedy: in words."""
+
+    name: str
+    key: str
+    cavitation: str
+    keeps: bool
+    cause: str
+    remedy: str
+
+    @property
+    def reason(self) -> str:
+        """What becomes of the film, for the plan."""
+        if self.keeps:
+            return f"{self.cause}: no oil is pushed in, and the film loses oil and load"
+        return f"{self.cause}: a film that keeps its oil would lose it; {self.cavitation} makes up what is missing"
+
+    @property
+    def remark(self) -> str:
+        """The same for those who see a result, with what to change."""
+        film = f"film {self.name}" if self.name else "the film"
+        return f"Note: no oil is pushed into {film}. {self.reason[0].upper()}{self.reason[1:]}. {self.remedy}"
+
+
+def is_unfed(section: Section, cavitation: str) -> bool:
+    """Whether no oil is pushed into a film, so far as its cavitation model can tell: Elrod's feels it in an oil bath,
+    too; Peeken's draws oil from any groove."""
+    if cavitation == "elrod":
+        return no_inflow(section)
+    return runs_dry(section) if cavitation == "peeken" else starves(section)
+
+
+def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
+    """The films of a case that no oil is pushed into."""
+    found = []
+    for key, place in zip(film_keys(case), film_places(case), strict=True):
+        film, cavitation = place.geometry, case.cavitation(place.geometry)
+        section = film_section(case, film, place.mouths)
+        if is_unfed(section, cavitation):
+            keeps = cavitation in REMEMBERING and not is_published(case)
+            cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)
+            found.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
+    return tuple(found)
+
+
+def _cause(film: FilmGeometry, oil: Oil) -> str:
+    cavities = f"not above the cavitation pressure of {display(oil.cavitation_pressure, 'Pa')}"
+    pressure = getattr(film.supply, "pressure", None)
+    supply = "it has no supply" if pressure is None else f"its supply of {display(pressure, 'Pa')} is {cavities}"
+    if film.ends == "free-to-air":
+        return f"its ends are free to air, and {supply}"
+    bath = f"the bath around its ends of {display(oil.ambient_pressure, 'Pa')}"
+    return f"{supply}, and {bath} is {cavities}" if pressure is None else f"{supply}, nor is {bath}"
+
+
+def _remedy(film: FilmGeometry, oil: Oil, key: str, cavitation: str) -> str:
+    """What brings oil in, of what is not in the case already."""
+    cavities = display(oil.cavitation_pressure, "Pa")
+    first = f"Raise {key}.supply.pressure above {cavities}"
+    if film.supply.kind == "none":
+        example = '{ kind = "circumferential-groove", pressure = "2 bar" }'
+        first = f"Give it a supply above {cavities}, e.g. {key}.supply = {example}"
+    pushes = cavitation != "elrod" or oil.ambient_pressure > oil.cavitation_pressure
+    bath = f', or write {key}.ends = "oil-bath"' if film.ends == "free-to-air" and pushes else ""
+    return f"{first}{bath}."

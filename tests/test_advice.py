@@ -1,0 +1,255 @@
+"""What is told of the end of a run: the physical cause, and nothing that is set already."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic_run import as_run
+
+from frbcli.bearing_tests.kinematic import rotation
+from frbcli.bearing_tests.plan import kinematic_plan
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.errors import FilmUnsolved, NotConverged
+from frbcli.runs.advice import RunEnd, run_advice, run_end
+from frbcli.runs.run import runup
+from frbcli.scene.plan import make_plan
+from frbcli.scene.remedies import advised
+from frbcli.scene.supply import unfed_films
+
+AIR = "bearing.ends=free-to-air"
+PLAIN = 'bearing.supply={kind="none"}'
+BORES = 'bearing.supply={kind="bores", count=6, diameter="2.5 mm", pressure="1 bar"}'
+ELASTIC = ("contact.policy=elastic", "contact.stiffness=1e8 N/m")
+ONSET = {"kind": "onset", "film": None, "t_s": 0.42, "speed_Hz": 180.0, "frequency_Hz": 88.5, "frequency_ratio": 0.49}
+STUCK = RunEnd("not-converged", 0.8, 240.0, "", 0.62, 3e-13, None)
+
+
+def told(case: Case, end: RunEnd) -> str:
+    return " ".join(run_advice(case, end))
+
+
+def jeffcott(*settings: str) -> Case:
+    return load_case("jeffcott", settings)
+
+
+# --- how a run ended ---
+
+
+def test_end_of_a_run_is_read_from_its_last_sample_its_events_and_its_state() -> None:
+    columns = {
+        "time_s": np.array([0.0, 0.1]),
+        "speed_Hz": np.array([10.0, 20.0]),
+        "eccentricity_inner": np.array([0.9, 0.1]),
+        "eccentricity_outer": np.array([0.2, 0.7]),
+    }
+    whirl = {**ONSET, "film": "outer"}
+    run = replace(as_run(columns, "not-converged"), events=[whirl], checkpoint={"numbers": np.arange(20.0)})
+    end = run_end(run)
+    assert (end.film, end.eccentricity, end.speed_Hz, end.t_s) == ("outer", 0.7, 20.0, 0.1)
+    assert end.step_s == 1.0
+    assert end.whirl == whirl
+    assert run_end(replace(run, events=[whirl, {**whirl, "kind": "offset"}])).whirl is None
+    assert run_end(replace(run, events=[{**whirl, "film": "inner"}])).whirl is None
+    none = run_end(as_run({name: values[:0] for name, values in columns.items()}, "not-converged"))
+    assert (none.film, none.eccentricity, none.step_s) == ("", 0.0, None)
+
+
+# --- each status ---
+
+
+def test_interrupted_run_can_be_resumed() -> None:
+    assert "--resume" in told(jeffcott(), replace(STUCK, status="interrupted"))
+
+
+def test_finished_run_needs_no_advice() -> None:
+    assert run_advice(jeffcott(), replace(STUCK, status="finished")) == ()
+    assert run_advice(jeffcott(AIR, "film.cavitation=two-phase"), replace(STUCK, status="finished")) == ()
+
+
+@pytest.mark.parametrize("cavitation", ["sommerfeld", "half-sommerfeld", "reynolds", "penalty"])
+@pytest.mark.parametrize("supply", ["bearing.supply.pressure=1 bar", PLAIN])
+def test_finished_run_of_a_film_that_makes_its_oil_says_so(cavitation: str, supply: str) -> None:
+    text = told(jeffcott(AIR, supply, f"film.cavitation={cavitation}"), replace(STUCK, status="finished"))
+    assert f"{cavitation} makes up what is missing" in text
+    assert ("no supply" in text) is (supply == PLAIN)
+    assert ("Raise bearing.supply.pressure above 1 bar" in text) is (supply != PLAIN)
+    assert 'bearing.ends = "oil-bath"' in text
+
+
+def test_starved_film_names_its_cause_and_what_brings_oil() -> None:
+    starved = replace(STUCK, status="starved")
+    text = told(jeffcott(AIR, "film.cavitation=two-phase"), starved)
+    assert "ends are free to air" in text
+    assert "supply of 1 bar is not above the cavitation pressure of 1 bar" in text
+    assert 'bearing.ends = "oil-bath"' in text
+    text = told(jeffcott(AIR, "film.cavitation=elrod"), starved)
+    assert "oil-bath" not in text  # at the pressure of the cavities a bath pushes nothing in
+    text = told(jeffcott("film.cavitation=elrod"), starved)
+    assert "nor is the bath" in text
+    assert "bearing.ends" not in text  # is an oil bath already
+    assert "Raise bearing.supply.pressure" in text
+
+
+def test_starved_film_of_a_ring_is_named() -> None:
+    settings = ("bearing.outer.supply.pressure=1 bar", "film.cavitation=two-phase")
+    text = told(load_case("floating-ring", settings), replace(STUCK, status="starved"))
+    assert "The film outer ran out of oil" in text
+    assert "bearing.outer.supply.pressure" in text
+    assert "inner" not in text
+
+
+def test_contact_names_film_whirl_and_the_way_on() -> None:
+    touched = replace(STUCK, status="contact", film="inner", whirl=ONSET)
+    text = told(jeffcott(), touched)
+    assert "The journal in the film inner reached the shell at 240 Hz" in text
+    assert "whirling since 0.420 s with about 88.5 Hz" in text
+    assert "--set contact.policy=elastic --set contact.stiffness=" in text
+    assert "contact.stiffness" not in told(jeffcott("contact.stiffness=1e8 N/m"), touched)
+    assert "no whirl had begun" in told(jeffcott(), replace(touched, whirl=None))
+    assert "contact.policy" not in told(jeffcott(*ELASTIC), touched)
+    assert "makes up what is missing" in told(jeffcott(AIR, PLAIN), touched)
+
+
+@pytest.mark.parametrize("settings", [(), ELASTIC])
+def test_clearance_step_that_closes_the_shell_is_the_cause_whatever_the_policy(settings: tuple[str, ...]) -> None:
+    case = jeffcott("bearing.clearance_steps=[{time='0.2 s', clearance='10 um'}]", *settings)
+    text = told(case, replace(STUCK, status="contact", t_s=0.2))
+    assert "clearance to 10 um at 0.2 s closes the shell" in text
+    assert "contact." not in text
+
+
+# --- a run that could not go on ---
+
+
+def test_stuck_run_tells_film_eccentricity_contact_step_and_speed() -> None:
+    text = told(jeffcott(), replace(STUCK, film="outer", whirl=ONSET))
+    for word in ("240 Hz", "in the film outer was", "not in contact", "0.6200", "1e-12 s", "whirling since 0.420 s"):
+        assert word in text
+    assert "contact.policy" not in text  # a contact that is not there helps nobody
+    assert "below 2.0e-07 s" in told(jeffcott(), replace(STUCK, step_s=2e-7))
+
+
+def test_stuck_run_in_contact_is_advised_a_softer_shell() -> None:
+    text = told(jeffcott(*ELASTIC), replace(STUCK, eccentricity=1.001))
+    assert "was in contact with the shell" in text
+    assert "contact.stiffness = 10000 N/mm" in text
+    assert "contact.policy" not in text
+
+
+def test_stuck_run_with_a_thin_film_is_told_how_thin() -> None:
+    thin = replace(STUCK, eccentricity=0.998)
+    text = told(jeffcott(), thin)
+    assert "0.07 um" in text
+    assert "contact.policy = elastic" in text
+    text = told(jeffcott(*ELASTIC), thin)
+    assert "contact.eccentricity = 0.99" in text
+    assert "contact.policy" not in text
+    changed = jeffcott("bearing.clearance_steps=[{time='0.2 s', clearance='70 um'}]")
+    assert "0.14 um" in told(changed, thin)
+
+
+def test_stuck_run_without_oil_is_told_so_first() -> None:
+    case = jeffcott(AIR, "film.cavitation=reynolds", "accuracy.target=1e-4", *ELASTIC)
+    assert "no oil is pushed into the film" in run_advice(case, STUCK)[1]
+
+
+@pytest.mark.parametrize(
+    ("settings", "advised", "silent"),
+    [
+        ((), ("accuracy.target = 0.0001 in place of 0.001", "accuracy.mesh"), ("tolerance", "macro_step")),
+        (("accuracy.target=1e-5",), (), ("accuracy.target",)),
+        (("accuracy.tolerance=1e-6",), ("accuracy.tolerance = 1e-07",), ("accuracy.target",)),
+        (("accuracy.tolerance=1e-9",), (), ("accuracy.target", "accuracy.tolerance")),
+        (("accuracy.mesh=[6, 96]",), ("another accuracy.mesh than [6, 96]",), ("by hand",)),
+        (("film.coupling=co-simulation",), ("macro_step", "film.coupling = auto"), ()),
+        (("film.cavitation=penalty",), ('penalty.pressure = "dimensionless"',), ("two-phase",)),
+        (("film.cavitation=penalty", "film.penalty.pressure=dimensionless"), (), ("penalty",)),
+        (("film.cavitation=reynolds",), ("the penalty model",), ("two-phase",)),
+        (("film.cavitation=two-phase",), ("steepness = 0.9 in place of 0.99",), ("conservative", "penalty")),
+        (("film.cavitation=two-phase", "film.two-phase.steepness=0.9"), (), ("steepness",)),
+        (
+            ("film.cavitation=two-phase", "film.two-phase.form=published", "film.two-phase.diffusion=none"),
+            ('form = "conservative"', 'diffusion = "consistent"'),
+            (),
+        ),
+        (("film.cavitation=two-phase", "film.two-phase.form=published"), ("conservative",), ("diffusion",)),
+    ],
+)
+def test_stuck_run_is_advised_what_is_not_set(
+    settings: tuple[str, ...], advised: tuple[str, ...], silent: tuple[str, ...]
+) -> None:
+    text = told(jeffcott(*settings), STUCK)
+    assert [word for word in advised if word not in text] == []
+    assert [word for word in silent if word in text] == []
+
+
+# --- films without oil ---
+
+
+@pytest.mark.parametrize(
+    ("settings", "unfed"),
+    [
+        (("bearing.supply.pressure=1 bar",), True),
+        (("bearing.supply.pressure=1.01 bar",), False),
+        (("oil.cavitation_pressure=0.9 bar",), False),
+        (("bearing.ends=oil-bath",), False),
+        ((PLAIN,), True),
+        ((BORES,), False),  # the surfaces carry oil out of them
+        (("film.cavitation=peeken",), False),  # draws oil from the groove
+        (("film.cavitation=elrod", "bearing.ends=oil-bath"), True),
+        (("film.cavitation=elrod", "bearing.ends=oil-bath", "oil.ambient_pressure=2 bar"), True),
+        (("film.cavitation=elrod", "bearing.ends=oil-bath", "oil.cavitation_pressure=0.5 bar"), False),
+    ],
+)
+def test_which_films_no_oil_is_pushed_into(settings: tuple[str, ...], unfed: bool) -> None:
+    if "oil.ambient_pressure=2 bar" in settings:
+        settings = (*settings, "oil.cavitation_pressure=2 bar", "bearing.supply.pressure=2 bar")
+    assert bool(unfed_films(jeffcott(AIR, *settings))) is unfed
+
+
+def test_plan_says_of_every_model_what_becomes_of_a_film_without_oil() -> None:
+    for cavitation in ("sommerfeld", "half-sommerfeld", "reynolds", "penalty", "elrod", "two-phase"):
+        plan = make_plan(jeffcott(AIR, f"film.cavitation={cavitation}"))
+        (supply,) = [decision for decision in plan.decisions if decision.choice == "supply"]
+        keeps = cavitation in ("elrod", "two-phase")
+        assert supply.value == ("starves" if keeps else "missing")
+        assert ("makes up what is missing" in supply.reason) is not keeps
+    assert "supply" not in {decision.choice for decision in make_plan(jeffcott()).decisions}
+
+
+def test_bearing_without_supply_in_air_is_refused_only_to_models_that_keep_oil() -> None:
+    case = load_case("bearing", [PLAIN])
+    result = rotation(case, ["half-sommerfeld"]).results[0]
+    assert result.status == "ok"
+    told = {decision.choice: decision.reason for decision in result.plan.decisions}
+    assert "half-sommerfeld makes up what is missing" in told["supply"]
+    with pytest.raises(Exception, match="runs dry"):
+        kinematic_plan(case, "elrod")
+
+
+def test_reynolds_film_in_open_air_is_solved_like_one_in_a_bath(tmp_path: Path) -> None:
+    """It ended with not-converged at 0.03 s, with any target and any policy of contact."""
+    settings = ("film.cavitation=reynolds", "speed.from=200 Hz", "speed.to=220 Hz", "speed.duration=0.04 s")
+    air, bath = (runup(jeffcott(*settings, f"bearing.ends={ends}"), tmp_path / f"{ends}.h5") for ends in ENDS)
+    assert air.status == bath.status == "finished"
+    np.testing.assert_allclose(air["eccentricity"], bath["eccentricity"], atol=1e-6)
+
+
+ENDS = ("free-to-air", "oil-bath")
+
+
+def test_film_that_cannot_be_solved_is_advised_by_the_case() -> None:
+    def fail(*settings: str) -> str:
+        with pytest.raises(NotConverged) as told, advised(jeffcott(*settings)):
+            raise FilmUnsolved("the film did not converge")
+        return str(told.value)
+
+    assert fail().startswith("the film did not converge. What may help: a mesh by hand")
+    assert "steepness" not in fail()
+    assert "No oil is pushed in" in fail(AIR, "film.cavitation=elrod")
+    with pytest.raises(NotConverged, match=r"^other$"), advised(jeffcott()):
+        raise NotConverged("other")
