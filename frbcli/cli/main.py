@@ -6,6 +6,7 @@ Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason tha
 
 from __future__ import annotations
 
+import errno
 import importlib
 import io
 from collections.abc import Sequence
@@ -34,6 +35,8 @@ COMMANDS = {
     "cases": ("frbcli.cli.cases", "List, show or copy the cases that come with frb."),
     "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),
 }
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
 
 
 class LazyGroup(click.Group):
@@ -83,10 +86,19 @@ def run(arguments: Sequence[str]) -> int:
         _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
         return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
     except FrbError as error:
-        click.echo(printable(f"frb: {error}"), err=True)
-        _emit_error(arguments, error)
-        return error.exit_code
+        return _tell_error(arguments, error)
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        where = "" if error.filename is None else f": {error.filename}"
+        return _tell_error(arguments, FrbError(f"{error.strerror}{where}"))  # temporary files, or numba's cache
     return code if isinstance(code, int) else 0
+
+
+def _tell_error(arguments: Sequence[str], error: FrbError) -> int:
+    click.echo(printable(f"frb: {error}"), err=True)
+    _emit_error(arguments, error)
+    return error.exit_code
 
 
 def _usage_fault(error: click.ClickException) -> Fault:

@@ -50,7 +50,8 @@ def write_whole(path: Path, content: memoryview) -> None:
     except OSError as error:
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
-        raise refuse(path, f"cannot be written: {error.strerror}.", "Choose another place with -o.") from error
+        remedy = "Make room, and go on with --resume; or choose another place with -o."
+        raise refuse(path, f"cannot be written: {error.strerror}.", remedy) from error
 
 
 def open_whole(path: Path) -> BufferedReader:
