@@ -327,6 +327,11 @@ def test_speeds_that_are_none_are_refused(speed: float) -> None:
         stability(load_case("jeffcott", ["film.theory=short"]), [10.0, speed])
 
 
+def test_rotor_that_never_turns_is_told_so() -> None:
+    with pytest.raises(InputError, match="no speed at which the rotor turns"):
+        stability(load_case("jeffcott", ["film.theory=short", "speed.to=0 Hz"]))
+
+
 def test_finer_mesh_moves_the_resting_position_little() -> None:
     case = load_case("jeffcott")
     system = make_system(case, make_plan(case))

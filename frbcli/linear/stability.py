@@ -302,8 +302,9 @@ def _without_coefficients(case: Case) -> list[Fault]:
 
 def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
     if not speeds:
-        given = f"{case.speed.end:g} Hz"
-        raise InputError(case.name or "case", (Fault("speed.to", given, None, "leaves no speed.", "Let it turn."),))
+        given, problem = f"{case.speed.end:g} Hz", "leaves no speed at which the rotor turns."
+        remedy = 'Write e.g. speed.to = "300 Hz", or ask for a speed, "25 Hz".'
+        raise InputError(case.name or "case", (Fault("speed.to", given, None, problem, remedy),))
     wrong = [speed for speed in speeds if not (math.isfinite(speed) and speed > 0.0)]
     if wrong:
         faults = [Fault("speed", f"{s:g} Hz", None, "must be greater than 0.", 'Write e.g. "25 Hz".') for s in wrong]
