@@ -52,7 +52,8 @@ def load_case_text(
     data = data if "name" in data else {"name": _printable(name), **data}
     data, unread = with_rotor_file(data, Path(folder))
     case, found = _validate(data)
-    found = [*unread, *found]
+    if unread:  # what the file would have completed is no fault of the case
+        found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
     if found:
         faults += _located(found, data, overridden, text)
     if faults or case is None:
@@ -130,7 +131,7 @@ def _located(found: Sequence[Breach], data: dict[str, Any], overridden: Sequence
     for breach in found:
         from_setting = any(breach.path[: len(path)] == path for path in overridden)
         line = None if from_setting else known.get(breach.path)
-        key = ".".join(map(str, breach.path))
+        key = _printable(".".join(map(str, breach.path)))
         faults.append(Fault(key, _shown(data, breach.path), line, breach.problem, breach.remedy))
     return faults
 
