@@ -400,6 +400,21 @@ def test_what_is_no_toml(text: str, line: int | None) -> None:
     assert faults_of(text)["text"].line == line
 
 
+def test_only_keys_have_too_many_dots() -> None:
+    dotted = f'title = "{"." * 150}"   # {"." * 150}'
+    assert load_case_text(f"{dotted}\n{SMALL}").title == "." * 150
+    with pytest.raises(InputError, match="very many parts"):
+        load_case_text(f"{'a.' * 40}b = 1\n{SMALL}")
+
+
+def test_of_very_many_faults_the_first_are_told() -> None:
+    with pytest.raises(InputError) as caught:
+        load_case_text(SMALL + "\n".join(f"b{i} = 1" for i in range(5000)))
+    assert len(caught.value.faults) == 5000
+    assert str(caught.value).endswith("and 4900 more")
+    assert len(str(caught.value)) < 20_000
+
+
 def test_files_that_cannot_be_cases(tmp_path: Path) -> None:
     binary, utf16, huge = tmp_path / "binary", tmp_path / "utf16.toml", tmp_path / "huge.toml"
     binary.write_bytes(bytes(range(256)))

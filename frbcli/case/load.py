@@ -91,7 +91,9 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data = data if "name" in data else {"name": _printable(name), **data}
     data, unread = with_rotor_file(data, Path(folder))
     case, found = _validate(data)
-    return case, data, [*unread, *found]
+    if unread:  # what the file would have completed is no fault of the case
+        found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
+    return case, data, found
 
 
 def _refused(source: str, faults: Sequence[Fault]) -> InputError:
@@ -186,7 +188,7 @@ def _located(found: Sequence[Breach], data: dict[str, Any], overridden: Sequence
 
 
 def _dotted(path: lines.Path) -> str:
-    return ".".join(map(str, path))
+    return _printable(".".join(map(str, path)))
 
 
 def _shown(data: Any, path: lines.Path) -> str:

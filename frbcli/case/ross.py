@@ -9,23 +9,33 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 import re
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
+from frbcli.case.quantities import Density, Inertia, InnerDiameter, Length, Mass, Modulus
 from frbcli.case.tables import Breach, table
+from frbcli.case.toml import TomlFault, parse
+from frbcli.units import ValueFault
 
-LARGEST_FILE = 8_388_608  # bytes
+LARGEST_FILE = 4_194_304  # bytes
 CYLINDERS = 4  # that stand for a cone
 SHAFT, DISK = ("ShaftElement", "ShaftElement6DoF"), ("DiskElement", "DiskElement6DoF")
 HEAVY = ("PointMass", "GearElement", "GearElementTVMS", "CouplingElement")  # have mass, but are no disks on the shaft
 UNMODELLED = ("axial_force", "torque")
 
+# What a case file demands of the same quantities.
+QUANTITIES = {"L": Length, "odl": Length, "odr": Length, "idl": InnerDiameter, "idr": InnerDiameter, "rho": Density,
+              "E": Modulus, "G_s": Modulus, "m": Mass, "Ip": Inertia, "Id": Inertia}  # fmt: skip
+MOST_POISSON = 0.5 + 1e-6  # of a material that keeps its volume
+
 KEY = ("rotor", "file")
 UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m^3", "youngs_modulus": "Pa",
          "position": "m", "mass": "kg", "polar_inertia": "kg*m^2", "diametral_inertia": "kg*m^2"}  # fmt: skip
+REMEDY = "Correct it in ROSS; values are in SI units."
+WRITE = "Write it with Rotor.save of ROSS."
 
 
 class _Fault(Exception):
@@ -68,13 +78,16 @@ def _read(path: Path) -> dict[str, Any]:
         if path.stat().st_size > LARGEST_FILE:
             raise _Fault(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", "Name a rotor file of ROSS.")
         text = path.read_text(encoding="utf-8-sig")
-        data = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
+        data = json.loads(text) if path.suffix.lower() == ".json" else parse(text)
     except OSError as error:
         raise _Fault(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
+    except TomlFault as error:
+        where = "" if error.fault.line is None else f" in line {error.fault.line}"
+        raise _Fault(f"is neither TOML nor JSON{where}: it {error.fault.problem}", WRITE) from None
     except (ValueError, RecursionError):
         raise _Fault("is neither TOML nor JSON.", "Write it with Rotor.save of ROSS, to .toml or .json.") from None
     if not isinstance(data, dict):
-        raise _Fault("holds no elements.", "Write it with Rotor.save of ROSS.")
+        raise _Fault("holds no elements.", WRITE)
     return data
 
 
@@ -86,7 +99,7 @@ def _rotor(data: Mapping[str, Any]) -> tuple[list[dict[str, Any]], list[dict[str
             raise _Fault(f'has the element "{name}", which frb does not model.', "Turn it into a disk in ROSS.")
     shaft = sorted((_Element(name, element) for name, kind, element in elements if kind in SHAFT), key=_node)
     if not shaft:
-        raise _Fault("has no shaft elements.", "Write it with Rotor.save of ROSS.")
+        raise _Fault("has no shaft elements.", WRITE)
     for place, element in enumerate(shaft):
         if _node(element) != place:
             problem = f'has "{element.name}" where the element from node {place} belongs; layers are not modelled.'
@@ -110,10 +123,22 @@ class _Element:
         self.name, self.values = name, values
 
     def number(self, key: str, default: float | None = None) -> float:
+        """A finite number, and of what a case file has a quantity for, one that it would take."""
         found = self.values.get(key, default)
         if isinstance(found, bool) or not isinstance(found, int | float):
-            raise _Fault(f'lacks a number "{key}" in "{self.name}".', "Write it with Rotor.save of ROSS.")
-        return float(found)
+            raise _Fault(f'lacks a number "{key}" in "{self.name}".', WRITE)
+        try:
+            value = float(found)
+        except OverflowError:  # a whole number of hundreds of digits
+            value = math.inf
+        if not math.isfinite(value):
+            raise _Fault(f'has a "{key}" in "{self.name}" that is no finite number.', REMEDY)
+        if key in QUANTITIES:
+            try:
+                get_args(QUANTITIES[key])[1].read(value)
+            except ValueFault as fault:
+                raise _Fault(f'has a "{key}" in "{self.name}" that {fault.problem}', REMEDY) from None
+        return value
 
 
 def _node(element: _Element) -> float:
@@ -127,8 +152,13 @@ def _cylinders(element: _Element) -> Iterator[dict[str, Any]]:
             raise _Fault(f'has a {key} in "{element.name}", which frb does not model.', "Set it to 0 in ROSS.")
     outer, inner = element.number("odl"), element.number("idl")
     growth = element.number("odr", outer) - outer, element.number("idr", inner) - inner
+    if inner >= outer or inner + growth[1] >= outer + growth[0]:
+        raise _Fault(f'has no wall in "{element.name}": the inner diameter is not below the outer one.', REMEDY)
     material = _Element(f"{element.name}.material", table(element.values, "material"))
     modulus = material.number("E")
+    poisson = modulus / (2 * material.number("G_s")) - 1
+    if not 0.0 <= poisson <= MOST_POISSON:
+        raise _Fault(f'has E and G_s in "{material.name}" that make a Poisson ratio of {poisson:.3g}.', REMEDY)
     parts = CYLINDERS if any(growth) else 1
     for part in range(parts):
         middle = (part + 0.5) / parts
@@ -138,7 +168,7 @@ def _cylinders(element: _Element) -> Iterator[dict[str, Any]]:
             "inner_diameter": inner + middle * growth[1],
             "density": material.number("rho"),
             "youngs_modulus": modulus,
-            "poisson_ratio": modulus / (2 * (material.number("G_s") or modulus)) - 1,
+            "poisson_ratio": poisson,
         }
 
 
@@ -155,12 +185,15 @@ def _joined(alike: list[dict[str, Any]]) -> dict[str, Any]:
 def _disk(element: _Element, positions: list[float]) -> dict[str, Any]:
     node = element.number("n")
     if node not in range(len(positions)):
-        raise _Fault(f'has "{element.name}" beyond the shaft.', "Write it with Rotor.save of ROSS.")
+        raise _Fault(f'has "{element.name}" beyond the shaft.', WRITE)
     tag = element.values.get("tag") or element.name
+    polar, diametral = element.number("Ip"), element.number("Id")
+    if polar > 2 * diametral * (1 + 1e-9):
+        raise _Fault(f'has an Ip in "{element.name}" of more than twice Id; no body has that.', REMEDY)
     return {
         "name": re.sub(r"[^A-Za-z0-9_-]", "-", str(tag))[:40],
         "position": positions[int(node)],
         "mass": element.number("m"),
-        "polar_inertia": element.number("Ip"),
-        "diametral_inertia": element.number("Id"),
+        "polar_inertia": polar,
+        "diametral_inertia": diametral,
     }

@@ -13,8 +13,9 @@ from frbcli.errors import Fault
 _LINE = re.compile(r"\s*\(at line (\d+), column \d+\)")
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _KEY_END = re.compile(r"[=,{]")
-LONGEST_KEY = 200  # dots; a case has three, and tomllib takes minutes for some ten thousand
+_STRING = re.compile(r"""\"(?:[^"\\]|\\.)*"|'[^']*'""")
 DEEPEST = 30  # tables and lists in each other; what reads them recurs once or twice for each
+LONGEST_KEY = DEEPEST  # dots; a case has three, and tomllib takes minutes for some ten thousand
 
 
 class TomlFault(Exception):
@@ -52,7 +53,8 @@ def _too_deep() -> TomlFault:
 
 def _has_long_key(line: str) -> bool:
     """Whether a line has what may be a key with too many dots: numbers in a list end at commas."""
-    return not line.lstrip().startswith("#") and any(part.count(".") > LONGEST_KEY for part in _KEY_END.split(line))
+    bare = _STRING.sub("s", line).partition("#")[0]
+    return any(part.count(".") > LONGEST_KEY for part in _KEY_END.split(bare))
 
 
 def _is_too_deep(tables: dict[str, Any]) -> bool:
