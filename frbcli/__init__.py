@@ -13,6 +13,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.compare import compare as compare
     from frbcli.analysis.events import find_events as find_events
     from frbcli.analysis.modes import natural_modes as natural_modes
+    from frbcli.analysis.order_tracking import order_track as order_track
     from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.analysis.stability import stability as stability
     from frbcli.analysis.sweep import sweep as sweep
@@ -46,6 +47,7 @@ _PUBLIC = {
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",
     "natural_modes": "frbcli.analysis.modes",
+    "order_track": "frbcli.analysis.order_tracking",
     "read_run": "frbcli.results.store",
     "rotation": "frbcli.solve.kinematic",
     "rundown": "frbcli.solve.run",

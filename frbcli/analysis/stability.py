@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
@@ -227,6 +226,7 @@ def _threshold(system: System, sweep: Sequence[StabilityPoint]) -> tuple[Thresho
 
 def _crossing(system: System, low: float, high: float) -> tuple[Threshold | None, str]:
     """The threshold between two speeds in Hz."""
+    from scipy.optimize import brentq  # runs, which need eigenvalues alone, need not wait for its import
 
     def at(speed: float) -> StabilityPoint:
         return _linearised(system, speed, resting_position(system, 2 * math.pi * speed))

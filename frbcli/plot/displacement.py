@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from frbcli.analysis.signals import joined, points
-from frbcli.plot.signals import MICRO, cut, heading, labels, located, motion, thin, times
+from frbcli.analysis.signals import joined, located, points
+from frbcli.plot.signals import MICRO, cut, heading, labels, motion, thin, times
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.store import Run
 

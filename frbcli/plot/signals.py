@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.signals import bearing_clearance, joined, points
+from frbcli.analysis.signals import bearing_clearance, joined, located, points
 from frbcli.results.container import refuse
 from frbcli.results.store import Run
 
@@ -21,12 +21,6 @@ DRAWN_POINTS = 4000  # more than a picture has columns of pixels
 MICRO = 1e6
 CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerfeld", "reynolds": "Reynolds",
                     "peeken": "Peeken", "elrod": "Elrod"}  # fmt: skip
-
-
-def located(run: Run, node: str) -> tuple[str, str]:
-    """Kind and name of "disk", "journal" (the first, if there are several) or "journal_NAME" of a bearing."""
-    kind, _, name = node.partition("_")
-    return kind, name or next(points(run.signals, kind), "")
 
 
 def motion(run: Run, node: str) -> tuple[Values, Values]:

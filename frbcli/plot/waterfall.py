@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -11,11 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, ScalarFormatter
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import joined, points, ring_speed
-from frbcli.analysis.spectrum import Direction, Spectrogram
+from frbcli.analysis.signals import RingSpeed, SignalOf, joined, located, pieces, points, samples
+from frbcli.analysis.spectrum import FROM_SPEED, Direction, Spectrogram, window_length
 from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.plot.cascade import draw_cascade
-from frbcli.plot.signals import bearing_of, clearance, heading, located, motion, times
+from frbcli.plot.signals import bearing_of, clearance, heading
 from frbcli.plot.style import LEVEL_MAP, new_figure, styled
 from frbcli.results.container import refuse
 from frbcli.results.store import Run
@@ -28,6 +30,9 @@ ABOVE_SYNCHRONOUS = 1.2  # how far the frequency axis goes, relative to the high
 LOWEST_LOG_Hz = 10.0
 FEWEST_LINES = 8  # lines of an unpadded spectrum that the frequency axis shows of a rotor that hardly turns
 TURNING = 1e-3  # share of the highest speed per window that is a change of speed
+COLUMNS = 2000  # spectra: more than a picture has columns of pixels
+SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
+TOLD_dB = 0.1  # 1 %: what the synchronous line reads low less than that is not told
 
 
 def waterfall_figure(
@@ -35,26 +40,29 @@ def waterfall_figure(
     over: Over = "time",
     signal: str = "journal",
     cascade: bool = False,
-    window_s: float = 0.2,
+    window_s: float | None = None,
     direction: Direction = "x",
     log: bool = False,
+    found: Spectrogram | None = None,
 ) -> Figure:
     """Levels in dB relative to the clearance, of a floating ring to C_i + C_o, with the rotor speed and the frequencies
     of free whirls drawn in: half of it, or (omega_R + omega_F)/2 and omega_F/2.
 
     over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
     "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum, behind each other; window_s
-    and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency.
+    (None: as the ramp asks for) and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency;
+    found: the spectra of `run_spectra`, where they are known already.
 
     Raises InputError if the run does not have the signal or is shorter than a window.
     """
-    found = run_spectra(run, signal, window_s, direction)
+    found = found or run_spectra(run, signal, window_s, direction)
     parts = _parts(run, found) if over == "speed" else [("", found)]
     point = joined(*located(run, signal)).replace("_", " ")
     what = f"{'forward motion' if direction == 'forward' else direction} of the {point}"
     title, subtitle = heading([run])
+    told = f"{subtitle}, {what}\n{reading(found)}" if subtitle else f"{what}, {reading(found)}"
     with styled():
-        figure = new_figure(title, ", ".join(text for text in (subtitle, what) if text), height=4.0 + 0.6 * len(parts))
+        figure = new_figure(title, told, height=4.0 + 0.6 * len(parts))
         panels = figure.subplots(1, len(parts), squeeze=False, sharey=not cascade)[0]
         for axes, (name, part) in zip(panels, parts, strict=True):
             axes.set_title(name)
@@ -69,14 +77,44 @@ def waterfall_figure(
     return figure
 
 
-def run_spectra(run: Run, signal: str, window_s: float, direction: Direction) -> Spectrogram:
+def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direction) -> Spectrogram:
     """The spectra of a run up to the frequency that its pictures show."""
-    x, y = motion(run, signal)
-    highest = max(ABOVE_SYNCHRONOUS * float(np.max(run["speed_Hz"])), FEWEST_LINES / max(window_s, 1e-9))
+    point, count = joined(*located(run, signal)), len(run)
+    names = ("time_s", f"{point}_x_m", f"{point}_y_m", "speed_Hz")
+    for name in names:
+        if name not in run:
+            run[name]  # says which signals there are
+    if count < 2:
+        raise refuse(run.path, "holds no samples yet.", "Let the run go on with --resume.")
+    time_s, x, y, speed = (SignalOf(run, name) for name in names)
+    if window_s is None:
+        window_s = window_length(time_s, speed, _apart(run, signal))
+    top = max(float(np.max(speed[start:stop])) for start, stop in pieces(count))
+    highest = max(ABOVE_SYNCHRONOUS * top, FEWEST_LINES / max(window_s, 1e-9))
     length = clearance(run, bearing_of(run, signal))
     return spectra(
-        times(run), x, y, run["speed_Hz"], length, window_s, max_frequency_Hz=highest, direction=direction
+        time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=COLUMNS
     )
+
+
+def reading(found: Spectrogram) -> str:
+    """How the spectra were made, and by how much the synchronous line reads low at the worst."""
+    low = float(np.max(found.low_dB, initial=0.0))
+    told = f": the line ω reads up to {low:.1f} dB low, --order 1 does not" if low >= TOLD_dB else ""
+    return f"window {1e3 * found.window_s:.3g} ms{told}"
+
+
+def _apart(run: Run, signal: str) -> float | None:
+    """How far in Hz the lines are from each other that a picture has to part; None where no ring turns."""
+    bearing = bearing_of(run, signal)
+    if bearing not in points(run.signals, "ring"):
+        return None
+    places = np.unique(np.linspace(0, len(run) - 1, COLUMNS).round().astype(np.int64))
+    speed, ring = samples(SignalOf(run, "speed_Hz"), places), samples(RingSpeed(run, bearing), places)
+    slow = np.flatnonzero(speed >= FROM_SPEED * np.max(speed))[0]
+    lines = sorted((float(speed[slow]), 0.5 * float(speed[slow] + ring[slow]), 0.5 * float(ring[slow])))
+    gaps = [above - below for below, above in itertools.pairwise(lines)]
+    return min((gap for gap in gaps if gap > SAME_LINE * lines[-1]), default=None)
 
 
 def level_label(run: Run, signal: str) -> str:
@@ -121,7 +159,9 @@ def _orders(run: Run, signal: str, found: Spectrogram) -> list[tuple[str, Values
     bearing = bearing_of(run, signal)
     if bearing not in points(run.signals, "ring"):
         return [*lines, ("ω/2", found.speed_Hz / 2)]
-    ring = np.interp(found.time_s, run["time_s"], ring_speed(run, bearing))
+    first, last = samples(SignalOf(run, "time_s"), np.array([0, len(run) - 1]))
+    places = np.round((found.time_s - first) / (last - first) * (len(run) - 1)).astype(np.int64)
+    ring = samples(RingSpeed(run, bearing), np.sort(places))[np.argsort(np.argsort(places))]
     return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
 
 
@@ -153,9 +193,15 @@ def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
     for name, chosen in (("run-up", change > least), ("run-down", change < -least)):
         if np.count_nonzero(chosen) > 1:
             order = np.flatnonzero(chosen)[np.argsort(found.speed_Hz[chosen])]
-            levels, amplitude = found.level_dB[:, order], found.amplitude[:, order]
-            speed = found.speed_Hz[order]
-            parts.append((name, Spectrogram(found.time_s[order], speed, found.frequency_Hz, amplitude, levels)))
+            part = replace(
+                found,
+                time_s=found.time_s[order],
+                speed_Hz=found.speed_Hz[order],
+                amplitude=found.amplitude[:, order],
+                level_dB=found.level_dB[:, order],
+                low_dB=found.low_dB[order],
+            )
+            parts.append((name, part))
     if not parts:
         raise refuse(run.path, "was made at constant speed.", "Draw its waterfall over time.")
     return [("", parts[0][1])] if len(parts) == 1 else parts
