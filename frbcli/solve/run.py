@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.plan import make_plan
-from frbcli.scene.stretches import make_stretches
+from frbcli.scene.stretches import Stretch, make_stretches
 from frbcli.scene.system import run_down_profile, run_up_profile
 from frbcli.solve.error_budget import quiet_until
 from frbcli.solve.fewer_cells import on_fewer_cells
@@ -58,7 +58,7 @@ def _run(
         writer = RunWriter.resume(output)
         march.restore(earlier.checkpoint)
     else:
-        writer = RunWriter(output, header(command, case, stretches))
+        writer = RunWriter(output, header(command, case, stretches, _critical_speeds(stretches)))
     march.compile()
     return _go(march, writer, observe)
 
@@ -83,10 +83,10 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
         # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
-        checkpoint(march.error(march.time) if status == RUNNING else march.error_so_far())
-    if status == RUNNING:
-        return writer.so_far()
-    from frbcli.analysis.events import find_events  # scipy.signal takes longer to import than a short run
+        checkpoint(march.error_so_far())
+        if status == RUNNING:
+            return _interrupted(march, writer)
+    from frbcli.analysis.events import find_events  # what a run asks analysis for, when it ends
 
     ended = STATUS.get(status, "not-converged")
     if status != FINISHED and march.starves:
@@ -97,6 +97,25 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
     error = march.error(until, on_fewer_cells(march, until, observe))
     cost = {**so_far.cost, "error_cpu_s": time.process_time() - began}
     return writer.finish(ended, cost, error, events, march.time)
+
+
+def _interrupted(march: March, writer: RunWriter) -> Run:
+    """The run so far, with its events and its error until the first whirl, as far as that needs no other run."""
+    from frbcli.analysis.events import find_events
+
+    events = [asdict(event) for event in find_events(writer.so_far())]
+    error = march.error(quiet_until(events, march.time))
+    writer.checkpoint(march.snapshot(), march.cost(), error, march.time, events)
+    return writer.so_far(events=events)
+
+
+def _critical_speeds(stretches: Sequence[Stretch]) -> tuple[float, ...] | None:
+    """Of the linearised machine in all stretches of a run, in Hz; None if those of one are not known."""
+    from frbcli.analysis.critical_speeds import linear_critical_speeds
+
+    found = [linear_critical_speeds(stretch.case) for stretch in stretches]
+    known = [speeds for speeds in found if speeds is not None]
+    return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(found) else None
 
 
 def _earlier(command: str, case: Case, path: Path) -> Run | None:
