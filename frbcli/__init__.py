@@ -12,6 +12,7 @@ from frbcli.version import __version__
 
 if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.events import find_events as find_events
+    from frbcli.analysis.order_tracking import order_track as order_track
     from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.case.load import case_from_dict as case_from_dict
     from frbcli.case.load import load_case as load_case
@@ -49,6 +50,7 @@ _PUBLIC = {
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",
     "natural_modes": "frbcli.linear.modes",
+    "order_track": "frbcli.analysis.order_tracking",
     "read_run": "frbcli.results.store",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",

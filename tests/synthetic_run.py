@@ -21,6 +21,7 @@ class Rotor:
     duration_s: float = 10.0
     step_s: float = 5e-5
     critical_Hz: float | None = 145.0
+    damping: float = 0.05  # ratio, of that resonance
     unbalance_m: float = 0.5e-6  # eccentricity of the mass
     whirl_s: float | None = 6.5  # when the whirl reaches half its final amplitude
     growth_1_s: float = 60.0
@@ -42,7 +43,7 @@ def signals(rotor: Rotor) -> dict[str, np.ndarray]:
     disk = journal - 12e-6j
     if rotor.critical_Hz is not None:
         r = speed / rotor.critical_Hz
-        resonance = rotor.unbalance_m * r**2 / (1 - r**2 + 2j * 0.05 * r) * np.exp(1j * turn)
+        resonance = rotor.unbalance_m * r**2 / (1 - r**2 + 2j * rotor.damping * r) * np.exp(1j * turn)
         disk, journal = disk + resonance, journal + 0.15 * resonance
     if rotor.whirl_s is not None:
         grown = expit(rotor.growth_1_s * (time - rotor.whirl_s))

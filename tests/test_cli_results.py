@@ -74,6 +74,45 @@ def test_waterfall_tells_json_what_it_did(run_file: Path, capsys: pytest.Capture
     assert said.err == ""
 
 
+def test_waterfall_takes_a_window_that_fits_the_ramp_and_tells_what_a_longer_one_loses(
+    run_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """300 Hz in 1 s: 1/sqrt(300) s."""
+    picture = run_file.with_name("w.svg")
+    assert frb(["waterfall", str(run_file), "-o", str(picture), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["window_s"] == pytest.approx(300.0**-0.5, rel=1e-3)
+    assert document["synchronous_low_dB"] == pytest.approx(0.064, abs=0.002)
+    assert "dB low" not in picture.read_text()
+    assert frb(["waterfall", str(run_file), "-o", str(picture), "--json", "--window", "0.2 s"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["synchronous_low_dB"] == pytest.approx(4.9, abs=0.1)
+    assert "up to 4.9 dB low" in picture.read_text()
+    assert "up to 4.9 dB low" in said.err + said.out
+
+
+def test_waterfall_draws_amplitudes_by_order(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["waterfall", str(run_file), "--signal", "disk", "--order", "1,0.5", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["output"] == str(run_file.with_name("run-orders.png"))
+    assert Path(document["output"]).read_bytes().startswith(PNG)
+    assert (document["over"], document["direction"]) == ("speed", "x")
+    first, half = document["orders"]
+    assert list(first) == ["order", "amplitude_max_m", "t_s", "speed_Hz"]
+    assert (first["order"], half["order"]) == (1.0, 0.5)
+    assert half["amplitude_max_m"] > 10 * CLEARANCE / 35  # the whirl: 0.8 of the clearance at the journal
+    for words in (["--over", "time", "--log"], ["--direction", "forward"]):
+        assert frb(["waterfall", str(run_file), "--order", "1", "--quiet", *words]) == 0
+
+
+@pytest.mark.parametrize(
+    "words", [["--order", "1", "--window", "1 s"], ["--order", "1", "--cascade"], ["--order", "one"], ["--order", "0"]]
+)
+def test_orders_that_there_are_not_are_wrong_input(run_file: Path, words: list[str]) -> None:
+    assert frb(["waterfall", str(run_file), *words]) == 2
+    assert not run_file.with_name("run-orders.png").exists()
+
+
 @pytest.mark.parametrize("what", ["eccentricity", "orbit", "displacement", "summary"])
 def test_plot_draws_each_picture(run_file: Path, what: str) -> None:
     assert frb(["plot", str(run_file), "--what", what]) == 0

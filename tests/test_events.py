@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import time
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.special import expit
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
-from frbcli.analysis.events import SAMPLES_PER_REVOLUTION, WHIRL_BEGINS, Event, find_events, order_amplitude
+from frbcli.analysis import signals as signals_of_a_run
+from frbcli.analysis import subsynchronous
+from frbcli.analysis.events import WHIRL_BEGINS, Event, find_events
 from frbcli.analysis.subsynchronous import whirl_names
+from frbcli.case.load import load_case
+from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.store import Run
+from frbcli.runs.run import runup
 
 
 def found(rotor: Rotor, status: str = "finished") -> dict[str, Event]:
@@ -163,13 +169,99 @@ def test_an_empty_run_has_no_events() -> None:
     assert find_events(as_run({name: values[:0] for name, values in signals(Rotor(duration_s=0.1)).items()})) == ()
 
 
-def test_order_amplitude_is_exact_and_blind_to_the_other_orders() -> None:
-    revolution = np.arange(0, 40, 1 / SAMPLES_PER_REVOLUTION)
-    motion = 0.3 + 2.0 * np.exp(2j * np.pi * revolution) + 0.7 * np.exp(1j * np.pi * (revolution + 0.3))
-    np.testing.assert_allclose(order_amplitude(motion, 0.5, 4), 0.7, rtol=1e-9)
-    np.testing.assert_allclose(order_amplitude(motion, 1.0, 4), 2.0, rtol=1e-9)
-    np.testing.assert_allclose(order_amplitude(motion, 1.5, 4), 0.0, atol=1e-9)
-    assert len(order_amplitude(motion[:100], 0.5, 4)) == 0
+def test_events_do_not_depend_on_the_pieces_that_a_run_is_read_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs = [make_run(Rotor(noise=0.01)), ring_run(RingWhirl("inner", 0.5, 2.0, 150.0), noise=0.02)]
+    whole = [find_events(run) for run in runs]
+    for module in (signals_of_a_run, subsynchronous):
+        monkeypatch.setattr(module, "PIECE", 1777)
+    for run, events in zip(runs, whole, strict=True):
+        again = find_events(run)
+        assert [(event.kind, event.film) for event in again] == [(event.kind, event.film) for event in events]
+        for one, other in zip(again, events, strict=True):
+            assert (one.t_s, one.speed_Hz) == pytest.approx((other.t_s, other.speed_Hz), rel=1e-9)
+
+
+# ------------------------------------------------------------------- critical speeds and what is none
+
+STARVED = Rotor(critical_Hz=86.0, damping=0.05, whirl_s=None)
+
+
+def with_own_vibration(frequency_Hz: float = 86.0, begin_s: float = 2.9, end_s: float = 3.7, size: float = 0.2) -> Run:
+    """A resonance at 86 Hz after which the journal goes on to vibrate with a frequency of its own."""
+    columns = signals(STARVED)
+    time_s = columns["time_s"]
+    there = expit(60.0 * (time_s - begin_s)) * expit(60.0 * (end_s - time_s))
+    for node in ("journal", "disk"):
+        columns[f"{node}_x_m"] += size * CLEARANCE * there * np.cos(2 * np.pi * frequency_Hz * time_s)
+    return as_run(columns)
+
+
+def knowing(run: Run, *critical_speeds_Hz: float) -> Run:
+    """The run with the critical speeds of its linearised machine."""
+    known = {f"critical_speed_{number}_Hz": speed for number, speed in enumerate(critical_speeds_Hz, start=1)}
+    return replace(run, references=run.references | {"critical_speeds": len(known)} | known)
+
+
+@pytest.mark.parametrize("references", [(), (142.0, 145.0), None])
+def test_a_vibration_that_keeps_its_frequency_is_self_excited_and_no_critical_speed(
+    references: tuple[float, ...] | None,
+) -> None:
+    run = with_own_vibration()
+    events = find_events(run if references is None else knowing(run, *references))
+    assert [event.kind for event in events] == ["self-excited"]
+    assert events[0].frequency_Hz == pytest.approx(86.0, abs=1.0)
+    assert 2.8 < events[0].t_s < 3.2
+    assert events[0].frequency_ratio == pytest.approx(events[0].frequency_Hz / events[0].speed_Hz)
+
+
+def test_what_rings_on_with_a_mode_of_the_machine_is_the_end_of_its_resonance() -> None:
+    events = find_events(knowing(with_own_vibration(), 86.0))
+    assert [event.kind for event in events] == ["critical-speed"]
+    assert events[0].speed_Hz == pytest.approx(86.2, abs=7.0)  # both interfere
+
+
+def test_a_resonance_away_from_every_mode_is_no_critical_speed() -> None:
+    run = make_run(STARVED)
+    assert [event.kind for event in find_events(run)] == ["critical-speed"]
+    assert [event.kind for event in find_events(knowing(run, 80.0, 142.0))] == ["critical-speed"]
+    assert find_events(knowing(run, 142.0)) == ()
+    assert find_events(knowing(run)) == ()
+
+
+def test_a_short_ringing_is_not_self_excited() -> None:
+    assert [event.kind for event in find_events(with_own_vibration(end_s=3.0))] == ["critical-speed"]
+
+
+def test_a_starved_film_has_no_critical_speed_where_its_journal_vibrates(tmp_path: Path) -> None:
+    """jeffcott-two-phase, with 30 Hz/s past the 84 Hz that were told as its critical speed; the rotor's is 143 Hz."""
+    around = ("speed.from=65 Hz", "speed.to=107 Hz", "speed.duration=1.4 s")
+    run = runup(load_case("jeffcott-two-phase", around), tmp_path / "run.h5")
+    (event,) = find_events(run)
+    assert event.kind == "self-excited"
+    assert (event.speed_Hz, event.frequency_Hz) == (pytest.approx(88.0, abs=3.0), pytest.approx(83.0, abs=2.0))
+    assert run.error["quiet_until_s"] == pytest.approx(0.85 * event.t_s)
+
+
+@pytest.mark.parametrize("damping", [0.02, 0.05, 0.2])
+def test_a_resonance_that_is_passed_at_any_damping_is_a_critical_speed(damping: float) -> None:
+    events = find_events(knowing(make_run(Rotor(damping=damping, whirl_s=None)), 145.0))
+    assert [event.kind for event in events] == ["critical-speed"]
+
+
+@pytest.mark.parametrize("kind", ["jeffcott", "jeffcott-two-phase"])
+def test_linear_critical_speeds_are_those_of_the_full_film(kind: str) -> None:
+    """The rotor on rigid supports: sqrt(5e6 / 6) rad/s = 145.3 Hz; the films make it a little softer."""
+    found = linear_critical_speeds(load_case(kind))
+    assert found
+    np.testing.assert_allclose(found, 143.5, atol=1.5)
+
+
+def test_linear_critical_speeds_of_a_fast_ramp_and_of_a_rigid_rotor() -> None:
+    fast = linear_critical_speeds(load_case("jeffcott", ["speed.to=3 kHz"]))
+    assert fast
+    np.testing.assert_allclose(fast, 143.5, atol=1.5)
+    assert linear_critical_speeds(load_case("rigid")) == ()
+    assert linear_critical_speeds(load_case("floating-ring")) is None
 
 
 @pytest.mark.benchmark

@@ -26,7 +26,7 @@ from frbcli.plot.ring_speed import ring_speed_figure
 from frbcli.plot.signals import clearance, labels, model
 from frbcli.plot.style import save_figure
 from frbcli.plot.summary import summary_figure
-from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
+from frbcli.plot.waterfall import LEVELS_dB, waterfall_figure
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
@@ -346,21 +346,6 @@ def test_curves_over_speed_are_the_same_however_they_are_read(ringed: Run, monke
     monkeypatch.setattr("frbcli.plot.curves.pieces", lambda first, last: pieces(first, last, 777))
     for all_at_once, in_pieces in zip(whole, drawn(), strict=True):
         np.testing.assert_array_equal(all_at_once, in_pieces)
-
-
-def test_a_waterfall_is_the_same_however_it_is_read(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = run_spectra(run, "journal", 0.2, "x")
-    monkeypatch.setattr("frbcli.plot.waterfall.MOST_AT_ONCE", 20_000)
-    in_pieces = run_spectra(run, "journal", 0.2, "x")
-    for name in ("time_s", "speed_Hz", "frequency_Hz", "amplitude", "level_dB"):
-        np.testing.assert_allclose(getattr(in_pieces, name), getattr(whole, name), rtol=1e-9, atol=1e-20)
-    monkeypatch.setattr("frbcli.plot.waterfall.MOST_COLUMNS", 100)
-    monkeypatch.setattr("frbcli.plot.waterfall.MOST_LINES", 100)
-    fewer = run_spectra(run, "journal", 0.2, "x")
-    assert fewer.level_dB.shape == (len(fewer.frequency_Hz), len(fewer.time_s))
-    assert fewer.level_dB.shape < (100, 100)
-    assert fewer.level_dB.max() == pytest.approx(whole.level_dB.max(), rel=1e-12)
-    assert fewer.time_s == pytest.approx(np.linspace(fewer.time_s[0], fewer.time_s[-1], len(fewer.time_s)), abs=0.1)
 
 
 def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

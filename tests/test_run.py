@@ -71,7 +71,11 @@ def test_runup_holds_its_signals_and_tells_its_cost_and_error(tmp_path: Path) ->
     from_centre = np.hypot(run["journal_x_m"], run["journal_y_m"]) / 35e-6
     np.testing.assert_allclose(run["eccentricity"], from_centre, rtol=1e-12)
     assert run["disk_y_m"][-1] < run["journal_y_m"][-1]  # the shaft sags
-    assert run.references == {"clearance_m": 35e-6, "contact_eccentricity": 0.9999}
+    known = {name: value for name, value in run.references.items() if not name.startswith("critical_speed")}
+    assert known == {"clearance_m": 35e-6, "contact_eccentricity": 0.9999}
+    critical = [run.references[f"critical_speed_{number + 1}_Hz"] for number in range(len(run.references) - 3)]
+    assert run.references["critical_speeds"] == len(critical) > 0
+    np.testing.assert_allclose(critical, 143.5, atol=1.5)  # of the linearised machine; the run ends just below
     assert load_case_text(run.case_text) == case
     assert set(run.cost) == COST
     assert run.cost["steps_per_revolution"] > 40
@@ -154,6 +158,50 @@ def test_an_interrupted_run_goes_on_to_the_same_numbers(tmp_path: Path) -> None:
     assert reached[-1] < 0.4
     assert_same(runup(case, broken, resume=True), whole)
     assert_same(read_run(broken), whole)
+
+
+WHIRLING = ("film.theory=short", "speed.from=60 Hz", "speed.to=250 Hz", "speed.duration=3 s")
+
+
+@pytest.mark.usefixtures("small_chunks")
+def test_an_interrupted_run_has_its_events_and_the_error_of_its_quiet_time(tmp_path: Path) -> None:
+    """After the onset of the whirl, which the error must not reach beyond."""
+    case, broken = load_case("jeffcott", WHIRLING), tmp_path / "broken.h5"
+    whole = runup(case, tmp_path / "whole.h5")
+    onset_s = whole.events[1]["t_s"]
+
+    def interrupt(progress: Progress) -> None:
+        if progress.t_s > onset_s + 0.4:
+            signal.raise_signal(signal.SIGINT)
+
+    run = runup(case, broken, observe=interrupt)
+    assert run.status == "interrupted"
+    assert onset_s + 0.4 < run.t_end_s < 3.0
+    assert run.events == [asdict(event) for event in find_events(run)]
+    assert [event["kind"] for event in run.events] == ["critical-speed", "onset"]
+    for event, same in zip(run.events, whole.events, strict=True):
+        assert (event["t_s"], event["speed_Hz"]) == pytest.approx((same["t_s"], same["speed_Hz"]), rel=1e-6)
+    assert run.error["quiet_until_s"] == pytest.approx(0.85 * onset_s)
+    assert run.error["eccentricity"] == pytest.approx(whole.error["eccentricity"], rel=0.2)
+    written = read_run(broken)
+    assert (written.events, written.error, written.status) == (run.events, run.error, "interrupted")
+    assert_same(runup(case, broken, resume=True), whole)
+
+
+@pytest.mark.usefixtures("small_chunks")
+def test_a_killed_run_has_no_events_but_they_can_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_module, "CHECKPOINT_EVERY_s", 0.0)
+    monkeypatch.setattr(run_module, "CHECKPOINT_SHARE", np.inf)
+
+    def kill(progress: Progress) -> None:
+        if progress.t_s > 2.9:
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        runup(load_case("jeffcott", WHIRLING), tmp_path / "run.h5", observe=kill)
+    run = read_run(tmp_path / "run.h5")
+    assert (run.status, run.events) == ("interrupted", [])
+    assert [event.kind for event in find_events(run)] == ["critical-speed", "onset"]
 
 
 @pytest.mark.usefixtures("small_chunks")

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
-from frbcli.analysis.spectrum import FLOOR_dB, Spectrogram, waterfall
+from frbcli.analysis import signals, spectrum
+from frbcli.analysis.smear import chirp_height
+from frbcli.analysis.spectrum import Direction, FLOOR_dB, Spectrogram, waterfall, window_length
+from frbcli.analysis.windows import fast_length
 from frbcli.errors import InputError
 
 CLEARANCE = 35e-6
@@ -14,6 +20,7 @@ SPEED = 150.0 * TIME
 
 
 def spectra(x: np.ndarray, y: np.ndarray | None = None, **options: object) -> Spectrogram:
+    options = {"window_s": 0.2} | options
     return waterfall(TIME, x, np.zeros_like(x) if y is None else y, SPEED, CLEARANCE, **options)  # type: ignore[arg-type]
 
 
@@ -77,7 +84,7 @@ def test_axes_fit_the_amplitudes_and_stay_inside_the_run() -> None:
 
 def test_time_need_not_begin_at_zero() -> None:
     zero = spectra(np.sin(400 * TIME))
-    later = waterfall(TIME + 7.0, np.sin(400 * TIME), np.zeros_like(TIME), SPEED, CLEARANCE)
+    later = waterfall(TIME + 7.0, np.sin(400 * TIME), np.zeros_like(TIME), SPEED, CLEARANCE, 0.2)
     np.testing.assert_allclose(later.time_s, zero.time_s + 7.0)
     np.testing.assert_allclose(later.speed_Hz, zero.speed_Hz, rtol=1e-9)
 
@@ -109,3 +116,130 @@ def test_a_run_as_long_as_one_window_gives_one_spectrum() -> None:
     found = waterfall(TIME[few], np.sin(500 * TIME[few]), TIME[few], SPEED[few], CLEARANCE, window_s=0.2)
     assert found.amplitude.shape[1] == 1
     assert found.time_s[0] == pytest.approx(0.1)
+
+
+# --------------------------------------------------------------------------------- against another implementation
+
+
+@pytest.mark.parametrize("direction", ["x", "y", "forward"])
+@pytest.mark.parametrize(("window_s", "overlap"), [(0.05, 0.9), (0.1, 0.5), (0.05, 0.77)])
+def test_spectra_are_those_of_scipy_to_round_off(direction: Direction, window_s: float, overlap: float) -> None:
+    from scipy.signal import ShortTimeFFT
+    from scipy.signal.windows import hann
+
+    count, step = 23_456, 5e-5
+    time_s = np.arange(count) * step
+    x, y = 2e-6 + 1e-6 * np.random.default_rng(0).normal(size=(2, count))
+    length = round(window_s / step)
+    theirs = ShortTimeFFT(
+        hann(length, sym=False),
+        hop=round(length * (1.0 - overlap)),
+        fs=1.0 / step,
+        fft_mode="centered" if direction == "forward" else "onesided2X",
+        mfft=fast_length(4 * length),
+        scale_to="magnitude",
+    )
+    first, last = theirs.lower_border_end[1], theirs.upper_border_begin(count)[1]
+    motion = {"x": x, "y": y, "forward": x + 1j * y}[direction]
+    lines = np.abs(theirs.stft_detrend(motion, "constant", p0=first, p1=last))[theirs.f >= 0.0]
+    found = waterfall(time_s, x, y, 100.0 * time_s, CLEARANCE, window_s, overlap, direction=direction)
+    np.testing.assert_allclose(found.amplitude, lines, rtol=0, atol=1e-14 * lines.max())
+    np.testing.assert_allclose(found.time_s, theirs.t(count, first, last), rtol=0, atol=1e-14)
+    np.testing.assert_allclose(found.frequency_Hz, theirs.f[theirs.f >= 0.0], rtol=1e-12)
+
+
+def test_spectra_do_without_the_statistics_of_scipy() -> None:
+    code = "import sys, frbcli.analysis.spectrum, frbcli.analysis.events, frbcli.analysis.order_tracking;" \
+           "assert not {'scipy.stats', 'scipy.signal', 'scipy.optimize'} & set(sys.modules)"  # fmt: skip
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+# ------------------------------------------------------------------------------------------------------- ramps
+
+
+def test_height_of_a_chirp_is_its_integral() -> None:
+    u = (np.arange(200_000) + 0.5) / 200_000 - 0.5
+    for sweep in (0.0, 1e-5, 1e-3, 0.3, 1.0, 4.0, 40.0, 1e3):
+        direct = abs(np.mean((1.0 + np.cos(2 * np.pi * u)) * np.exp(1j * np.pi * sweep * u**2)))
+        assert float(chirp_height(np.array(sweep))) == pytest.approx(direct, abs=1e-9)
+        assert float(chirp_height(np.array(-sweep))) == pytest.approx(direct, abs=1e-9)
+
+
+FAST_TIME = np.arange(60_000) * 5e-5
+FAST_SPEED = 1000.0 * FAST_TIME  # 3000 Hz in 3 s
+FAST = 3.66e-6 * np.cos(2 * np.pi * 500.0 * FAST_TIME**2)
+
+
+def synchronous(found: Spectrogram) -> np.ndarray:
+    """Height (m,) of the highest line."""
+    return found.amplitude.max(axis=0)
+
+
+@pytest.mark.parametrize("window_s", [0.02, 0.05, 0.1, 0.2])
+def test_what_a_ramp_takes_from_the_synchronous_line_is_told(window_s: float) -> None:
+    found = waterfall(FAST_TIME, FAST, FAST, FAST_SPEED, CLEARANCE, window_s)
+    told = synchronous(found) * 10.0 ** (found.low_dB / 20.0)
+    inside = found.speed_Hz > 600.0  # where the line is not seen beside its mirror image below zero
+    np.testing.assert_allclose(told[inside], 3.66e-6, rtol=0.012)  # 1 % lies between two lines of the spectrum
+    assert found.low_dB[0] == pytest.approx(found.low_dB[-1], rel=1e-6)
+    if window_s == 0.2:
+        assert found.low_dB[0] == pytest.approx(10.0, abs=0.1)
+
+
+def test_the_window_follows_from_the_ramp() -> None:
+    found = waterfall(FAST_TIME, FAST, FAST, FAST_SPEED, CLEARANCE)
+    assert found.window_s == pytest.approx(1000.0**-0.5, rel=1e-3)
+    np.testing.assert_allclose(synchronous(found)[found.speed_Hz > 300.0], 3.66e-6, rtol=0.02)
+    assert found.low_dB.max() < 0.1
+
+
+def test_the_window_parts_the_lines_that_have_to_be_parted() -> None:
+    slow = np.arange(400_000) * 5e-5
+    assert window_length(slow, 1.0 * slow) == pytest.approx(2.0 / (0.125 * 20.0), rel=1e-3)
+    assert window_length(slow, np.full(len(slow), 300.0)) == pytest.approx(0.2)  # nothing asks for more
+    assert window_length(slow, 30.0 * slow) == pytest.approx(30.0**-0.5, rel=1e-3)
+    assert window_length(slow, 30.0 * slow, apart_Hz=5.0) == pytest.approx(0.4)
+    half = np.cos(2 * np.pi * 0.25 * slow**2) + 0.5 * np.cos(2 * np.pi * 0.5 * slow**2)  # omega/2 and omega in 1 Hz/s
+    found = waterfall(slow, half, half, slow, CLEARANCE)
+    column = found.amplitude[:, int(np.argmin(np.abs(found.speed_Hz - 8.0)))]
+    peaks = found.frequency_Hz[1:-1][(column[1:-1] > column[:-2]) & (column[1:-1] > column[2:]) & (column[1:-1] > 0.3)]
+    np.testing.assert_allclose(peaks, [4.0, 8.0], atol=0.4)
+
+
+# -------------------------------------------------------------------------------------------------- long runs
+
+
+class Sliced:
+    """Values that can be had in slices alone; remembers the longest."""
+
+    def __init__(self, values: np.ndarray) -> None:
+        self.values, self.longest = values, 0
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, where: slice) -> np.ndarray:
+        taken = self.values[where]
+        self.longest = max(self.longest, len(taken))
+        return taken
+
+
+def test_signals_are_read_a_few_windows_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (signals, spectrum):
+        monkeypatch.setattr(module, "PIECE", 5000)
+    columns = [Sliced(values) for values in (FAST_TIME, FAST, FAST, FAST_SPEED)]
+    found = waterfall(*columns, CLEARANCE)
+    assert max(column.longest for column in columns) <= 5000
+    whole = waterfall(FAST_TIME, FAST, FAST, FAST_SPEED, CLEARANCE)
+    np.testing.assert_array_equal(found.amplitude, whole.amplitude)
+
+
+def test_fewer_spectra_than_windows_lose_no_peak() -> None:
+    columns = FAST_TIME, FAST, FAST, FAST_SPEED
+    whole, few = waterfall(*columns, CLEARANCE), waterfall(*columns, CLEARANCE, most=100)
+    group = -(-whole.amplitude.shape[1] // 100)
+    assert 90 < few.amplitude.shape[1] <= 100
+    for column in range(few.amplitude.shape[1]):
+        there = slice(column * group, (column + 1) * group)
+        np.testing.assert_array_equal(few.amplitude[:, column], whole.amplitude[:, there].max(axis=1))
+        assert whole.time_s[there][0] <= few.time_s[column] <= whole.time_s[there][-1]

@@ -1,35 +1,36 @@
-"""Events of a run, found from its signals alone: critical speed, onset, offset and lock-in of whirl, contact; and when
-a clearance changed.
+"""Events of a run, found from its signals: critical speed, onset, offset and lock-in of whirl, self-excited vibration,
+contact; and when a clearance changed.
 
-The motion x + iy is read at even steps of the rotor's angle (revolutions.py). With a window of 4 revolutions the
+The motion x + iy is followed order by order (revolutions.py), piece by piece. With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
-(order 1). Floating rings whirl at lower orders, and with several frequencies at once: see subsynchronous.py. The
-critical speed is in resonance.py.
+(order 1). Floating rings whirl at lower orders, and with several frequencies at once: see subsynchronous.py. Critical
+speed and self-excited vibration are in resonance.py.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.signal.windows import hann
 
 from frbcli.analysis import signals
-from frbcli.analysis.resonance import critical_sample
-from frbcli.analysis.revolutions import SAMPLES_PER_REVOLUTION, Revolutions, by_angle, order_amplitude, revolutions
-from frbcli.analysis.signals import Motion, RunLike, Values, joined, points
+from frbcli.analysis.peaks import stretches
+from frbcli.analysis.resonance import FLOOR, beside, critical_step, resonant, vibrations_beside
+from frbcli.analysis.revolutions import STEPS, Revolutions, Tracked, track
+from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, points
 from frbcli.analysis.subsynchronous import find_whirls
+from frbcli.analysis.windows import hann
 
-Kind = Literal["critical-speed", "onset", "offset", "lock-in", "contact", "clearance-step"]
+Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "clearance-step"]
 
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
 WHIRL_BAND = (0.2, 0.8)  # orders in which the dominating frequency is sought
 FREQUENCY_REVOLUTIONS = 16  # window for that frequency: lines 1/16 apart, and short against a ramp of some 10 s
 FREQUENCY_PADDING = 16  # interpolation between these lines
+FREQUENCY_SAMPLES = 32  # per revolution, there
 WHIRL_BEGINS = 0.05  # amplitude relative to the clearance; unbalance and noise of a quiet run stay below in that order
 WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one whirl
 SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies sooner is a transient
@@ -59,49 +60,70 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
 
     Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
     bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film; uses
-    ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s and so on.
+    ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s,
+    critical_speed_1_Hz and so on. Runs that can read their signals in pieces may be of any length.
     """
-    time_s, speed = run["time_s"], run["speed_Hz"]
-    if len(time_s) < 2:
+    if len(run) < 2:
         return ()
-    events: list[Event] = []
-    turns = revolutions(time_s, speed)
     bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
+    nodes = [("disk", name) for name in points(run.signals, "disk")] or [("journal", name) for name in bearings]
+    plain = [name for name in bearings if name not in rings and signals.bearing_clearance(run, name) is not None]
+    halves = [(Tracked("journal", name, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS),) for name in plain]
+    wanted = halves, [resonant(*node) for node in nodes], [] if rings else [beside(*node) for node in nodes]
+    turns, motions = track(run, [one for groups in wanted for group in groups for one in group])
+    following = iter(motions)
+    whirls, resonances, besides = ([[next(following) for _ in group] for group in groups] for groups in wanted)
+
+    events: list[Event] = []
     for name in bearings:
         room = signals.bearing_clearance(run, name)
         if room is not None and name in rings:
             events += _ring_whirls(run, name, room, turns)
         elif room is not None:
-            motion = by_angle(run, "journal", name, turns) / room
-            events += _whirl(motion, turns, name or None, run.status == "contact")
-    critical = critical_sample(run, turns, bearings, min((e.t_s for e in events), default=np.inf))
-    if critical is not None:
-        its_speed = float(turns.speed_Hz[critical])
-        events.append(Event("critical-speed", None, float(turns.time_s[critical]), its_speed, its_speed, 1.0))
+            events += _whirl(run, whirls[plain.index(name)][0] / room, turns, name)
+    before = min((event.t_s for event in events), default=np.inf)
+    events += _near_the_speed(run, turns, resonances, besides, before)
     named = list(signals.films(run.signals))
-    touching = max(named, key=lambda film: float(run[joined("eccentricity", film)][-1]), default="")
+    last = {film: signals.piece(run, joined("eccentricity", film), len(run) - 1, len(run))[0] for film in named}
+    touching = max(named, key=lambda film: float(last[film]), default="")
     for film in named:
-        ended = run.status == "contact" and film == touching
-        limit = run.references.get("contact_eccentricity", CONTACT_ECCENTRICITY)
-        events += _contacts(time_s, speed, run[joined("eccentricity", film)] >= limit, film or None, ended)
-    changes = _clearance_steps(run, time_s, speed)  # before what they bring about at the same time
+        events += _contacts(run, film, run.status == "contact" and film == touching)
+    changes = _clearance_steps(run)  # before what they bring about at the same time
     return tuple(sorted([*changes, *events], key=lambda event: event.t_s))
 
 
-def _clearance_steps(run: RunLike, time_s: Values, speed: Values) -> Iterator[Event]:
+def _near_the_speed(
+    run: RunLike,
+    turns: Revolutions,
+    resonances: Sequence[Sequence[Motion]],
+    besides: Sequence[Sequence[Motion]],
+    before_s: float,
+) -> Iterator[Event]:
+    """The critical speed and the first self-excited vibration before the first whirl, of all disks or else journals."""
+    room = min((length for name, length in run.references.items() if name.startswith("clearance_m")), default=0.0)
+    modes = signals.critical_speeds(run)
+    found = (vibrations_beside(motions, turns, room, before_s, modes) for motions in besides if room > 0.0)
+    vibrations = sorted((each for one in found for each in one), key=lambda vibration: vibration.time_s)
+    critical = critical_step(resonances, turns, FLOOR * room, before_s, modes, vibrations)
+    if critical is not None:
+        its_speed = float(turns.speed_Hz[critical])
+        yield Event("critical-speed", None, float(turns.time_s[critical]), its_speed, its_speed, 1.0)
+    for own in vibrations[:1]:
+        yield Event("self-excited", None, own.time_s, own.speed_Hz, own.frequency_Hz, own.frequency_Hz / own.speed_Hz)
+
+
+def _clearance_steps(run: RunLike) -> Iterator[Event]:
     """Changes of a clearance that the run has reached: what follows may be owed to them."""
+    count = len(run)
     for t in signals.clearance_steps(run):
-        if t <= time_s[-1]:
-            yield Event("clearance-step", None, t, float(np.interp(t, time_s, speed)), None, None)
+        if t <= signals.piece(run, "time_s", count - 1, count)[0]:
+            yield Event("clearance-step", None, t, signals.speed_at(run, t), None, None)
 
 
 def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> Iterator[Event]:
     """Onset, lock-in and offset of each whirl of a floating ring bearing; room in m: C_i + C_o."""
-    time_s, speed_Hz = run["time_s"], run["speed_Hz"]
     settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
-    motion = signals.motion_of(run, "journal", name) / room
-    whirls = find_whirls(time_s, motion, speed_Hz, signals.ring_speed(run, name), settled_s, run.status == "contact")
-    for whirl in whirls:
+    for whirl in find_whirls(run, name, room, settled_s):
         moments: list[tuple[Kind, int]] = [("onset", 0)]
         if whirl.lock_in is not None:
             moments.append(("lock-in", whirl.lock_in))
@@ -109,69 +131,67 @@ def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> It
             moments.append(("offset", len(whirl.time_s) - 1))
         for kind, at in moments:
             t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
-            speed = float(np.interp(t, time_s, speed_Hz))
+            speed = signals.speed_at(run, t)
             yield Event(kind, joined(name, whirl.side), t, speed, frequency, frequency / speed)
 
 
-def _whirl(motion: Motion, turns: Revolutions, film: str | None, ends_in_contact: bool) -> Iterator[Event]:
-    """Onsets and offsets; motion (m,): of the journal, relative to the clearance."""
-    amplitude = order_amplitude(motion, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)
-    middle = WHIRL_REVOLUTIONS * SAMPLES_PER_REVOLUTION // 2
+def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Iterator[Event]:
+    """Onsets and offsets; motion (m,): of a journal at half the speed, relative to the clearance."""
+    amplitude = np.abs(motion)
+    middle = WHIRL_REVOLUTIONS * STEPS // 2
     settled = turns.settled - middle
-    sustained = round(SUSTAINED_REVOLUTIONS * SAMPLES_PER_REVOLUTION)
-    for first, last in _stretches(amplitude, WHIRL_BEGINS, WHIRL_ENDS, sustained):
+    sustained = round(SUSTAINED_REVOLUTIONS * STEPS)
+    for first, last in stretches(amplitude, WHIRL_BEGINS, WHIRL_ENDS, sustained):
         lasts = last == len(amplitude)
-        if last - max(first, settled) < sustained and not (lasts and ends_in_contact):
+        if last - max(first, settled) < sustained and not (lasts and run.status == "contact"):
             continue
         # A stretch that the start of the run leads into began with the run.
-        yield _whirl_event("onset", motion, turns, first + middle, film)
+        yield _whirl_event("onset", run, name, turns, first + middle)
         if not lasts:
-            yield _whirl_event("offset", motion, turns, last + middle, film)
+            yield _whirl_event("offset", run, name, turns, last + middle)
 
 
-def _stretches(amplitude: Values, begins: float, ends: float, pause: int) -> Iterator[tuple[int, int]]:
-    """First and one past the last sample of each stretch above `begins`, where dips shorter than `pause` do not count.
-
-    A stretch must fall below `ends` to be over, and counts to where it last was above `begins`.
-    """
-    above = np.flatnonzero(amplitude >= begins)
-    if len(above) == 0:
-        return
-    low = np.concatenate([[0], np.cumsum(amplitude < ends)])
-    gaps = np.diff(above)
-    breaks = np.flatnonzero((gaps > pause) & (low[above[1:]] > low[above[:-1]]))
-    firsts, lasts = above[np.concatenate([[0], breaks + 1])], above[np.concatenate([breaks, [len(above) - 1]])]
-    for first, last in zip(firsts, lasts, strict=True):
-        still_there = low[-1] == low[last]
-        yield int(first), len(amplitude) if still_there else int(last) + 1
-
-
-def _whirl_event(kind: Kind, motion: Motion, turns: Revolutions, sample: int, film: str | None) -> Event:
-    """The event at a sample; its frequency is that of the window just after an onset, just before an offset."""
-    sample = min(sample, len(motion) - 1)
-    width = FREQUENCY_REVOLUTIONS * SAMPLES_PER_REVOLUTION
-    begin = sample if kind == "onset" else sample - width
-    begin = max(0, min(begin, len(motion) - width))
-    seen = motion[begin : begin + width]
-    padded = FREQUENCY_PADDING * width
+def _whirl_event(kind: Kind, run: RunLike, name: str, turns: Revolutions, step: int) -> Event:
+    """The event at a step; its frequency is that of the window just after an onset, just before an offset."""
+    last, width = len(turns.time_s) - 1, FREQUENCY_REVOLUTIONS * STEPS
+    step = min(step, last)
+    begin = max(0, min(step if kind == "onset" else step - width, last - width))
+    end = min(begin + width, last)
+    seen = _at_even_angles(run, name, turns.time_s[begin : end + 1])
+    padded = FREQUENCY_PADDING * FREQUENCY_REVOLUTIONS * FREQUENCY_SAMPLES
     lines = np.abs(np.fft.fft((seen - seen.mean()) * hann(len(seen)), padded))
-    orders = np.fft.fftfreq(padded, 1.0 / SAMPLES_PER_REVOLUTION)
+    orders = np.fft.fftfreq(padded, 1.0 / FREQUENCY_SAMPLES)
     band = (orders >= WHIRL_BAND[0]) & (orders <= WHIRL_BAND[1])
     ratio = float(orders[band][np.argmax(lines[band])])
-    speed = float(turns.speed_Hz[sample])
-    return Event(kind, film, float(turns.time_s[sample]), speed, ratio * speed, ratio)
+    speed = float(turns.speed_Hz[step])
+    return Event(kind, name or None, float(turns.time_s[step]), speed, ratio * speed, ratio)
 
 
-def _contacts(
-    time_s: Values, speed: Values, touches: NDArray[np.bool_], film: str | None, ended: bool
-) -> Iterator[Event]:
+def _at_even_angles(run: RunLike, name: str, times_s: Values) -> Motion:
+    """x + iy of a journal, FREQUENCY_SAMPLES times per revolution, from the first to the last of the times (m,) of even
+    steps; seen from behind where the rotor turns the other way round: forward motion then has a positive order."""
+    start, stop = signals.samples_about(run, float(times_s[0]), float(times_s[-1]))
+    time_s, speed = (signals.piece(run, signal, start, stop) for signal in ("time_s", "speed_Hz"))
+    motion = signals.motion_of(run, "journal", name, start, stop)
+    finer = FREQUENCY_SAMPLES // STEPS
+    steps = np.arange((len(times_s) - 1) * finer) / finer
+    times = np.interp(steps, np.arange(len(times_s)), times_s)
+    seen = np.asarray(np.interp(times, time_s, motion))
+    return np.where(np.interp(times, time_s, speed) < 0.0, np.conj(seen), seen)
+
+
+def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:
     """The first touch of each contact; `ended`: the run stopped because of one, which then is its last sample."""
-    if ended:
-        touches = touches.copy()
-        touches[-1] = True
-    samples = np.flatnonzero(touches)
-    if len(samples) == 0:
-        return
-    first = np.concatenate([[True], np.diff(time_s[samples]) > CONTACT_PAUSE_s])
-    for sample in samples[first]:
-        yield Event("contact", film, float(time_s[sample]), float(speed[sample]), None, None)
+    limit = run.references.get("contact_eccentricity", CONTACT_ECCENTRICITY)
+    touched, count = -np.inf, len(run)
+    for start, stop in pieces(count):
+        touches = signals.piece(run, joined("eccentricity", film), start, stop) >= limit
+        if ended and stop == count:
+            touches[-1] = True
+        samples = np.flatnonzero(touches)
+        if len(samples) == 0:
+            continue
+        times, speeds = (signals.piece(run, signal, start, stop)[samples] for signal in ("time_s", "speed_Hz"))
+        for first in np.flatnonzero(np.diff(times, prepend=touched) > CONTACT_PAUSE_s):
+            yield Event("contact", film or None, float(times[first]), float(speeds[first]), None, None)
+        touched = float(times[-1])

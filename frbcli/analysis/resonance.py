@@ -1,12 +1,20 @@
-"""The critical speed of a run: where the unbalance excites a resonance."""
+"""Vibrations near the rotor speed: critical speeds, and vibrations that films drive by themselves.
+
+At a critical speed unbalance excites a mode of the rotor in its films: the synchronous motion has a peak there and
+turns its phase. A film that starves lets the journal vibrate with a frequency of its own beside the rotor speed, which
+stays where it is while the rotor speed moves on: that is no critical speed, though it may begin as one.
+"""
 
 from __future__ import annotations
 
-import numpy as np
-from scipy.signal import find_peaks, peak_widths
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
-from frbcli.analysis.revolutions import SAMPLES_PER_REVOLUTION, Revolutions, by_angle, order_amplitude, order_motion
-from frbcli.analysis.signals import Motion, RunLike, Values, points
+import numpy as np
+
+from frbcli.analysis.peaks import prominent_peaks, stretches
+from frbcli.analysis.revolutions import STEPS, Revolutions, Tracked
+from frbcli.analysis.signals import Motion, Values
 
 REVOLUTIONS = 8  # of the window: a resonance is passed in many more
 WHIRL = 0.5  # order of oil whirl
@@ -14,44 +22,123 @@ WITHOUT_MOTION = 1.5  # neither whirl nor unbalance nor its harmonics: what is s
 PROMINENCE = 0.25  # share of its height by which a peak stands out of the higher of its two sides
 OVER_BACKGROUND = 5.0
 FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a rotor without unbalance
-HALF_WAY_UP = 0.5  # of the prominence: how far up a peak its two flanks are taken
-# By how much the motion falls behind the unbalance from one flank to the other. It is 60 to 130 degrees for critical
-# speeds of rotors in oil films, and next to nothing where a film alone changes, because oil goes or comes.
+# By how much the motion falls behind the unbalance from half-way up a peak to half-way down. It is 60 to 130 degrees
+# for critical speeds of rotors in oil films, and next to nothing where a film alone changes, because oil goes or comes.
 LAG = np.radians(30.0)
+NEAR = 0.15  # share of a frequency by which a resonance may lie beside a mode: films are not as full, nor as linear
+LATE = 1.5  # a ramp of r Hz/s passes a lightly damped mode by up to this times sqrt(r) before the motion is largest
+
+WIDE, NARROW = 4, 32  # revolutions: what the short window sees about the order 1 beside what the long one sees at it
+BESIDE = 2.0 / NARROW  # from order 1: the long window is blind to what lies further off
+BEGINS, ENDS = 0.05, 0.025  # amplitude relative to the clearance, as of whirls
+SUSTAINED_REVOLUTIONS = 20.0  # likewise: what dies sooner is the end of a resonance
 
 
-def critical_sample(run: RunLike, turns: Revolutions, bearings: list[str], before_s: float) -> int | None:
-    """The step of `turns` with the clearest resonance, of the disks or else the journals, before the time of the first
-    whirl; None if there is none."""
-    nodes = [("disk", name) for name in points(run.signals, "disk")] or [("journal", name) for name in bearings]
-    middle = REVOLUTIONS * SAMPLES_PER_REVOLUTION // 2
-    settled = turns.settled + middle
-    until = int(np.searchsorted(turns.time_s, before_s)) - middle
-    clearances = [length for name, length in run.references.items() if name.startswith("clearance_m")]
-    floor = FLOOR * min(clearances, default=0.0)
+@dataclass(frozen=True)
+class Vibration:
+    """A vibration with a frequency of its own: from when, and at which rotor speed, until when it is seen."""
+
+    time_s: float
+    until_s: float
+    speed_Hz: float
+    frequency_Hz: float
+
+
+def resonant(kind: str, name: str) -> tuple[Tracked, ...]:
+    """What has to be tracked of a disk or journal whose resonance is sought: synchronous motion, background, whirl."""
+    orders = (1.0, WITHOUT_MOTION, WHIRL)
+    return tuple(Tracked(kind, name, order, REVOLUTIONS) for order in orders)
+
+
+def beside(kind: str, name: str) -> tuple[Tracked, ...]:
+    """What has to be tracked where vibrations beside the synchronous one are sought: two windows, both senses."""
+    return tuple(Tracked(kind, name, order, window) for order in (1.0, -1.0) for window in (WIDE, NARROW))
+
+
+def near(frequency: float, modes: Iterable[float], late: float = 0.0) -> bool:
+    """Whether a frequency in Hz is that of one of the modes; late: by how much a ramp may have moved it, Hz."""
+    return any(abs(frequency - mode) <= NEAR * mode + late for mode in modes)
+
+
+def critical_step(
+    motions: Iterable[Sequence[Motion]],
+    turns: Revolutions,
+    floor: float,
+    before_s: float,
+    modes: Sequence[float] | None,
+    vibrations: Sequence[Vibration],
+) -> int | None:
+    """The step of `turns` with the clearest critical speed; None if there is none.
+
+    motions: of each disk, or else journal, those of `resonant`, in m; floor: m, less is round-off; before_s: the time
+    of the first whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
+    that begins one of the vibrations is none then.
+    """
+    half = REVOLUTIONS * STEPS // 2
+    settled, whirls = turns.settled, int(np.searchsorted(turns.time_s, before_s))
     best: tuple[float, int] | None = None
-    for kind, name in nodes:
-        motion = by_angle(run, kind, name, turns)[settled - middle : until + middle]
-        if len(motion) <= 2 * middle:
-            continue
-        for peak, prominence in _resonances(motion, floor):
-            if best is None or prominence > best[0]:
-                best = prominence, settled + peak
+    for tracked in motions:
+        # A whirl may break out in the resonance, whose peak is over a window later.
+        motion = [each[settled : whirls + half] for each in tracked]
+        for place, prominence in _resonances(motion, floor, whirls - half - settled):
+            step = settled + place + half
+            if any(own.time_s <= turns.time_s[step] <= own.until_s for own in vibrations):
+                continue
+            speed = abs(float(turns.speed_Hz[step]))
+            late = LATE * np.sqrt(_ramp(turns, step))
+            own = modes is None and near(speed, (vibration.frequency_Hz for vibration in vibrations), late)
+            known = modes is None or near(speed, modes, late)
+            if known and not own and (best is None or prominence > best[0]):
+                best = prominence, step
     return None if best is None else best[1]
 
 
-def _resonances(motion: Motion, floor: float) -> list[tuple[int, float]]:
-    """Sample and prominence of each resonance of the motion (n,) with the unbalance."""
-    synchronous = order_motion(motion, 1.0, REVOLUTIONS)
+def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tuple[int, float]]:
+    """Sample and prominence of each resonance with the unbalance up to a sample; motions (n,): those of `resonant`."""
+    synchronous, background, whirl = motions
     amplitude: Values = np.abs(synchronous)
-    background = float(np.median(order_amplitude(motion, WITHOUT_MOTION, REVOLUTIONS)))
-    peaks, found = find_peaks(amplitude, prominence=max(floor, OVER_BACKGROUND * background))
-    if len(peaks) == 0:
+    if len(amplitude) == 0:
         return []
-    _, _, before, after = peak_widths(amplitude, peaks, HALF_WAY_UP)
     phase = np.unwrap(np.angle(synchronous))
-    lag = np.abs(phase[after.astype(int)] - phase[before.astype(int)])
-    # Whirl that is about to break out spills over into all orders.
-    whirling = order_amplitude(motion, WHIRL, REVOLUTIONS)[peaks] > amplitude[peaks]
-    clear = (found["prominences"] >= PROMINENCE * amplitude[peaks]) & ~whirling & (lag >= LAG)
-    return list(zip(peaks[clear].tolist(), found["prominences"][clear].tolist(), strict=True))
+    return [
+        (peak.place, peak.prominence)
+        for peak in prominent_peaks(amplitude, max(floor, OVER_BACKGROUND * float(np.median(np.abs(background)))))
+        if peak.place < until
+        and peak.prominence >= PROMINENCE * amplitude[peak.place]
+        and abs(whirl[peak.place]) <= amplitude[peak.place]  # whirl that is about to break out spills over
+        and abs(phase[min(peak.after, until)] - phase[peak.before]) >= LAG
+    ]
+
+
+def vibrations_beside(
+    tracked: Sequence[Motion], turns: Revolutions, clearance: float, before_s: float, modes: Sequence[float] | None
+) -> Iterator[Vibration]:
+    """Vibrations of a disk or journal with frequencies of their own near the rotor speed, before the first whirl.
+
+    tracked: those of `beside` in m; clearance: m. What rings on with the frequency of a mode of the machine, see
+    critical_step, is the end of a resonance.
+    """
+    half, more = NARROW * STEPS // 2, (NARROW - WIDE) * STEPS // 2
+    if len(tracked[1]) == 0:
+        return
+    forward, backward = (wide[more:-more] - narrow for wide, narrow in (tracked[:2], tracked[2:]))
+    order = 1.0 + np.gradient(np.unwrap(np.angle(forward))) * STEPS / (2.0 * np.pi)
+    amplitude = (np.abs(forward) + np.abs(backward)) / clearance  # along the longer axis of the orbit
+    apart = np.where(np.abs(order - 1.0) >= BESIDE, amplitude, 0.0)
+    settled, until = turns.settled, max(0, int(np.searchsorted(turns.time_s, before_s)) - 2 * half)
+    sustained = round(SUSTAINED_REVOLUTIONS * STEPS)
+    for first, last in stretches(apart[settled:until], BEGINS, ENDS, sustained):
+        if last - first < sustained:
+            continue
+        seen = slice(settled + first, settled + last)
+        frequency = float(np.median((order * np.abs(turns.speed_Hz[half:-half]))[seen]))
+        if modes is None or not near(frequency, modes):
+            begins, ends = settled + first + half, settled + last - 1 + half
+            time_s = turns.time_s
+            yield Vibration(float(time_s[begins]), float(time_s[ends]), float(turns.speed_Hz[begins]), frequency)
+
+
+def _ramp(turns: Revolutions, step: int) -> float:
+    """How fast in Hz/s the speed changes about a step."""
+    around = slice(max(0, step - STEPS), step + STEPS + 1)
+    return float(np.ptp(turns.speed_Hz[around]) / max(float(np.ptp(turns.time_s[around])), 1e-12))

@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.results.store import CLEARANCE_STEP
+from frbcli.results.records import TIME
+from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
 
 Values = NDArray[np.float64]
 Motion = NDArray[np.complex128]
 
 END = "_x_m"
+PIECE = 2**17  # samples of a signal that are looked at together: 1 MB
+
+
+class Column(Protocol):
+    """Values (n,) that are given in slices: an array, or a signal of a run that is too long to be read at once."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, where: slice, /) -> Values: ...
 
 
 class RunLike(Protocol):
@@ -26,6 +36,66 @@ class RunLike(Protocol):
     @property
     def status(self) -> str: ...
     def __getitem__(self, name: str) -> Values: ...
+    def __len__(self) -> int: ...
+
+
+@dataclass(frozen=True)
+class RingSpeed:
+    """The speed (n,) in Hz of the ring of a bearing, read slice by slice; 0 of a ring that does not turn."""
+
+    run: RunLike
+    name: str
+
+    def __len__(self) -> int:
+        return len(self.run)
+
+    def __getitem__(self, where: slice) -> Values:
+        return ring_speed(self.run, self.name, where.start or 0, len(self) if where.stop is None else where.stop)
+
+
+@dataclass(frozen=True)
+class SignalOf:
+    """A signal (n,) of a run, read slice by slice."""
+
+    run: RunLike
+    name: str
+
+    def __len__(self) -> int:
+        return len(self.run)
+
+    def __getitem__(self, where: slice) -> Values:
+        return piece(self.run, self.name, where.start or 0, len(self) if where.stop is None else where.stop)
+
+
+def piece(run: RunLike, name: str, start: int, stop: int) -> Values:
+    """The samples from start to stop of a signal; a run that can read them alone does so."""
+    read = getattr(run, "read", None)
+    return np.asarray(run[name][start:stop] if read is None else read(name, start, stop))
+
+
+def samples(column: Column, places: NDArray[np.int64]) -> Values:
+    """The values at some samples (k,), ascending, read in pieces."""
+    if len(places) == 0:
+        return np.empty(0)
+    first, last = int(places[0]), int(places[-1])
+    found = []
+    for start in range(first, last + 1, PIECE):
+        here = places[(places >= start) & (places < start + PIECE)]
+        if len(here):
+            begin = int(here[0])
+            found.append(column[begin : int(here[-1]) + 1][here - begin])
+    return np.concatenate(found)
+
+
+def pieces(count: int) -> Iterator[tuple[int, int]]:
+    """(start, stop) of the pieces of a run of so many samples."""
+    return ((start, min(start + PIECE, count)) for start in range(0, count, PIECE))
+
+
+def located(run: RunLike, node: str) -> tuple[str, str]:
+    """Kind and name of "disk", "journal" (the first, if there are several) or "journal_NAME" of a bearing."""
+    kind, _, name = node.partition("_")
+    return kind, name or next(points(run.signals, kind), "")
 
 
 def joined(*words: str) -> str:
@@ -45,22 +115,48 @@ def films(names: Iterable[str]) -> Iterator[str]:
     return (name[len("eccentricity_") :] for name in names if f"{name}_".startswith("eccentricity_"))
 
 
-def motion_of(run: RunLike, kind: str, name: str) -> Motion:
-    """x + iy (n,) in m of a point."""
-    node = joined(kind, name)
-    return np.asarray(run[node + END] + 1j * run[f"{node}_y_m"])
+def motion_of(run: RunLike, kind: str, name: str, start: int = 0, stop: int | None = None) -> Motion:
+    """x + iy (n,) in m of a point, from one sample to another."""
+    node, stop = joined(kind, name), len(run) if stop is None else stop
+    return np.asarray(piece(run, node + END, start, stop) + 1j * piece(run, f"{node}_y_m", start, stop))
 
 
-def ring_speed(run: RunLike, name: str) -> Values:
-    """Speed (n,) in Hz of the ring of a bearing, 0 of a ring that does not turn."""
-    signal = joined("ring_speed", name, "Hz")
-    return run[signal] if signal in set(run.signals) else np.zeros(len(run["time_s"]))
+def ring_speed(run: RunLike, name: str, start: int = 0, stop: int | None = None) -> Values:
+    """Speed (n,) in Hz of the ring of a bearing, from one sample to another; 0 of a ring that does not turn."""
+    signal, stop = joined("ring_speed", name, "Hz"), len(run) if stop is None else stop
+    return piece(run, signal, start, stop) if signal in set(run.signals) else np.zeros(stop - start)
 
 
 def film_clearance(run: RunLike, film: str = "") -> float | None:
     """The clearance in m of a film by its name, or else that of all; None if the run does not say it."""
     lengths = run.references
     return lengths.get(joined("clearance_m", film), lengths.get("clearance_m"))
+
+
+def samples_about(run: RunLike, begin_s: float, end_s: float) -> tuple[int, int]:
+    """(start, stop) of the samples, at even times, from the one before begin_s to the one after end_s."""
+    count = len(run)
+    first, last = (float(piece(run, TIME, place, place + 1)[0]) for place in (0, count - 1))
+    step = (last - first) / max(count - 1, 1)
+    if not step > 0.0:
+        return 0, count
+    start, stop = int((begin_s - first) / step) - 1, int((end_s - first) / step) + 3
+    return min(max(0, start), max(0, count - 2)), min(max(2, stop), count)
+
+
+def speed_at(run: RunLike, t_s: float) -> float:
+    """The rotor speed in Hz at a time."""
+    where = samples_about(run, t_s, t_s)
+    return float(np.interp(t_s, piece(run, TIME, *where), piece(run, "speed_Hz", *where)))
+
+
+def critical_speeds(run: RunLike) -> list[float] | None:
+    """Those of the linearised machine in Hz, ascending; None if the run does not know them."""
+    if CRITICAL_SPEEDS not in run.references:
+        return None
+    numbers = range(1, int(run.references[CRITICAL_SPEEDS]) + 1)
+    known = (run.references.get(f"{CRITICAL_SPEED}_{number}_Hz") for number in numbers)
+    return sorted(speed for speed in known if speed is not None)
 
 
 def clearance_steps(run: RunLike) -> list[float]:

@@ -9,19 +9,17 @@ of the frequency ends a ridge and begins another one.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
-from scipy.fft import next_fast_len
-from scipy.signal import find_peaks
-from scipy.signal.windows import hann
 
-Values = NDArray[np.float64]
-Motion = NDArray[np.complex128]
+from frbcli.analysis import signals
+from frbcli.analysis.peaks import local_maxima
+from frbcli.analysis.signals import PIECE, Motion, RingSpeed, RunLike, SignalOf, Values
+from frbcli.analysis.windows import fast_length, hann
+
 Side = Literal["inner", "outer"]
 
 WINDOW_s = 0.1  # tells frequencies 20 Hz apart, and is short against a run-up of some seconds
@@ -70,22 +68,24 @@ class _Ridge:
         self.amplitudes.append(amplitude)
 
 
-def find_whirls(
-    time_s: Values, motion: Motion, speed_Hz: Values, ring_Hz: Values, settled_s: float = 0.0, cut_short: bool = False
-) -> tuple[Whirl, ...]:
-    """The whirls of a journal in the order of their beginning.
+def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) -> tuple[Whirl, ...]:
+    """The whirls of the journal in a floating ring bearing, in the order of their beginning.
 
-    motion (n,): x + iy of the journal over C_i + C_o at even times (n,), with the speeds (n,) of rotor and ring. A
-    whirl must outlast settled_s, when the run has settled; cut_short: one that the end of the run cuts off need not.
-    Of each film the strongest whirl counts: a weaker one ends where it is overtaken.
+    room: C_i + C_o in m, which amplitudes are relative to. A whirl must outlast settled_s, when the run has settled;
+    one that contact cuts off need not. Of each film the strongest whirl counts: a weaker one ends where it is
+    overtaken.
     """
-    step = float(time_s[-1] - time_s[0]) / max(len(time_s) - 1, 1)
+    count, cut_short = len(run), run.status == "contact"
+    ends = [signals.piece(run, "time_s", place, place + 1) for place in (0, count - 1)] if count > 1 else []
+    step = float(ends[1][0] - ends[0][0]) / (count - 1) if ends else 0.0
     width, hop = (round(length / step) if step > 0.0 else 0 for length in (WINDOW_s, HOP_s))
-    if hop < 1 or len(time_s) < 2 * width:
+    if hop < 1 or count < 2 * width:
         return ()
-    middle = np.arange(0, len(time_s) - width + 1, hop) + width // 2
-    time, speed, ring = time_s[middle], speed_Hz[middle], ring_Hz[middle]
-    ridges = [r for r in _follow(_peaks(motion, width, hop, step, SYNCHRONOUS * speed)) if max(r.amplitudes) >= BEGINS]
+    middle = np.arange(0, count - width + 1, hop) + width // 2
+    columns = (SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"), RingSpeed(run, name))
+    time, speed, ring = (signals.samples(column, middle) for column in columns)
+    seen = _windows(run, name, room, width, hop)
+    ridges = [r for r in _follow(_peaks(seen, width, step, SYNCHRONOUS * speed)) if max(r.amplitudes) >= BEGINS]
     frequencies, amplitudes = _table(ridges, len(middle))
     sides = [_side(row, ring) for row in frequencies]
     whirls = []
@@ -155,20 +155,28 @@ def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
     return names
 
 
+def _windows(run: RunLike, name: str, room: float, width: int, hop: int) -> Iterator[Motion]:
+    """The motion (width,) of a journal over its room in each window, read many windows at a time."""
+    starts = range(0, len(run) - width + 1, hop)
+    at_a_time = max(1, PIECE // hop)
+    for group in (starts[first : first + at_a_time] for first in range(0, len(starts), at_a_time)):
+        motion = signals.motion_of(run, "journal", name, group[0], group[-1] + width) / room
+        yield from (motion[start - group[0] : start - group[0] + width] for start in group)
+
+
 def _peaks(
-    motion: Motion, width: int, hop: int, step: float, highest_Hz: Values
+    motions: Iterable[Motion], width: int, step: float, highest_Hz: Values
 ) -> Iterator[list[tuple[float, float]]]:
     """Frequency in Hz and amplitude of the peaks of each forward spectrum, up to a frequency, the strongest first."""
-    window = hann(width, sym=False)
+    window = hann(width)
     window /= window.sum()
-    padded = next_fast_len(PADDING * width)
+    padded = fast_length(PADDING * width)
     line = 1.0 / (padded * step)
     kept = min(padded // 2, int(float(np.max(highest_Hz)) / line) + 2)
-    for seen, highest in zip(sliding_window_view(motion, width)[::hop], highest_Hz, strict=True):
+    for seen, highest in zip(motions, highest_Hz, strict=True):
         level = np.abs(np.fft.fft((seen - seen @ window) * window, padded)[:kept])
-        found, _ = find_peaks(level, height=max(ENDS, SIDE_LOBES * float(level.max())))
         peaks = []
-        for i in found:
+        for i in local_maxima(level, max(ENDS, SIDE_LOBES * float(level.max()))):
             left, here, right = level[i - 1 : i + 2]
             place = (i + 0.5 * (left - right) / (left - 2.0 * here + right)) * line
             if SLOWEST / (width * step) <= place <= highest:

@@ -1,9 +1,9 @@
-"""`frb waterfall`: the spectra of a run over time or rotor speed."""
+"""`frb waterfall`: the spectra of a run over time or rotor speed, or its amplitudes by order."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,17 +12,45 @@ from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside
 
 if TYPE_CHECKING:
+    from frbcli.analysis.order_tracking import OrderTrack
     from frbcli.analysis.spectrum import Direction
     from frbcli.plot.waterfall import Over
+
+MICRO = 1e6
+
+
+class Orders(click.ParamType[tuple[float, ...]]):
+    """Multiples of the rotor speed, separated by commas."""
+
+    name = "orders"
+
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        if isinstance(value, tuple):
+            return value
+        try:
+            return tuple(float(number) for number in str(value).split(","))
+        except ValueError:
+            self.fail(f"{value} is no list of numbers, such as 1,0.5.", param, ctx)
 
 
 @click.command()
 @click.argument("run_file", metavar="RUN.h5", type=RUN)
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-waterfall.png]")
 @click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME, disk_NAME.")
-@click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
+@click.option(
+    "--order",
+    "orders",
+    metavar="1,0.5",
+    type=Orders(),
+    help="Amplitudes by multiples of the rotor speed in place of spectra: no ramp smears them.",
+)
+@click.option(
+    "--over", type=click.Choice(["time", "speed"]), help="The axis. [time; speed with --order]"
+)
 @click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
-@click.option("--window", type=SECONDS, default="0.2 s", show_default=True, help="Length of one spectrum.")
+@click.option("--window", type=SECONDS, help="Length of one spectrum. [as the ramp asks for, up to 0.2 s]")
 @click.option(
     "--direction",
     type=click.Choice(["x", "y", "forward"]),
@@ -30,38 +58,66 @@ if TYPE_CHECKING:
     show_default=True,
     help="One coordinate, or the motion that turns with the rotor.",
 )
-@click.option("--log", is_flag=True, help="Logarithmic frequency.")
+@click.option("--log", is_flag=True, help="Logarithmic frequency; with --order amplitude.")
 @output_options
 def command(
     run_file: Path,
     output: Path | None,
     signal: str,
-    over: Over,
+    orders: tuple[float, ...] | None,
+    over: Over | None,
     cascade: bool,
-    window: float,
+    window: float | None,
     direction: Direction,
     log: bool,
     terminal: Terminal,
 ) -> None:
-    """Draw the spectra of RUN.h5 in dB relative to the clearance, over time or rotor speed."""
+    """Draw the spectra of RUN.h5 in dB relative to the clearance, over time or rotor speed; or, with --order, its
+    amplitudes by order."""
     from frbcli.plot.style import check_picture
-    from frbcli.plot.waterfall import waterfall_figure
     from frbcli.results.store import read_run
 
-    target = output or beside(run_file, "-waterfall.png")
+    if orders is not None and (cascade or window is not None):
+        raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
+    target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_picture(target)
     run = read_run(run_file)
-    draw_wanted(
-        terminal, lambda: waterfall_figure(run, over, signal, cascade, window, direction, log), target, "waterfall"
-    )
-    terminal.emit(
-        {
-            "command": "waterfall",
-            "run": run_file,
-            "output": target,
-            "signal": signal,
-            "over": over,
-            "direction": direction,
-            "window_s": window,
-        }
-    )
+    told: dict[str, Any]
+    if orders is None:
+        from frbcli.plot.waterfall import reading, run_spectra, waterfall_figure
+
+        axis: Over = over or "time"
+        found = run_spectra(run, signal, window, direction)
+        draw_wanted(
+            terminal,
+            lambda: waterfall_figure(run, axis, signal, cascade, window, direction, log, found),
+            target,
+            "waterfall",
+        )
+        terminal.result(reading(found))
+        told = {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
+    else:
+        from frbcli.analysis.order_tracking import order_tracks
+        from frbcli.plot.orders import orders_figure
+
+        axis = over or "speed"
+        tracks = order_tracks(run, orders, signal)
+        draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, direction, log), target, "orders")
+        told = {"orders": [_largest(track, direction) for track in tracks]}
+        for row in told["orders"]:
+            most = f"{MICRO * row['amplitude_max_m']:.3g} um at {row['speed_Hz']:.1f} Hz"
+            terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
+    document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
+    terminal.emit({**document, "direction": direction, **told})
+
+
+def _largest(track: OrderTrack, direction: Direction) -> dict[str, float]:
+    """Where the motion of an order is largest."""
+    amplitude = track.amplitude(direction)
+    at = int(amplitude.argmax())
+    return {
+        "order": track.order,
+        "amplitude_max_m": float(amplitude[at]),
+        "t_s": float(track.time_s[at]),
+        "speed_Hz": float(track.speed_Hz[at]),
+    }

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
@@ -273,6 +272,7 @@ def _stable_again(points: Sequence[StabilityPoint]) -> str:
 
 def _crossing(case: Case, system: System, low: float, high: float) -> tuple[Threshold | None, str]:
     """The threshold between two speeds in Hz."""
+    from scipy.optimize import brentq  # runs, which need eigenvalues alone, need not wait for its import
 
     def at(speed: float) -> StabilityPoint:
         return _linearised(system, speed, resting_position(system, 2 * math.pi * speed))

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from frbcli.analysis.signals import joined, points
+from frbcli.analysis.signals import joined, located, points
 from frbcli.plot.envelope import curve
-from frbcli.plot.signals import MICRO, cut, heading, labels, located, motion
+from frbcli.plot.signals import MICRO, cut, heading, labels, motion
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.store import Run
 

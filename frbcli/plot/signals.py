@@ -9,8 +9,8 @@ from dataclasses import asdict
 from typing import Any
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.revolutions import SAMPLES_PER_REVOLUTION
-from frbcli.analysis.signals import bearing_clearance, joined, points
+from frbcli.analysis.revolutions import CELLS
+from frbcli.analysis.signals import bearing_clearance, joined, located, points
 from frbcli.case.load import LARGEST_FILE
 from frbcli.case.toml import TomlFault, parse
 from frbcli.plot.envelope import extremes
@@ -25,12 +25,6 @@ MOST_SEARCHED = 2_000_000  # samples in which events are sought
 _MODEL = re.compile("[a-z-]{1,40}")
 CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerfeld", "reynolds": "Reynolds",
                     "peeken": "Peeken", "elrod": "Elrod"}  # fmt: skip
-
-
-def located(run: Run, node: str) -> tuple[str, str]:
-    """Kind and name of "disk", "journal" (the first, if there are several) or "journal_NAME" of a bearing."""
-    kind, _, name = node.partition("_")
-    return kind, name or next(points(run.signals, kind), "")
 
 
 def motion(run: Run, node: str) -> tuple[Signal, Signal]:
@@ -133,4 +127,4 @@ def is_searchable(run: Run) -> bool:
     """Whether a run is short enough for a search for events, which takes it whole and at even angles of the rotor."""
     begin, end = ends(run)
     fastest = max(map(abs, extremes(run.signal(SPEED), 0, len(run))))
-    return len(run) <= MOST_SEARCHED and fastest * (end - begin) * SAMPLES_PER_REVOLUTION <= MOST_SEARCHED
+    return len(run) <= MOST_SEARCHED and fastest * (end - begin) * CELLS <= MOST_SEARCHED

@@ -6,7 +6,6 @@ Figures are made without pyplot: nothing is kept in global state, and no window 
 from __future__ import annotations
 
 import io
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -125,8 +124,7 @@ def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
     content = io.BytesIO()
     suffix = path.suffix.lower()
     try:
-        with styled(), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "Glyph")  # a letter that no font has is drawn as a box
+        with styled():
             figure.savefig(content, dpi=dpi, format=suffix[1:], metadata=FORMATS[suffix])
     except (OSError, ValueError) as error:
         raise _refuse(path, f"cannot be drawn: {error}.", "") from error

@@ -15,17 +15,15 @@ from frbcli.plot.eccentricity import draw_eccentricity
 from frbcli.plot.envelope import curve
 from frbcli.plot.signals import ends, events, heading, is_searchable
 from frbcli.plot.style import BLACK, GREY, MOST_MARKED, MOST_NAMED, SKY, mark_times, new_figure, styled
-from frbcli.plot.waterfall import MOST_IN_WINDOW, draw_levels, level_label, run_spectra
+from frbcli.plot.waterfall import draw_levels, level_label, reading, run_spectra
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 
 SIGNAL = "journal"
-WINDOW_s = 0.2
-WINDOWS = 4  # a run shorter than this many windows gets shorter ones
 FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
 
-NAMES = {"critical-speed": "critical speed", "onset": "onset of whirl", "offset": "end of whirl", "lock-in": "lock-in",
-         "contact": "contact", "clearance-step": "clearance step"}
+NAMES = {"critical-speed": "critical speed", "self-excited": "self-excited", "onset": "onset of whirl",
+         "offset": "end of whirl", "lock-in": "lock-in", "contact": "contact", "clearance-step": "clearance step"}
 
 
 def summary_figure(run: Run) -> Figure:
@@ -49,11 +47,12 @@ def summary_figure(run: Run) -> Figure:
         if 1 < len(above.get_lines()) <= MOST_NAMED:
             above.legend(loc="upper right", ncols=2, frameon=True, framealpha=0.85, edgecolor="none")
         if len(run) >= FEWEST_SAMPLES:
-            window = min(WINDOW_s, (end - begin) / WINDOWS, (end - begin) / (len(run) - 1) * MOST_IN_WINDOW)
-            mesh = draw_levels(middle, run, SIGNAL, run_spectra(run, SIGNAL, window, "x"), "time")
+            found = run_spectra(run, SIGNAL, None, "x")
+            mesh = draw_levels(middle, run, SIGNAL, found, "time")
             bar = figure.colorbar(mesh, ax=[above, middle, below], location="bottom", shrink=0.6, pad=0.02,
                                   extend="both", aspect=40)  # fmt: skip
-            bar.set_label(level_label(run, SIGNAL).replace("amplitude", "amplitude of the journal"))
+            label = level_label(run, SIGNAL).replace("amplitude", "amplitude of the journal")
+            bar.set_label(f"{label}; {reading(found)}")
             bar.outline.set_visible(False)
         _draw_speed(below, run)
         for axes in (above, middle):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+import itertools
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, ScalarFormatter
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import joined, points
-from frbcli.analysis.spectrum import Direction, Spectrogram
+from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
+from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.plot.cascade import draw_cascade
 from frbcli.plot.envelope import at_times, extremes
-from frbcli.plot.signals import bearing_of, clearance, ends, heading, located, motion
+from frbcli.plot.signals import bearing_of, clearance, ends, heading, motion
 from frbcli.plot.style import LEVEL_MAP, new_figure, styled
 from frbcli.results.container import refuse
 from frbcli.results.records import SPEED, TIME
@@ -31,12 +31,12 @@ LEVELS_dB = (-60.0, 0.0)  # a thousandth of the clearance, and the clearance
 ABOVE_SYNCHRONOUS = 1.2  # how far the frequency axis goes, relative to the highest rotor speed
 LOWEST_LOG_Hz = 10.0
 FEWEST_LINES = 8  # lines of an unpadded spectrum that the frequency axis shows of a rotor that hardly turns
-OVERLAP = 0.9  # of a window and the next one
 MOST_IN_WINDOW = 2**18  # samples
-MOST_AT_ONCE = 300_000  # samples, or one window
-ROUNDING = 1e-9  # by which the frequencies of pieces may differ
-MOST_COLUMNS, MOST_LINES = 1200, 1500  # of a map of levels
+MOST_VALUES = 3e6  # of a map of levels
 TURNING = 1e-3  # share of the highest speed per window that is a change of speed
+FEWEST_COLUMNS, COLUMNS = 50, 2000  # spectra: the latter are more than a picture has columns of pixels
+SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
+TOLD_dB = 0.1  # 1 %: what the synchronous line reads low less than that is not told
 
 
 def waterfall_figure(
@@ -44,26 +44,29 @@ def waterfall_figure(
     over: Over = "time",
     signal: str = "journal",
     cascade: bool = False,
-    window_s: float = 0.2,
+    window_s: float | None = None,
     direction: Direction = "x",
     log: bool = False,
+    found: Spectrogram | None = None,
 ) -> Figure:
     """Levels in dB relative to the clearance, of a floating ring to C_i + C_o, with the rotor speed and the frequencies
     of free whirls drawn in: half of it, or (omega_R + omega_F)/2 and omega_F/2.
 
     over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
     "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum, behind each other; window_s
-    and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency.
+    (None: as the ramp asks for) and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency;
+    found: the spectra of `run_spectra`, where they are known already.
 
     Raises InputError if the run does not have the signal or is shorter than a window.
     """
-    found = run_spectra(run, signal, window_s, direction)
+    found = found or run_spectra(run, signal, window_s, direction)
     parts = _parts(run, found) if over == "speed" else [("", found)]
     point = joined(*located(run, signal)).replace("_", " ")
     what = f"{'forward motion' if direction == 'forward' else direction} of the {point}"
     title, subtitle = heading([run])
+    told = f"{subtitle}, {what}\n{reading(found)}" if subtitle else f"{what}, {reading(found)}"
     with styled():
-        figure = new_figure(title, ", ".join(text for text in (subtitle, what) if text), height=4.0 + 0.6 * len(parts))
+        figure = new_figure(title, told, height=4.0 + 0.6 * len(parts))
         panels = figure.subplots(1, len(parts), squeeze=False, sharey=not cascade)[0]
         for axes, (name, part) in zip(panels, parts, strict=True):
             axes.set_title(name)
@@ -78,61 +81,38 @@ def waterfall_figure(
     return figure
 
 
-def run_spectra(run: Run, signal: str, window_s: float, direction: Direction) -> Spectrogram:
-    """The spectra of a run up to the frequency that its pictures show; a long run is read in pieces. Where there are
-    more spectra or lines than a picture can show, each is the highest level of some neighbors."""
-    columns = [run.signal(TIME), *motion(run, signal), run.signal(SPEED)]
+def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direction) -> Spectrogram:
+    """The spectra of a run up to the frequency that its pictures show."""
+    time_s, x, y, speed = run.signal(TIME), *motion(run, signal), run.signal(SPEED)
     begin, end = ends(run)
-    count, step = len(run), (end - begin) / (len(run) - 1)
-    if window_s > MOST_IN_WINDOW * step:
+    if window_s is None:
+        window_s = window_length(time_s, speed, _apart(run, signal))
+    if window_s > MOST_IN_WINDOW * (end - begin) / (len(run) - 1):
         raise refuse(run.path, f"has more than {MOST_IN_WINDOW} samples in a window.", "Shorten --window.")
-    window = max(round(window_s / step), 1) if window_s > 0.0 else 1
-    hop = max(1, round(window * (1.0 - OVERLAP)))
-    lead = -(window // 2) % hop  # from the first sample to the first window
-    together = math.ceil(((count - lead - window) // hop + 1) / MOST_COLUMNS) if count > lead + window else 1
-    at_once = hop * together * max(1, (MOST_AT_ONCE - window) // (hop * together))
-    highest = max(ABOVE_SYNCHRONOUS * extremes(columns[-1], 0, count)[1], FEWEST_LINES / max(window_s, 1e-9))
+    highest = max(ABOVE_SYNCHRONOUS * extremes(speed, 0, len(run))[1], FEWEST_LINES / max(window_s, 1e-9))
+    most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * window_s))))
     length = clearance(run, bearing_of(run, signal))
-    found = []
-    for first in range(0, max(count - lead - window, 0) + 1, at_once):
-        time_s, x, y, speed = (column[first : first + at_once - hop + lead + window] for column in columns)
-        part = spectra(time_s, x, y, speed, length, window_s, OVERLAP, highest * (1.0 + ROUNDING), direction)
-        found.append(_condensed(part, together))
-    return found[0] if len(found) == 1 else _joined(found)
+    return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)
 
 
-def _condensed(found: Spectrogram, together: int) -> Spectrogram:
-    """As many neighbors in time `together` as are given, and as few lines as a picture can show."""
-    lines = math.ceil(len(found.frequency_Hz) / MOST_LINES)
-    if lines == together == 1:
-        return found
-    row = np.arange(0, len(found.frequency_Hz), lines)
-    column = np.arange(0, len(found.time_s), together)
-
-    def highest(levels: Values) -> Values:
-        return np.asarray(np.maximum.reduceat(np.maximum.reduceat(levels, row, axis=0), column, axis=1))
-
-    def mean(places: Values, first: NDArray[np.int64]) -> Values:
-        return np.asarray(np.add.reduceat(places, first) / np.diff([*first, len(places)]))
-
-    return Spectrogram(
-        mean(found.time_s, column),
-        mean(found.speed_Hz, column),
-        mean(found.frequency_Hz, row),
-        highest(found.amplitude),
-        highest(found.level_dB),
-    )
+def reading(found: Spectrogram) -> str:
+    """How the spectra were made, and by how much the synchronous line reads low at the worst."""
+    low = float(np.max(found.low_dB, initial=0.0))
+    told = f": the line ω reads up to {low:.1f} dB low, --order 1 does not" if low >= TOLD_dB else ""
+    return f"window {1e3 * found.window_s:.3g} ms{told}"
 
 
-def _joined(found: Sequence[Spectrogram]) -> Spectrogram:
-    """Spectra of pieces of a run, which follow each other."""
-    return Spectrogram(
-        np.concatenate([part.time_s for part in found]),
-        np.concatenate([part.speed_Hz for part in found]),
-        found[0].frequency_Hz,
-        np.concatenate([part.amplitude for part in found], axis=1),
-        np.concatenate([part.level_dB for part in found], axis=1),
-    )
+def _apart(run: Run, signal: str) -> float | None:
+    """How far in Hz the lines are from each other that a picture has to part; None where no ring turns."""
+    bearing = bearing_of(run, signal)
+    if bearing not in points(run.signals, "ring"):
+        return None
+    places = np.unique(np.linspace(0, len(run) - 1, COLUMNS).round().astype(np.int64))
+    speed, ring = samples(run.signal(SPEED), places), samples(RingSpeed(run, bearing), places)
+    slow = np.flatnonzero(speed >= FROM_SPEED * np.max(speed))[0]
+    lines = sorted((float(speed[slow]), 0.5 * float(speed[slow] + ring[slow]), 0.5 * float(ring[slow])))
+    gaps = [above - below for below, above in itertools.pairwise(lines)]
+    return min((gap for gap in gaps if gap > SAME_LINE * lines[-1]), default=None)
 
 
 def level_label(run: Run, signal: str) -> str:
@@ -210,9 +190,15 @@ def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
     for name, chosen in (("run-up", change > least), ("run-down", change < -least)):
         if np.count_nonzero(chosen) > 1:
             order = np.flatnonzero(chosen)[np.argsort(found.speed_Hz[chosen])]
-            levels, amplitude = found.level_dB[:, order], found.amplitude[:, order]
-            speed = found.speed_Hz[order]
-            parts.append((name, Spectrogram(found.time_s[order], speed, found.frequency_Hz, amplitude, levels)))
+            part = replace(
+                found,
+                time_s=found.time_s[order],
+                speed_Hz=found.speed_Hz[order],
+                amplitude=found.amplitude[:, order],
+                level_dB=found.level_dB[:, order],
+                low_dB=found.low_dB[order],
+            )
+            parts.append((name, part))
     if not parts:
         raise refuse(run.path, "was made at constant speed.", "Draw its waterfall over time.")
     return [("", parts[0][1])] if len(parts) == 1 else parts

@@ -40,6 +40,7 @@ __all__ = ["Header", "Run", "RunWriter", "Signal", "check_output", "read_run"]
 
 INTERRUPTED = "interrupted"
 CLEARANCE_STEP = "clearance_step"  # begins the names of the references that are times of one
+CRITICAL_SPEEDS, CRITICAL_SPEED = "critical_speeds", "critical_speed"  # how many there are; begins the name of each
 TEXTS = ("title", "command", "case_name", "case_text", "status")
 RECORDS = ("versions", "references", "cost", "error", "events")  # kept as JSON text
 LARGEST_STATE = 128 * 1024**2  # bytes of a checkpoint; cells have some hundred thousand numbers
@@ -174,13 +175,19 @@ class RunWriter:
             self._chunks[name].append(column)
 
     def checkpoint(
-        self, state: Mapping[str, NDArray[Any]], cost: Mapping[str, Any], error: Mapping[str, Any], t: float
+        self,
+        state: Mapping[str, NDArray[Any]],
+        cost: Mapping[str, Any],
+        error: Mapping[str, Any],
+        t: float,
+        events: Sequence[dict[str, Any]] = (),
     ) -> None:
-        """Write the file with all samples so far and the state at time t (s) from which the run can go on."""
+        """Write the file with all samples so far, the events in them where they are known, and the state at time t (s)
+        from which the run can go on."""
         self._state = {name: np.array(values) for name, values in state.items()}
         self._state_samples = self.samples
         self._cost, self._error, self._t_end_s = dict(cost), dict(error), float(t)
-        self._write(INTERRUPTED, [])
+        self._write(INTERRUPTED, list(events))
 
     def finish(
         self,

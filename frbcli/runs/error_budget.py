@@ -35,7 +35,7 @@ LASTING = 3.0
 # where the run was not made on fewer cells.
 FILM_REACH, CELL_REACH = 2.0, 3.0
 BEFORE_WHIRL = 0.85  # of the time of its event: a whirl has grown for a while before it is seen
-PARTING = ("onset", "contact")  # from there on two runs differ in phase, however exact they are
+PARTING = ("onset", "self-excited", "contact")  # from there on two runs differ in phase, however exact they are
 
 
 def error_budget(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
-from frbcli.results.store import CLEARANCE_STEP, Header
+from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.scene.segments import Stretch
 from frbcli.scene.system import System
 
@@ -26,8 +26,11 @@ def ring_names(system: System) -> list[str]:
     return [f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name in outer]
 
 
-def header(command: str, case: Case, stretches: Sequence[Stretch]) -> Header:
-    """The head of the file of a run. Its clearances, which amplitudes refer to, are the first ones."""
+def header(
+    command: str, case: Case, stretches: Sequence[Stretch], critical_speeds: Sequence[float] | None = None
+) -> Header:
+    """The head of the file of a run. Its clearances, which amplitudes refer to, are the first ones; critical_speeds: of
+    the linearised machine in Hz, ascending, None if they are not known."""
     system = stretches[0].system
     lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
     eccentricities = [named("eccentricity", name) for name in system.names]
@@ -45,7 +48,9 @@ def header(command: str, case: Case, stretches: Sequence[Stretch]) -> Header:
         | {package: _version(package) for package in PACKAGES},
         references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
-        | {f"{CLEARANCE_STEP}_{number}_s": stretch.start for number, stretch in enumerate(stretches[1:], start=1)},
+        | {f"{CLEARANCE_STEP}_{number}_s": stretch.start for number, stretch in enumerate(stretches[1:], start=1)}
+        | ({} if critical_speeds is None else {CRITICAL_SPEEDS: float(len(critical_speeds))})
+        | {f"{CRITICAL_SPEED}_{number}_Hz": speed for number, speed in enumerate(critical_speeds or (), start=1)},
     )
 
 

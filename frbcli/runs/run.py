@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
 from frbcli.case.load import describes
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, RunFileError
+from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.container import refuse
 from frbcli.results.records import untold
 from frbcli.results.store import Run, RunWriter, check_output, read_run
@@ -20,7 +21,7 @@ from frbcli.runs.header import header
 from frbcli.runs.interrupt import held_back
 from frbcli.runs.march import March, Progress
 from frbcli.scene.plan import make_plan
-from frbcli.scene.segments import make_stretches
+from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import run_down_profile, run_up_profile
 from frbcli.solve.restored import WrongCheckpoint
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
@@ -82,7 +83,7 @@ def _run(
             raise refuse(earlier.path, problem, "Remove it, or give another --output.") from None
         writer = RunWriter.resume(output)
     else:
-        writer = RunWriter(output, header(command, case, stretches))
+        writer = RunWriter(output, header(command, case, stretches, _critical_speeds(stretches)))
     march.compile()
     return _go(march, writer, observe)
 
@@ -107,10 +108,10 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
         # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
-        checkpoint(march.error(march.time) if status == RUNNING else march.error_so_far())
-    if status == RUNNING:
-        return writer.so_far()
-    from frbcli.analysis.events import find_events  # scipy.signal takes longer to import than a short run
+        checkpoint(march.error_so_far())
+        if status == RUNNING:
+            return _interrupted(march, writer)
+    from frbcli.analysis.events import find_events  # what a run asks analysis for, when it ends
 
     ended = STATUS.get(status, "not-converged")
     if status != FINISHED and march.starves:
@@ -133,6 +134,23 @@ def is_interrupted(path: Path) -> bool:
     except RunFileError:
         return False
     return run.status == "interrupted" and len(run) > 0
+
+
+def _interrupted(march: March, writer: RunWriter) -> Run:
+    """The run so far, with its events and its error until the first whirl, as far as that needs no other run."""
+    from frbcli.analysis.events import find_events
+
+    events = [asdict(event) for event in find_events(writer.so_far())]
+    error = march.error(quiet_until(events, march.time))
+    writer.checkpoint(march.snapshot(), march.cost(), error, march.time, events)
+    return writer.so_far(events=events)
+
+
+def _critical_speeds(stretches: Sequence[Stretch]) -> tuple[float, ...] | None:
+    """Of the linearised machine in all stretches of a run, in Hz; None if those of one are not known."""
+    found = [linear_critical_speeds(stretch.case) for stretch in stretches]
+    known = [speeds for speeds in found if speeds is not None]
+    return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(found) else None
 
 
 def earlier_run(command: str, case: Case, path: Path) -> Run | None:

@@ -32,7 +32,10 @@ __all__ = ["Observer", "Sweep", "SweepPoint", "Workers", "check_table_format", "
 
 LOG, RUNS = "sweep.jsonl", "runs"
 TABLE_FORMATS = ("csv", "parquet")
-EVENTS = {"runup": ("critical-speed", "onset", "offset", "lock-in", "contact"), "stability": ("threshold",)}
+EVENTS = {
+    "runup": ("critical-speed", "self-excited", "onset", "offset", "lock-in", "contact"),
+    "stability": ("threshold",),
+}
 # decisions of a plan that choose the kernels
 COMPILED_FOR = ("bearings", "theory", "cavitation", "coupling", "film", "integrator")
 WARM_UP_s = 1e-3

@@ -1,0 +1,70 @@
+"""Peaks of a curve, how far each stands out of it, and stretches in which it is high."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Values = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A local maximum. place: its sample; prominence: how far it stands out of the higher of its two sides, each of
+    which reaches to the next higher sample or to the end of the curve; before, after: the last and the first sample on
+    its flanks that are at most half of the prominence below it, so to say half-way up."""
+
+    place: int
+    prominence: float
+    before: int
+    after: int
+
+
+def local_maxima(values: Values, least: float = -np.inf) -> NDArray[np.intp]:
+    """Samples of `values` (n,) of at least this height that are higher than both neighbours."""
+    inner = values[1:-1]
+    return np.flatnonzero((inner > values[:-2]) & (inner >= values[2:]) & (inner >= least)) + 1
+
+
+def prominent_peaks(values: Values, least: float) -> list[Peak]:
+    """The peaks of `values` (n,) with at least this prominence, which is greater than zero."""
+    if len(values) < 3:
+        return []
+    found = []
+    for place in local_maxima(values, float(np.min(values)) + least):
+        height = values[place]
+        left, right = _foot(values[:place][::-1], height), _foot(values[place + 1 :], height)
+        prominence = float(height - max(left, right))
+        if prominence >= least:
+            half = height - 0.5 * prominence
+            before = place - 1 - int(np.argmax(values[:place][::-1] <= half))
+            after = place + 1 + int(np.argmax(values[place + 1 :] <= half))
+            found.append(Peak(int(place), prominence, before, after))
+    return found
+
+
+def _foot(side: Values, height: float) -> float:
+    """The lowest value of a side (n,) of a peak, seen from the peak, before it rises above the peak."""
+    higher = side > height
+    end = int(np.argmax(higher)) if higher.any() else len(side)
+    return float(side[:end].min(initial=height))
+
+
+def stretches(amplitude: Values, begins: float, ends: float, pause: int) -> Iterator[tuple[int, int]]:
+    """First and one past the last sample of each stretch above `begins`, where dips shorter than `pause` do not count.
+
+    A stretch must fall below `ends` to be over, and counts to where it last was above `begins`.
+    """
+    above = np.flatnonzero(amplitude >= begins)
+    if len(above) == 0:
+        return
+    low = np.concatenate([[0], np.cumsum(amplitude < ends)])
+    gaps = np.diff(above)
+    breaks = np.flatnonzero((gaps > pause) & (low[above[1:]] > low[above[:-1]]))
+    firsts, lasts = above[np.concatenate([[0], breaks + 1])], above[np.concatenate([breaks, [len(above) - 1]])]
+    for first, last in zip(firsts, lasts, strict=True):
+        still_there = low[-1] == low[last]
+        yield int(first), len(amplitude) if still_there else int(last) + 1
