@@ -323,6 +323,7 @@ def test_a_case_that_cannot_be_read_is_the_fault_of_its_run(run: Run, text: str)
         model(replace(run, case_text=text))
 
 
+@pytest.mark.filterwarnings("ignore:Glyph")
 def test_letters_of_a_title_are_neither_mathematics_nor_orders_to_a_terminal(run: Run, tmp_path: Path) -> None:
     figure = eccentricity_figure([replace(run, title="costs 5 $, \\foo 7 $ \x1b[31m 漢")])
     save_figure(figure, tmp_path / "a.svg")
