@@ -54,3 +54,7 @@ class NotConverged(FrbError):
     """A numerical method found no solution; says what was tried and what to change."""
 
     exit_code = 3
+
+
+class OutOfMemory(FrbError):
+    """The process may not use as much memory as it needs."""

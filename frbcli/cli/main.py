@@ -1,6 +1,7 @@
 """`frb`: the table of commands, and the one place where errors become exit codes.
 
-Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug.
+Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug, or
+too little memory.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import click
 
 from frbcli import __version__
 from frbcli.cli.common import Terminal
+from frbcli.cli.memory import require_memory, reserve, shortage
 from frbcli.errors import Fault, FrbError, InputError, NotConverged
 
 # name: (module, one line of help); the module is imported when its command is called
@@ -34,6 +36,7 @@ COMMANDS = {
     "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),
 }
 
+LIGHT = ("cases", "schema")  # compute nothing
 INTERRUPTED = 130
 
 
@@ -46,6 +49,8 @@ class LazyGroup(click.Group):
     def get_command(self, _ctx: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
+        if name not in LIGHT:
+            require_memory()
         module, summary = COMMANDS[name]
         command: click.Command = importlib.import_module(module).command
         command.name = name
@@ -74,7 +79,9 @@ def main() -> None:
 
 def run(arguments: Sequence[str]) -> int:
     """Run `frb` with `arguments` and return its exit code. What is neither FrbError nor click's is a bug and passes."""
+    spare: bytearray | None = None
     try:
+        spare = reserve()
         code = frb.main(list(arguments), prog_name="frb", standalone_mode=False)
     except click.Abort:  # click turns KeyboardInterrupt into it
         click.echo("interrupted", err=True)
@@ -87,10 +94,20 @@ def run(arguments: Sequence[str]) -> int:
         _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
         return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
     except FrbError as error:
-        click.echo(f"frb: {error}", err=True)
-        _emit_error(arguments, error)
-        return error.exit_code
+        return _told(arguments, error)
+    except Exception as error:
+        del spare
+        short = shortage(error)
+        if short is None:
+            raise
+        return _told(arguments, short)
     return code if isinstance(code, int) else 0
+
+
+def _told(arguments: Sequence[str], error: FrbError) -> int:
+    click.echo(f"frb: {error}", err=True)
+    _emit_error(arguments, error)
+    return error.exit_code
 
 
 def _usage_fault(error: click.ClickException) -> Fault:
