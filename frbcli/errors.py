@@ -66,3 +66,7 @@ class NotConverged(FrbError):
 class FilmUnsolved(NotConverged):
     """A film found no solution; says what happened. What to change depends on the case, which a film does not know:
     `frbcli.scene.remedies.advised` adds it."""
+
+
+class OutOfMemory(FrbError):
+    """The process may not use as much memory as it needs."""

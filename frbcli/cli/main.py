@@ -1,7 +1,8 @@
 """`frb`: the table of commands, and the one place where errors become exit codes.
 
-Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug;
-`process.main` adds what streams that take no more make of 0. docs/command-line.md tells it of each command.
+Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug, or
+too little memory; `process.main` adds what streams that take no more make of 0. docs/command-line.md tells it of each
+command.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from collections.abc import Sequence
 import click
 
 from frbcli.cli.common import Terminal
+from frbcli.cli.memory import require_memory, reserve, shortage
 from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, printable
 from frbcli.version import __version__
 
@@ -37,6 +39,7 @@ COMMANDS = {
 }
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
+LIGHT = ("cases", "schema")  # compute nothing
 
 
 class LazyGroup(click.Group):
@@ -48,6 +51,8 @@ class LazyGroup(click.Group):
     def get_command(self, _ctx: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
+        if name not in LIGHT:
+            require_memory()
         module, summary = COMMANDS[name]
         command: click.Command = importlib.import_module(module).command
         command.name = name
@@ -71,7 +76,9 @@ def frb() -> None:
 
 def run(arguments: Sequence[str]) -> int:
     """Run `frb` with `arguments` and return its exit code. What is neither FrbError nor click's is a bug and passes."""
+    spare: bytearray | None = None
     try:
+        spare = reserve()
         code = frb.main(list(arguments), prog_name="frb", standalone_mode=False)
     except click.Abort:  # click turns KeyboardInterrupt into it
         click.echo("interrupted", err=True)
@@ -87,11 +94,15 @@ def run(arguments: Sequence[str]) -> int:
         return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
     except FrbError as error:
         return _tell_error(arguments, error)
-    except OSError as error:
-        if error.errno not in FULL:
+    except Exception as error:
+        del spare
+        if isinstance(error, OSError) and error.errno in FULL:  # temporary files, or numba's cache
+            where = "" if error.filename is None else f": {error.filename}"
+            return _tell_error(arguments, FrbError(f"{error.strerror}{where}"))
+        short = shortage(error)
+        if short is None:
             raise
-        where = "" if error.filename is None else f": {error.filename}"
-        return _tell_error(arguments, FrbError(f"{error.strerror}{where}"))  # temporary files, or numba's cache
+        return _tell_error(arguments, short)
     return code if isinstance(code, int) else 0
 
 

@@ -1,0 +1,65 @@
+"""Too little memory: told in one line, however the libraries put it.
+
+Where a process may use little memory (`ulimit -v`), libraries do not load, the compiler aborts, and linear algebra
+waits forever for its buffers. So what takes less than a usual run is told before any of them is loaded; what happens
+later, with an error of some kind of theirs, after it.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+
+from frbcli.errors import OutOfMemory
+
+try:
+    import resource
+except ImportError:  # Windows has no such limits
+    resource = None  # type: ignore[assignment]
+
+# Bytes of addresses that a usual run takes, and some more; each thread of linear algebra has buffers of its own.
+USUAL, PER_THREAD = 900_000_000, 50_000_000
+SUSPECT = 2.0  # times as much, below which an error of another kind may have come from too little memory
+RESERVE = 32_000_000  # bytes that are given free to tell what is wrong
+LONGEST_REASON = 150  # characters
+
+
+def require_memory() -> None:
+    """Raises OutOfMemory where this process may use less than a usual run takes."""
+    if _allowed() < _enough():
+        raise OutOfMemory(f"out of memory.{_limits()} Allow more.")
+
+
+def reserve() -> bytearray:
+    """Memory to be let go when none is left; nothing where nothing limits it. It is never touched, and takes none."""
+    return bytearray(RESERVE if _allowed() < math.inf else 0)
+
+
+def shortage(error: BaseException) -> OutOfMemory | None:
+    """What to tell if an error comes, or may come, from too little memory; None for any other."""
+    if not isinstance(error, MemoryError) and _allowed() > SUSPECT * _enough():
+        return None
+    reason = " ".join(str(error).split())[:LONGEST_REASON]
+    told = f"out of memory ({reason})." if reason else "out of memory."
+    remedy = "Allow more, or ask for less: fewer cells (accuracy.mesh), fewer samples (output.step)."
+    return OutOfMemory(f"{told}{_limits()} {remedy}")
+
+
+def _limits() -> str:
+    """What is allowed and what is taken, if anything limits it."""
+    if _allowed() == math.inf:
+        return ""
+    return f" This process may use {_allowed() / 1e6:.0f} MB (ulimit -v); a usual run takes {_enough() / 1e6:.0f} MB."
+
+
+def _enough() -> float:
+    """Bytes of addresses for a usual run on this machine."""
+    return USUAL + PER_THREAD * float(os.cpu_count() or 1)
+
+
+def _allowed() -> float:
+    """Bytes of addresses that this process may use, infinite where nothing limits them."""
+    if resource is None:
+        return math.inf
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    return math.inf if limit == resource.RLIM_INFINITY else float(limit)
