@@ -11,7 +11,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.results.container import refuse
 from frbcli.results.records import untold
-from frbcli.results.store import Run, RunWriter, check_output, read_run
+from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.plan import make_plan
 from frbcli.scene.stretches import make_stretches
@@ -57,15 +57,12 @@ def _run(
         return earlier
     stretches = make_stretches(case, plan)
     march = March(case, plan, stretches, profile)
+    head = header(command, case, stretches)
     if earlier is not None and earlier.checkpoint is not None:
-        try:
-            march.restore(earlier.checkpoint)
-        except WrongCheckpoint as error:
-            problem = f"cannot be resumed: of its checkpoint, {error}."
-            raise refuse(earlier.path, problem, "Remove it, or give another --output.") from None
+        _restore(march, earlier, head)
         writer = RunWriter.resume(output)
     else:
-        writer = RunWriter(output, header(command, case, stretches))
+        writer = RunWriter(output, head)
     march.compile()
     return _go(march, writer, observe)
 
@@ -104,6 +101,21 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
     error = march.error(until, on_fewer_cells(march, until, observe))
     cost = {**so_far.cost, "error_cpu_s": time.process_time() - began}
     return writer.finish(ended, cost, error, events, march.time)
+
+
+def _restore(march: March, earlier: Run, head: Header) -> None:
+    """Take up the checkpoint of an interrupted run. Raises RunFileError if the march cannot go on from it."""
+    problem = ""
+    if {name: signal.unit for name, signal in earlier.signals.items()} != dict(head.units):
+        problem = "it holds other signals than a run of this case"
+    elif earlier.checkpoint is not None:
+        try:
+            march.restore(earlier.checkpoint)
+            march.check_samples(earlier)
+        except WrongCheckpoint as error:
+            problem = f"of its checkpoint, {error}"
+    if problem:
+        raise refuse(earlier.path, f"cannot be resumed: {problem}.", "Remove it, or give another --output.")
 
 
 def _earlier(command: str, case: Case, path: Path) -> Run | None:

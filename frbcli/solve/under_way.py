@@ -12,6 +12,7 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.film.published.film import PublishedFilm
+from frbcli.results.store import Run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import Plan
@@ -27,7 +28,7 @@ from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.march import advance
 from frbcli.solve.oil import no_oil_comes_in, oil_passed
 from frbcli.solve.published_march import advance_published
-from frbcli.solve.restored import array, restored
+from frbcli.solve.restored import array, check_samples, restored
 from frbcli.solve.run_header import named, ring_names
 from frbcli.solve.start import first_state, rotor_data
 from frbcli.solve.state import (
@@ -199,6 +200,10 @@ class March:
         self._state, self._samples = state, samples
         self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
         self._cpu_s, self._wall_s = (float(value) for value in clock)
+
+    def check_samples(self, run: Run) -> None:
+        """Raise WrongCheckpoint unless the samples of a run are those before the state that was taken up of it."""
+        check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step)
 
     def cost(self) -> dict[str, float]:
         """What the run has cost so far, without compilation and without tabulating the films."""
