@@ -22,6 +22,7 @@ Over = Literal["time", "speed"]
 Span = tuple[float | None, float | None]
 
 STANDS = 1e-6  # of the highest speed per sample: less is no change of speed
+MANY = 200_000  # samples; of more, each may change the speed by less
 OVERLAID = 0.75  # opacity of curves that lie upon each other
 WORDS = {"time": "time in s", "speed": "rotor speed in Hz"}
 WAYS = {"run-up": 1.0, "run-down": -1.0}
@@ -57,7 +58,7 @@ def _ways(run: Run, over: Over, shown: tuple[int, int], column: Column) -> list[
     """The way up and the way down of the rotor speed with their thinned curves; all of a curve over time."""
     if over == "time":
         return [("", *curve(run, column, *shown))]
-    least = STANDS * max(map(abs, extremes(run.signal(SPEED), *shown)))
+    least = STANDS * min(1.0, MANY / (shown[1] - shown[0])) * max(map(abs, extremes(run.signal(SPEED), *shown)))
     counts = dict.fromkeys(WAYS, 0)
     for _, _, _, change in _changes(run, shown):
         for way, sign in WAYS.items():

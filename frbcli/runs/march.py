@@ -12,6 +12,7 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.film.published.film import PublishedFilm
+from frbcli.results.store import Run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
@@ -29,7 +30,7 @@ from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import System
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.published.time_loop import advance_published
-from frbcli.solve.restored import array, restored
+from frbcli.solve.restored import array, check_samples, restored
 from frbcli.solve.state import (
     CONTACT,
     FINISHED,
@@ -201,6 +202,10 @@ class March:
         self._state, self._samples = state, samples
         self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
         self._cpu_s, self._wall_s = (float(value) for value in clock)
+
+    def check_samples(self, run: Run) -> None:
+        """Raise WrongCheckpoint unless the samples of a run are those before the state that was taken up of it."""
+        check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step)
 
     def cost(self) -> dict[str, float]:
         """What the run has cost so far, without compilation and without tabulating the films."""

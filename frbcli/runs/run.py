@@ -13,7 +13,7 @@ from frbcli.errors import Fault, InputError, RunFileError
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.container import refuse
 from frbcli.results.records import untold
-from frbcli.results.store import Run, RunWriter, check_output, read_run
+from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.runs.error_budget import quiet_until
 from frbcli.runs.fewer_cells import on_fewer_cells
@@ -75,12 +75,9 @@ def _run(
         return earlier
     stretches = make_stretches(case, plan)
     march = March(case, plan, stretches, profile)
+    head = header(command, case, stretches)
     if earlier is not None and earlier.checkpoint is not None:
-        try:
-            march.restore(earlier.checkpoint)
-        except WrongCheckpoint as error:
-            problem = f"cannot be resumed: of its checkpoint, {error}."
-            raise refuse(earlier.path, problem, "Remove it, or give another --output.") from None
+        _restore(march, earlier, head)
         writer = RunWriter.resume(output)
     else:
         writer = RunWriter(output, header(command, case, stretches, _critical_speeds(stretches)))
@@ -134,6 +131,21 @@ def is_interrupted(path: Path) -> bool:
     except RunFileError:
         return False
     return run.status == "interrupted" and len(run) > 0
+
+
+def _restore(march: March, earlier: Run, head: Header) -> None:
+    """Take up the checkpoint of an interrupted run. Raises RunFileError if the march cannot go on from it."""
+    problem = ""
+    if {name: signal.unit for name, signal in earlier.signals.items()} != dict(head.units):
+        problem = "it holds other signals than a run of this case"
+    elif earlier.checkpoint is not None:
+        try:
+            march.restore(earlier.checkpoint)
+            march.check_samples(earlier)
+        except WrongCheckpoint as error:
+            problem = f"of its checkpoint, {error}"
+    if problem:
+        raise refuse(earlier.path, f"cannot be resumed: {problem}.", "Remove it, or give another --output.")
 
 
 def _interrupted(march: March, writer: RunWriter) -> Run:

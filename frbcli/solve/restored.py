@@ -7,14 +7,19 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from frbcli.results.records import SPEED as SPEED_SIGNAL
+from frbcli.results.records import TIME as TIME_SIGNAL
+from frbcli.results.signals import pieces
+from frbcli.results.store import Run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.solve.state import NUMBERS, OUTPUTS, PIECE, RUN_END, STEP, STEP_DONE, TIME, Array, State
 
+SAME = 1e-9  # share of the longest time or highest speed that is round-off
 LARGEST = 1e30  # of any number, in SI
 
 
 class WrongCheckpoint(Exception):
-    """A checkpoint is not one of this run; says why."""
+    """The checkpoint of a run is not one of this machine and its speeds; says why."""
 
 
 def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfile, output_step: float) -> State:
@@ -38,6 +43,20 @@ def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfil
     if not fits:
         raise WrongCheckpoint("its numbers do not fit together")
     return state
+
+
+def check_samples(run: Run, count: int, profile: SpeedProfile, output_step: float) -> None:
+    """Raise WrongCheckpoint unless a run had `count` samples at its checkpoint, at the times and speeds of this one."""
+    if run.checkpoint_samples != count:
+        raise WrongCheckpoint(f"it belongs to {count} samples, not {run.checkpoint_samples}")
+    fastest = float(np.max(np.abs(profile.speeds)))
+    for first, last in pieces(0, count):
+        times: Array = output_step * np.arange(first, last, dtype=np.float64)
+        speeds = profile.speed(times)
+        late = np.abs(run.read(TIME_SIGNAL, first, last) - times).max()
+        off = np.abs(2.0 * math.pi * run.read(SPEED_SIGNAL, first, last) - speeds).max()
+        if late > SAME * profile.end or off > SAME * fastest:
+            raise WrongCheckpoint("its samples have other times or speeds")
 
 
 def array(checkpoint: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Array:
