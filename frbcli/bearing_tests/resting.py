@@ -37,9 +37,9 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
     if _is_unfed(plan):
         cavity = plan.section.cavitation_pressure / BAR
         raise NotConverged(
-            f"no resting position under {load:g} N: in the long run Elrod's film carries 0 N, at any eccentricity. "
-            "Where its pressure is above the cavitation pressure it loses oil at its edges, and none comes in: "
-            f"neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
+            f"no resting position under {load:g} N: in the long run {plan.law.label}'s film carries 0 N, at any "
+            "eccentricity. Where its pressure is above the cavitation pressure it loses oil at its edges, and none "
+            f"comes in: neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
             "Raise the supply pressure, or supply it through axial grooves or bores."
         )
     target = np.array([0.0, load])
@@ -64,10 +64,10 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
 
 
 def _is_unfed(plan: KinematicPlan) -> bool:
-    """Whether a film by Elrod's model has no load in the long run: it keeps its oil, no edge can push any into it, and
-    there is no groove or hole that it could be carried away from."""
+    """Whether a film has no load in the long run, as by Elrod's model: it keeps its oil, no edge can push any into it,
+    and there is no groove or hole that it could be carried away from."""
     section = plan.section
-    if plan.cavitation != "elrod" or section.grooves or section.holes:
+    if not plan.law.empties or section.grooves or section.holes:
         return False
     highest = section.far_pressure if section.far == "groove" else 0.0
     return section.ambient_pressure + max(0.0, highest) <= section.cavitation_pressure

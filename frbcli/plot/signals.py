@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.signals import bearing_clearance, joined, points
+from frbcli.film.cavitation.table import label_of
 from frbcli.results.container import refuse
 from frbcli.results.store import Run
 
@@ -19,8 +20,6 @@ Values = NDArray[np.float64]
 
 DRAWN_POINTS = 4000  # more than a picture has columns of pixels
 MICRO = 1e6
-CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerfeld", "reynolds": "Reynolds",
-                    "peeken": "Peeken", "elrod": "Elrod"}  # fmt: skip
 
 
 def located(run: Run, node: str) -> tuple[str, str]:
@@ -81,7 +80,7 @@ def model(run: Run) -> str:
     except (tomllib.TOMLDecodeError, AttributeError):
         return ""
     cavitation = cavitation if isinstance(cavitation, str) else next(iter(cavitation), "")
-    words = [CAVITATION_NAMES.get(cavitation, cavitation)]
+    words = [label_of(cavitation)]
     if theory in ("short", "finite"):
         words.append(f"{theory} bearing")
     return ", ".join(word for word in words if word)
