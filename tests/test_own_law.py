@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,7 @@ from frbcli.case.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.compiled import compiled_cells, compiled_law
-from frbcli.film.cavitation.law import Law, Pressures, Scales
+from frbcli.film.cavitation.law import FilmOil, Law, Scales
 from frbcli.film.cavitation.table import SHIPPED, law_named
 from frbcli.scene.films import film_places, make_law
 from frbcli.scene.section import film_section
@@ -33,7 +34,7 @@ SHORT = ("speed.duration=2 ms", "speed.from=40 Hz", "speed.to=41 Hz", "accuracy.
 def default_of(law: type[Law]) -> Law:
     """A law with the defaults of its keys, in a film of table 4.1, where the journal is half way to the shell."""
     given = SimpleNamespace(**{key.name: key.default for key in law.keys})
-    return law.scaled(given, Pressures(200.0, 1e5, 1e5)).followed(0.5, 600.0)
+    return law.scaled(given, FilmOil(200.0, 1e5, 0.88e5, 850.0)).followed(0.5, 600.0)
 
 
 @pytest.fixture
@@ -48,8 +49,8 @@ def added() -> Iterator[None]:
 @pytest.mark.parametrize("law", SHIPPED)
 def test_every_law_has_a_compiled_form_of_its_own_that_is_the_plain_one(law: type[Law]) -> None:
     assert "cell" in vars(law) or law.name == "half-sommerfeld"  # which differs in what its loads take
-    own, scale = default_of(law), Scales(SCALES.reference, SCALES.cavitation, 500.0)
-    plain, compiled = own.cells(W, scale), compiled_cells(own, W, scale)
+    own = default_of(law)
+    plain, compiled = own.cells(W, SCALES), compiled_cells(own, W, SCALES)
     for name in (*RESULTS, *(f"{name}_slope" for name in RESULTS)):
         expected = getattr(plain, name)
         size = float(np.max(np.abs(expected)))
@@ -118,8 +119,9 @@ def example() -> str:
 
 @pytest.mark.usefixtures("added")
 def test_the_law_of_the_page_works_in_rotation_and_run_up(tmp_path: Path) -> None:
-    names: dict[str, Any] = {"__name__": "page"}
-    exec(example(), names)
+    page = tmp_path / "page.py"
+    page.write_text(example(), encoding="utf-8")
+    names = runpy.run_path(str(page))
     case, force = names["case"], np.array(names["force"])
     assert case.film.given("linear").depth == 5e3
     assert "film.linear.depth" in {value.key for value in values(case)}

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from frbcli.film.cavitation.law import Law, Pressures
+from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import label_of, laws
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.plot.style import COLOURS, GREY, Picture, new_figure, styled
@@ -66,7 +66,7 @@ def _draw_models(axes: Axes, case: Case) -> None:
     """All models whose oil fraction follows from the pressure, from no pressure to above p_cav."""
     cavity = case.oil.cavitation_pressure
     ratio = np.linspace(LEAST, WIDEST, POINTS)
-    over_cavity = Pressures(cavity, case.oil.ambient_pressure, cavity)
+    over_cavity = FilmOil(cavity, case.oil.ambient_pressure, cavity, case.oil.density)
     number = 0
     for law in laws():
         chosen = case.film.given(law.name)

@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.case.bearing import Bores, FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
-from frbcli.film.cavitation.law import Law, Pressures
+from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.grid import VolumeGrid, volume_grid
@@ -99,8 +99,8 @@ def turning(places: tuple[FilmPlace, ...], ring_count: int, half_speed: bool = F
 
 def make_law(case: Case, cavitation: str, section: Section) -> Law:
     """The law of a film; what it follows is of the centred journal at 1 rad/s. Raises KeyError if there is no such."""
-    pressures = Pressures(section.pressure_scale, section.ambient_pressure, section.cavitation_pressure)
-    return law_named(cavitation).scaled(case.film.given(cavitation), pressures)
+    oil = FilmOil(section.pressure_scale, section.ambient_pressure, section.cavitation_pressure, case.oil.density)
+    return law_named(cavitation).scaled(case.film.given(cavitation), oil)
 
 
 def channel_pulls(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:

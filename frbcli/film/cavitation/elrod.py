@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, Key, Law, Numbers, Pressures, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 BAR = 1e5
 
@@ -31,8 +31,8 @@ class Elrod(Law):
     empties = True
 
     @classmethod
-    def scaled(cls, given: Any, pressures: Pressures) -> Self:
-        return cls() if given.bulk_modulus is None else cls(given.bulk_modulus / pressures.scale)
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        return cls() if given.bulk_modulus is None else cls(given.bulk_modulus / oil.scale)
 
     @classmethod
     def legend(cls, given: Any) -> str:

@@ -32,13 +32,14 @@ class Scales(NamedTuple):
     ambient: float
 
 
-class Pressures(NamedTuple):
-    """Of a film, in Pa: scale, 12 eta / psi^2 in Pa s, which a pressure is divided by to be scaled; ambient and
-    cavitation pressure, absolute."""
+class FilmOil(NamedTuple):
+    """What a law may need of a film: scale, 12 eta / psi^2 in Pa s, which a pressure is divided by to be scaled;
+    ambient and cavitation pressure, absolute, in Pa; density of the full oil in kg / m^3."""
 
     scale: float
     ambient: float
     cavitation: float
+    density: float
 
 
 @dataclass(frozen=True)
@@ -103,9 +104,9 @@ class Law:
     compared: ClassVar[tuple[tuple[str, tuple[float, ...]], ...]] = ()
 
     @classmethod
-    def scaled(cls, given: Any, pressures: Pressures) -> Self:
-        """The law of one film from the values `given` for its keys, by attribute. What it follows in a film is that of
-        the centred journal at 1 rad/s, see follow."""
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        """The law of one film from the values `given` for its keys, by attribute, and from its oil. What it follows in
+        a film is that of the centred journal at 1 rad/s, see follow."""
         return cls()
 
     @staticmethod

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, Key, Law, Numbers, Pressures, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Peeken(Law):
     compared = (("bunsen", (0.1, 0.5, 1.0)),)  # air in oil has about 0.1
 
     @classmethod
-    def scaled(cls, given: Any, pressures: Pressures) -> Self:
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
         return cls(given.bunsen)
 
     @classmethod

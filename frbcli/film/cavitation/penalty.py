@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, Key, Law, Numbers, Pressures, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 PREFACTOR = 0.01  # a of (3.31)
 SLOWEST = 1.0  # rad/s: the dimensionless pressure refers to a speed that must not vanish
@@ -39,10 +39,10 @@ class Penalty(Law):
     tabulated = True
 
     @classmethod
-    def scaled(cls, given: Any, pressures: Pressures) -> Self:
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
         exponent = steepness_exponent(0.0)
         if given.pressure == "absolute":
-            return cls(PREFACTOR, exponent * pressures.scale / pressures.ambient, BY_ECCENTRICITY)
+            return cls(PREFACTOR, exponent * oil.scale / oil.ambient, BY_ECCENTRICITY)
         return cls(0.5 * PREFACTOR, 2.0 * exponent, BY_ECCENTRICITY_AND_SPEED)
 
     @property

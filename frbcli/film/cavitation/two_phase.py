@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, Key, Law, Numbers, Pressures, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 # theta'_0, the slope outside of the step. As published it makes the full film as compressible as a bulk modulus of
 # 1000 p_cav does; the unknown w needs none, so it may be chosen as small as one likes.
@@ -45,7 +45,7 @@ class TwoPhase(Law):
     cost = 1.2
 
     @classmethod
-    def scaled(cls, given: Any, pressures: Pressures) -> Self:
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
         return cls(given.steepness, whirl_steepness=given.whirl_steepness or STAYS)
 
     @classmethod
