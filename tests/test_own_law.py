@@ -128,13 +128,12 @@ def test_the_law_of_the_page_works_in_rotation_and_run_up(tmp_path: Path) -> Non
     alike = load_case("bearing-axial-groove", ["film.cavitation=two-phase", "film.two-phase.steepness=0.975"])
     expected = frbcli.rotation(alike).results[0].loads
     assert force == pytest.approx(expected.force, abs=0.02 * np.linalg.norm(expected.force))
-    settings = ("film.cavitation=linear", "film.linear.depth=0.05 bar", *SHORT)
+    settings = ("film.cavitation=linear", "film.linear.depth=1e-4 bar", *SHORT)
     run = frbcli.runup(load_case("axial-groove-two-phase", settings), tmp_path / "linear.h5")
-    steep = load_case("axial-groove-two-phase", ("film.two-phase.steepness=0.975", *SHORT))
-    other = frbcli.runup(steep, tmp_path / "two.h5")
+    other = frbcli.runup(load_case("axial-groove-two-phase", ("film.cavitation=elrod", *SHORT)), tmp_path / "elrod.h5")
     assert run.status == other.status == "finished"
     assert run["oil_fraction"][-1] < 1.0
-    assert run["eccentricity"] == pytest.approx(other["eccentricity"], rel=0.05)
+    assert run["eccentricity"] == pytest.approx(other["eccentricity"], abs=1e-3 * float(other["eccentricity"].max()))
     assert abs(run.error["oil_balance_relative"]) < 1e-9
 
 
