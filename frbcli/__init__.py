@@ -18,6 +18,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.case.load import load_case as load_case
     from frbcli.case.load import load_case_text as load_case_text
     from frbcli.case.schema import Case as Case
+    from frbcli.case.schema import add_law as add_law
+    from frbcli.case.schema import remove_law as remove_law
     from frbcli.case.shipped import shipped_cases as shipped_cases
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
@@ -35,14 +37,17 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.studies.sweep.sweep import sweep as sweep
 
 
-_PUBLIC = {
+_PUBLIC = {  # module, or module:attribute of another name
     "Case": "frbcli.case.schema",
     "Fault": "frbcli.errors",
     "FrbError": "frbcli.errors",
     "InputError": "frbcli.errors",
     "NotConverged": "frbcli.errors",
     "RunFileError": "frbcli.errors",
+    "CavitationLaw": "frbcli.film.cavitation.law:Law",
+    "CavitationKey": "frbcli.film.cavitation.law:Key",
     "accuracy": "frbcli.studies.accuracy",
+    "add_law": "frbcli.case.schema",
     "case_from_dict": "frbcli.case.load",
     "compare": "frbcli.studies.compare",
     "find_events": "frbcli.analysis.events",
@@ -52,6 +57,7 @@ _PUBLIC = {
     "natural_modes": "frbcli.linear.modes",
     "order_track": "frbcli.analysis.order_tracking",
     "read_run": "frbcli.results.store",
+    "remove_law": "frbcli.case.schema",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",
     "runup": "frbcli.runs.run",
@@ -69,7 +75,8 @@ __all__ = ["__version__", *_PUBLIC]
 def __getattr__(name: str) -> object:
     if name not in _PUBLIC:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(_PUBLIC[name]), name)
+    module, _, attribute = _PUBLIC[name].partition(":")
+    return getattr(importlib.import_module(module), attribute or name)
 
 
 def __dir__() -> list[str]:

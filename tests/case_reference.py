@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.schema import json_schema
+from frbcli.film.cavitation.table import SHIPPED
 
 PAGE = Path(__file__).parent.parent / "docs" / "case-file.md"
 
@@ -57,10 +58,7 @@ TABLES = {
     "[oil]": "Oil",
     "[oil.vogel]": "Vogel",
     "[film]": "FilmModel",
-    "[film.penalty]": "Penalty",
-    "[film.peeken]": "Peeken",
-    "[film.elrod]": "Elrod",
-    "[film.two-phase]": "TwoPhase",
+    **{f"[film.{law.name}]": law.__name__ for law in SHIPPED if law.keys},
     "[speed]": "SpeedProfile",
     "[motion]": "Motion",
     "[start]": "Start",

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from frbcli.film.cavitation.compiled import cell_law, law_code, wright_omega
+from frbcli.film.cavitation.compiled import LAW_NUMBERS, compiled_cells, wright_omega
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balances import FLOWS, SIDES, balances
 from frbcli.film.cells.block_cyclic import ENTRIES, solve_ring
@@ -22,12 +22,12 @@ from frbcli.film.cells.grid import volume_grid
 from frbcli.film.cells.newton_step import film_newton
 from frbcli.film.cells.plain.balance import Balance, Storage
 from frbcli.film.cells.plain.film import Motion, VolumeFilm
-from frbcli.film.cells.states import STATES, cell_states
+from frbcli.film.cells.states import STATES, cell_states, follow_law
 from frbcli.film.gap import Hole, Section, gap_height
 
 LAWS: dict[str, Law] = {
     "sommerfeld": Sommerfeld(),
-    "half-sommerfeld": Sommerfeld(clips=True),
+    "half-sommerfeld": HalfSommerfeld(),
     "reynolds": Reynolds(),
     "penalty": Penalty(0.01, 30.0),
     "peeken": Peeken(0.1),
@@ -55,11 +55,9 @@ def test_compiled_laws_are_the_plain_ones(law: Law) -> None:
     w = np.concatenate([np.linspace(-1.3, 0.4, 400), [-1e-9, 0.0, 1e-9]])
     scales = Scales(reference=900.0, cavitation=-60.0, ambient=500.0)
     plain = law.cells(w, scales)
-    kind, first, second = law_code(law)
-    names = ("pressure", "fraction", "source", "pressure_slope", "fraction_slope", "source_slope")
-    compiled = np.array([cell_law(kind, first, second, x, 900.0, -60.0, 500.0) for x in w]).T
-    for name, values in zip(names, compiled, strict=True):
-        expected = getattr(plain, name)
+    compiled = compiled_cells(law, w, scales)
+    for name in ("pressure", "fraction", "source", "pressure_slope", "fraction_slope", "source_slope"):
+        values, expected = getattr(compiled, name), getattr(plain, name)
         assert np.allclose(values, expected, rtol=1e-9, atol=1e-9 * np.max(np.abs(expected)) + 1e-300), name
 
 
@@ -115,7 +113,9 @@ def test_balances_are_the_plain_ones(law: Law, omega: float, ends: tuple[str, st
     data = volume_films([film])
     states, stencil, _, fields, flows = arrays()
     parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
-    cell_states(parts[0], parts[3], *law_code(law)[1:], 0.0, w, states)
+    numbers = np.empty(LAW_NUMBERS)
+    follow_law(parts[0], *motion.d, 0.0, 0.0, omega, numbers)
+    cell_states(parts[0], parts[3], numbers, 0.0, w, states)
     balances(*parts, states, *motion.d, omega, rate, past, 1e-4, 0.0, 0.0, 0.0, stencil, fields, flows)
     size = np.max(np.abs(residual))
     assert np.allclose(-fields[:, :, K], residual, rtol=1e-10, atol=1e-11 * size)

@@ -53,7 +53,7 @@ def system_of(case: Case, change: Callable[[Channel], Channel] = lambda channel:
     """The system of a case, its channels changed."""
     system = make_system(case, make_plan(case))
     channels = [change(channel) for channel in coupled_channels(case, system.volumes)]
-    data = volume_films(system.volumes, system.follows)
+    data = volume_films(system.volumes)
     return replace(system, films=with_channels(data, system.volumes, channels))
 
 

@@ -17,7 +17,7 @@ from frbcli.errors import InputError
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cells.frame import path_seen_from, seen_from, turned
 from frbcli.film.cells.grid import fitted_grid, volume_grid
 from frbcli.film.cells.openings import hole_area
@@ -272,7 +272,7 @@ def test_cavity_of_a_plain_film_is_carried_alike_in_the_journals_frame() -> None
     assert deviations[1] < 0.5 * deviations[0]  # it is of the cells, not of the frame
 
 
-@pytest.mark.parametrize("law", [Reynolds(), Sommerfeld(clips=True)], ids=["reynolds", "half-sommerfeld"])
+@pytest.mark.parametrize("law", [Reynolds(), HalfSommerfeld()], ids=["reynolds", "half-sommerfeld"])
 def test_turning_bore_is_in_its_frame_what_a_bore_at_that_place_is_in_the_lab(law: Law) -> None:
     """Of a film without a state, at a moment: the journal has turned by 9 cells, and the bore with it."""
     angle, speed = 9 * TURN / (len(RING) - 1), 300.0

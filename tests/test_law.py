@@ -13,7 +13,6 @@ from frbcli.cli.main import run
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cavitation.saturation import elrod_fraction, peeken_fraction, two_phase_fraction
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.plot.law import law_figure
 
@@ -30,30 +29,30 @@ def curve(law: Law) -> tuple[np.ndarray, np.ndarray]:
 
 def test_curves_are_those_of_the_films() -> None:
     ratio, fraction = curve(TwoPhase(0.9))
-    np.testing.assert_allclose(two_phase_fraction(ratio, 0.9), fraction, atol=1e-9)
+    np.testing.assert_allclose(TwoPhase(0.9).curve(ratio), fraction, atol=1e-9)
     ratio, fraction = curve(Peeken(0.1))
-    np.testing.assert_allclose(peeken_fraction(ratio, 0.1), fraction, atol=1e-12)
+    np.testing.assert_allclose(Peeken(0.1).curve(ratio), fraction, atol=1e-12)
     ratio, fraction = curve(Elrod(bulk_modulus=20.0 * CAVITY))
     full = ratio > 1.0
-    np.testing.assert_allclose(elrod_fraction(ratio[full], 20.0), fraction[full], rtol=1e-12)
+    np.testing.assert_allclose(Elrod(20.0).curve(ratio[full]), fraction[full], rtol=1e-12)
     assert np.all(ratio[~full] == 1.0)  # every fraction at p_cav itself
 
 
 def test_fractions_at_known_places() -> None:
     place = np.array([0.5, 1.0, 1.2])
-    assert elrod_fraction(place, np.inf) == pytest.approx([0.0, 1.0, 1.0])
-    assert elrod_fraction(place, 2.0) == pytest.approx([0.0, 1.0, np.exp(0.1)])
-    assert peeken_fraction(place, 0.1) == pytest.approx([1.0 / 1.1, 1.0, 1.0])  # r = alpha at half of p_cav
-    assert peeken_fraction(place, 1.0) == pytest.approx([0.5, 1.0, 1.0])
+    assert Elrod(np.inf).curve(place) == pytest.approx([0.0, 1.0, 1.0])
+    assert Elrod(2.0).curve(place) == pytest.approx([0.0, 1.0, np.exp(0.1)])
+    assert Peeken(0.1).curve(place) == pytest.approx([1.0 / 1.1, 1.0, 1.0])  # r = alpha at half of p_cav
+    assert Peeken(1.0).curve(place) == pytest.approx([0.5, 1.0, 1.0])
     x_0, x_1 = 0.8, 0.9
-    fraction = two_phase_fraction(np.array([x_0, x_1, 1.0, 1.5]), x_1)
+    fraction = TwoPhase(x_1).curve(np.array([x_0, x_1, 1.0, 1.5]))
     assert fraction == pytest.approx([1e-3 * x_0, 0.5 * (1.0 + 1e-3 * x_0), 1.0, 1.0005])
 
 
 def test_two_phase_step_tends_to_elrods() -> None:
     ratio = np.array([0.9, 0.99, 0.999, 1.0, 1.1])
-    elrod = elrod_fraction(ratio, np.inf)
-    smooth, steep = (np.abs(two_phase_fraction(ratio, x) - elrod).max() for x in (0.9, 0.9999))
+    elrod = Elrod(np.inf).curve(ratio)
+    smooth, steep = (np.abs(TwoPhase(x).curve(ratio) - elrod).max() for x in (0.9, 0.9999))
     assert smooth > 0.9
     assert steep < 2e-3
 
@@ -61,7 +60,7 @@ def test_two_phase_step_tends_to_elrods() -> None:
 def test_peekens_curve_tends_to_the_others_where_there_is_much_air() -> None:
     """As said of figure 4.11."""
     ratio = np.array([0.3, 0.6, 0.9])
-    low, high = (peeken_fraction(ratio, bunsen) for bunsen in (0.1, 100.0))
+    low, high = (Peeken(bunsen).curve(ratio) for bunsen in (0.1, 100.0))
     assert np.all(low > 0.8)
     assert np.all(high < 0.1)
 

@@ -9,7 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from frbcli.case.load import load_case
-from frbcli.film.cavitation.compiled import ELROD, PEEKEN, TWO_PHASE, cell_law, empty_unknown
+from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.law import Law, Scales
+from frbcli.film.cavitation.peeken import Peeken
+from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.data import COS, GAP, LEAST_GAP, SIN, STOPS_FROM
 from frbcli.film.cells.states import FRACTION
 from frbcli.film.contact_gap import gap_limits, kept_gap
@@ -90,14 +93,15 @@ def test_the_gap_and_its_rate_have_no_jump() -> None:
 
 
 def test_a_cell_without_oil() -> None:
-    scales = 3.0, 0.0, 0.1
-    w = empty_unknown(TWO_PHASE, 0.99, 1e-3, *scales)
-    fractions = [cell_law(TWO_PHASE, 0.99, 1e-3, at, *scales)[1] for at in (w - 0.1, w, 0.0, 0.1)]
+    scales, law = Scales(3.0, 0.0, 0.1), TwoPhase(0.99)
+    w = law.empty(law.parameters, scales)
+    fractions = law.cells(np.array([w - 0.1, w, 0.0, 0.1]), scales).fraction
     below, between, above = np.diff(fractions) / (0.1, -w, 0.1)
     assert max(below, above) < 0.1 * between
-    for kind, first in ((PEEKEN, 0.1), (ELROD, 1e5)):  # their oil goes on below
-        assert empty_unknown(kind, first, 0.0, *scales) == -math.inf
-        steep = cell_law(kind, first, 0.0, -1.1, *scales)[4], cell_law(kind, first, 0.0, -0.5, *scales)[4]
+    others: tuple[Law, ...] = (Peeken(0.1), Elrod(1e5))
+    for other in others:  # their oil goes on below
+        assert other.empty(other.parameters, scales) == -math.inf
+        steep = other.cells(np.array([-1.1, -0.5]), scales).fraction_slope
         assert min(steep) > 0.9 * max(steep)
 
 

@@ -69,8 +69,8 @@ def test_solved_forces_are_those_of_the_solver_for_all_films(reading: str, suppl
     for d, v in STATES:
         plain = VolumeFilm(film.section, fitted_grid(film.section, d, 160, 6), film.law, OMEGA)
         motion = Motion(d, (v[0] * OMEGA, v[1] * OMEGA), OMEGA)
-        expected = steady(film_at(plain, film.follows, math.hypot(*d), OMEGA), motion)
-        found = SourceFilm(film.section, film.law, film.follows, around).force(*in_metres(film, (d, v)), OMEGA)
+        expected = steady(film_at(plain, math.hypot(*d), OMEGA), motion)
+        found = SourceFilm(film.section, film.law, around).force(*in_metres(film, (d, v)), OMEGA)
         assert found == pytest.approx(expected, abs=3e-3 * float(np.hypot(*expected)))
 
 

@@ -16,7 +16,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.plain import newton
 from frbcli.film.cells.plain.balance import Balance, Motion, Storage
@@ -70,7 +70,7 @@ def test_rows_of_the_reference(row: Row) -> None:
 
 
 LAWS: dict[str, Law] = {
-    "half-sommerfeld": Sommerfeld(clips=True),
+    "half-sommerfeld": HalfSommerfeld(),
     "reynolds": Reynolds(),
     "penalty": Penalty(PREFACTOR, steepness_exponent(0.6) * section_of("none").pressure_scale / 1e5),
     "peeken": Peeken(0.1),

@@ -18,15 +18,16 @@ from numba import njit
 from test_benchmark import NaiveFilm, report
 from volume_films import AMBIENT, CLEARANCE, RADIUS, ROTATION, VISCOSITY, WIDTH, section_of
 
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balances import FLOWS, SIDES
 from frbcli.film.cells.block_cyclic import ENTRIES
-from frbcli.film.cells.data import COS, FIRST, GAP, SECOND, SIN, volume_films
+from frbcli.film.cells.data import COS, GAP, SIN, volume_films
 from frbcli.film.cells.newton_step import film_newton
 from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
-from frbcli.film.cells.states import FRACTION, STATES, cell_states
+from frbcli.film.cells.states import FRACTION, STATES, cell_states, follow_law
 from frbcli.film.rectangles.bearing import RectangularBearing
 
 pytestmark = pytest.mark.benchmark
@@ -56,6 +57,7 @@ def circle(  # type: ignore[no-untyped-def]
 ):
     """Euler steps of a whirl with eps 0.6; returns the number of iterations."""
     m, k = w.shape
+    law = np.empty(LAW_NUMBERS)
     iterations = 0
     for n in range(count):
         d_x, d_y = 0.6 * math.cos(speed * dt * (n + 1)), 0.6 * math.sin(speed * dt * (n + 1))
@@ -73,7 +75,8 @@ def circle(  # type: ignore[no-untyped-def]
                     largest = max(largest, abs(fields[i, j, k]))
             if largest < SETTLED:
                 break
-        cell_states(numbers, cells, numbers[FIRST], numbers[SECOND], 0.0, w, states)
+        follow_law(numbers, 0.0, 0.0, 0.0, 0.0, omega, law)
+        cell_states(numbers, cells, law, 0.0, w, states)
         for i in range(m):
             gap = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
             for j in range(k):

@@ -14,7 +14,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.grid import volume_grid
 from frbcli.film.cells.plain.balance import Motion
@@ -74,7 +74,7 @@ def reference() -> dict[tuple[str, str], list[float]]:
 def test_squeeze_forces_of_three_periods(cavitation: str, ends: str) -> None:
     """The peaks are narrow: the moment at which the film is full again sets them, and the time step that moment."""
     laws: dict[str, tuple[Law, int]] = {
-        "half-sommerfeld": (Sommerfeld(clips=True), 100),
+        "half-sommerfeld": (HalfSommerfeld(), 100),
         "elrod": (Elrod(), 800),
         "two-phase": (TwoPhase(0.99), 800),
     }

@@ -13,7 +13,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.gap import AxialGroove, Section
@@ -70,7 +70,7 @@ def law_of(row: Row, section: Section, motion: Motion) -> Law:
             return Penalty(PREFACTOR, b * section.pressure_scale / section.ambient_pressure)
         return Penalty(PREFACTOR * 0.5 * motion.omega, b * 2.0 / motion.omega)
     return {
-        "half-sommerfeld": Sommerfeld(clips=True),
+        "half-sommerfeld": HalfSommerfeld(),
         "reynolds": Reynolds(),
         "elrod": Elrod(),
         "peeken": Peeken(0.1),

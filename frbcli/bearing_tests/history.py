@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.bearing_tests.journal_path import Path
-from frbcli.bearing_tests.plan import KinematicPlan, make_law
+from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
@@ -185,15 +185,14 @@ def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFi
     along = along // 2 if plan.section.far == "symmetry" else along
     fastest = max((path(t) for t in times), key=lambda motion: motion.rate)
     grid = fitted_grid(plan.section, (0.0, 0.0), around, along)
-    return VolumeFilm(plan.section, grid, make_law(case, plan, 0.0), reference_pressure(plan.section, fastest))
+    return VolumeFilm(plan.section, grid, law_at(case, plan, 0.0), reference_pressure(plan.section, fastest))
 
 
 def _lawful(case: Case, plan: KinematicPlan, film: VolumeFilm, motion: Motion, time: float) -> VolumeFilm:
-    """The film with supply and law of this moment: the penalty model's depends on the eccentricity."""
+    """The film with supply and law of this moment: that of the penalty model follows the eccentricity."""
     film = supplied(film, supply_share(time, plan.ramp)) if plan.ramp else film
-    if plan.cavitation != "penalty":
-        return film
-    return VolumeFilm(film.section, film.grid, make_law(case, plan, math.hypot(*motion.d)), film.scales.reference)
+    law = law_at(case, plan, math.hypot(*motion.d))
+    return film if law == film.law else VolumeFilm(film.section, film.grid, law, film.scales.reference)
 
 
 def _moment(

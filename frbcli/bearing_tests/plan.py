@@ -9,24 +9,17 @@ from frbcli.bearing_tests.faults import bearing_faults, motion_faults
 from frbcli.case.bearing import Bores, SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
-from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.section_faults import section_faults
+from frbcli.scene.films import make_law
 from frbcli.scene.plan import Decision
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
 
 TESTS = ("rotation", "squeeze", "whirl")
-MODELS = ("half-sommerfeld", "sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")
-COMPARED = tuple(model for model in MODELS if model != "sommerfeld")  # where nothing else is said
-REMEMBERING = ("peeken", "elrod", "two-phase")  # oil is kept from one moment to the next; the others have no state
 
 # around, along; of a section that is half the film half as many along
 STEADY_CELLS, FINE_CELLS = (128, 32), (240, 60)
@@ -67,14 +60,19 @@ class KinematicPlan:
     published: bool = False  # whether the two-phase model is in its published form, on quadratic elements
 
     @property
+    def law(self) -> type[Law]:
+        """The cavitation law."""
+        return law_named(self.cavitation)
+
+    @property
     def remembers(self) -> bool:
         """Whether the film has a state of its own."""
-        return self.cavitation in REMEMBERING
+        return self.law.keeps_oil
 
     @property
     def modal(self) -> bool:
         """Whether the pressure is that of the modal film."""
-        return self.rectangle is not None and self.cavitation in ("sommerfeld", "half-sommerfeld")
+        return self.rectangle is not None and self.law.closed
 
 
 def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotation") -> KinematicPlan:
@@ -88,17 +86,18 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     assert isinstance(bearing, SingleFilmBearing)
     assert case.motion is not None
     section = film_section(case, bearing)
-    keeps = cavitation in REMEMBERING
+    keeps = law_named(cavitation).keeps_oil
     if problems := section_faults(section if keeps else ends_at_ambient(section)):  # one that makes its oil has some
         faults = (Fault("bearing", "", None, f"cannot be solved: {p.problem}.", p.remedy) for p in problems)
         raise InputError(case.name or "case", tuple(faults))
     rectangle = film_rectangle(bearing, section)
-    closed = cavitation in ("sommerfeld", "half-sommerfeld") and bearing.ends == "free-to-air"
+    law = law_named(cavitation)
+    closed = law.closed and bearing.ends == "free-to-air"
     if closed:
         section = ends_at_ambient(section)
     decisions = [_gap_decision(section, bearing), *_lobe_decision(section)]
-    published = cavitation == "two-phase" and case.film.two_phase.form == "published"
-    decisions.append(PUBLISHED_FILM if published else _film_decision(cavitation, rectangle is not None))
+    published = _is_published(case, law)
+    decisions.append(PUBLISHED_FILM if published else _film_decision(law, rectangle is not None))
     if closed:
         reason = f"{cavitation} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
         decisions.append(Decision("ends", "ambient pressure", reason))
@@ -110,9 +109,9 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     if test != "rotation":
         decisions.append(Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"))
     if published:
-        kind = case.film.two_phase.diffusion
+        kind = case.film.given(cavitation).diffusion
         decisions.append(Decision("diffusion", kind, DIFFUSIONS[kind]))
-    elif cavitation == "two-phase":
+    elif law.published_form:
         reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
         decisions.append(Decision("diffusion", "upwind", reason))
     rate = TWO_PI * abs(case.motion.speed or case.motion.frequency or case.motion.whirl_speed or 1.0)
@@ -131,24 +130,9 @@ def with_model(case: Case, cavitation: str) -> Case:
     return case.model_copy(update={"film": case.film.model_copy(update={"cavitation": cavitation})})
 
 
-def make_law(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
-    """The law of a film at an eccentricity, on which the penalty model's steepness (3.32) depends."""
-    film, section = case.film, plan.section
-    if plan.cavitation == "reynolds":
-        return Reynolds()
-    if plan.cavitation == "penalty":
-        exponent = steepness_exponent(eccentricity)
-        if film.penalty.pressure == "absolute":
-            return Penalty(PREFACTOR, exponent * section.pressure_scale / section.ambient_pressure)
-        return Penalty(0.5 * PREFACTOR * plan.rate, 2.0 * exponent / plan.rate)
-    if plan.cavitation == "peeken":
-        return Peeken(film.peeken.bunsen)
-    if plan.cavitation == "elrod":
-        modulus = film.elrod.bulk_modulus
-        return Elrod() if modulus is None else Elrod(modulus / section.pressure_scale)
-    if plan.cavitation == "two-phase":
-        return TwoPhase(film.two_phase.steepness)
-    return Sommerfeld(clips=plan.cavitation == "half-sommerfeld")
+def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
+    """The law of a film at an eccentricity, at the reference speed of the test."""
+    return make_law(case, plan.cavitation, plan.section).followed(eccentricity, plan.rate)
 
 
 def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
@@ -186,29 +170,35 @@ def _lobe_decision(section: Section) -> list[Decision]:
     return [Decision("lobes", f"{lobes.count}, preload {lobes.preload:g}", reason)]
 
 
-def _film_decision(cavitation: str, rectangular: bool) -> Decision:
-    if cavitation in REMEMBERING:
+def _is_published(case: Case, law: type[Law]) -> bool:
+    return law.published_form and case.film.given(law.name).form == "published"
+
+
+def _film_decision(law: type[Law], rectangular: bool) -> Decision:
+    cavitation = law.name
+    if law.keeps_oil:
         return Decision("film", "finite volumes", f"{cavitation}: conserves oil and keeps it from moment to moment")
-    if rectangular and cavitation in ("sommerfeld", "half-sommerfeld"):
+    if rectangular and law.closed:
         return Decision("film", "modal, quadratic elements", f"{cavitation} in a rectangular gap; it has no state")
     return Decision("film", "finite volumes", f"{cavitation}: has no state, each moment is a steady film of its own")
 
 
 def _refuse(case: Case, cavitation: str, test: str) -> None:
     faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test)]
-    faults += bearing_faults(case, test, cavitation in REMEMBERING)
+    faults += bearing_faults(case, test, cavitation in names() and law_named(cavitation).keeps_oil)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
 
 
 def _model_faults(case: Case, cavitation: str, test: str) -> list[Fault]:
     faults = []
-    if cavitation not in MODELS:
-        faults.append(Fault("--cavitation", cavitation, None, "is no model.", f"There are: {', '.join(MODELS)}."))
+    known = cavitation in names()
+    if not known:
+        faults.append(Fault("--cavitation", cavitation, None, "is no model.", f"There are: {', '.join(names())}."))
     if case.film.theory == "short":
         problem = "is not for kinematic tests, which solve the whole film."
         faults.append(Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".'))
-    if test != "rotation" and cavitation == "two-phase" and case.film.two_phase.form == "published":
+    if test != "rotation" and known and _is_published(case, law_named(cavitation)):
         problem = f"is not modelled for a {test} in this version."
-        faults.append(Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".'))
+        faults.append(Fault(f"film.{cavitation}.form", "published", None, problem, 'Write form = "conservative".'))
     return faults

@@ -35,12 +35,12 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
     Sought with few cells first, then with those of the plan. Raises NotConverged if no start leads to one, or
     if the film cannot carry anything.
     """
-    if plan.cavitation == "elrod" and no_inflow(plan.section):
+    if plan.law.empties and no_inflow(plan.section):
         cavity = plan.section.cavitation_pressure / BAR
         raise NotConverged(
-            f"no resting position under {load:g} N: in the long run Elrod's film carries 0 N, at any eccentricity. "
-            "Where its pressure is above the cavitation pressure it loses oil at its edges, and none comes in: "
-            f"neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
+            f"no resting position under {load:g} N: in the long run {plan.law.label}'s film carries 0 N, at any "
+            "eccentricity. Where its pressure is above the cavitation pressure it loses oil at its edges, and none "
+            f"comes in: neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
             "Raise the supply pressure, or supply it through axial grooves or bores."
         )
     target = np.array([0.0, load])

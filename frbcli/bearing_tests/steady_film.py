@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.bearing_tests.plan import KinematicPlan, make_law
+from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.case.schema import Case
 from frbcli.film.cells.plain.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.plain.loads import Loads, estimate
@@ -47,7 +47,7 @@ class FilmMoment:
 
 def film_moment(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> FilmMoment:
     """The film for a motion that lasts. Raises NotConverged."""
-    law = make_law(case, plan, math.hypot(*motion.d))
+    law = law_at(case, plan, math.hypot(*motion.d))
     found = steady_film(plan.section, law, motion, *cells, factor=case.film.cavitation_factor)
     loads, error = found.loads, found.force_error
     if plan.rectangle is not None and plan.modal:
@@ -64,7 +64,7 @@ def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int
     """(2,) force in N on the journal by the whole bearing. Raises NotConverged."""
     if plan.modal:
         return np.array(modal_force(plan, motion))
-    law = make_law(case, plan, math.hypot(*motion.d))
+    law = law_at(case, plan, math.hypot(*motion.d))
     return np.array(steady_film(plan.section, law, motion, *cells).loads.force)
 
 

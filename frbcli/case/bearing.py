@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
+from frbcli.case.laws import Cavitation
 from frbcli.case.model import Model
 from frbcli.case.quantities import (
     Angle,
@@ -33,9 +34,6 @@ from frbcli.case.quantities import (
 )
 
 ROOM_TEMPERATURE = 293.15
-
-Cavitation = Literal["sommerfeld", "half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase"]
-
 
 Ramp = Annotated[
     RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")

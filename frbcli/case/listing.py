@@ -12,10 +12,8 @@ from frbcli.case.model import Model
 from frbcli.case.quantities import unit_of
 from frbcli.case.schema import Case
 from frbcli.case.toml import parse
+from frbcli.film.cavitation import table
 from frbcli.units import NUMBER, display, readable
-
-# What stands in a case for models that it does not choose.
-_MODEL_SECTIONS = ("penalty", "peeken", "elrod", "two-phase")
 
 
 @dataclass(frozen=True)
@@ -65,4 +63,4 @@ def _is_idle(key: str, case: Case) -> bool:
     """Whether a key belongs to a cavitation model that the case does not use."""
     section, _, rest = key.partition(".")
     model = rest.partition(".")[0]
-    return section == "film" and model in _MODEL_SECTIONS and model not in case.cavitations
+    return section == "film" and model in table.names() and model not in case.cavitations

@@ -9,11 +9,12 @@ Rules that tie several keys together are in `checks.py`.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from frbcli.case.bearing import Bearings, Cavitation, FilmGeometry, FloatingRingBearing, RingFilm
+from frbcli.case.bearing import Bearings, FilmGeometry, FloatingRingBearing, RingFilm
+from frbcli.case.laws import Cavitation, adopt, attribute
 from frbcli.case.model import Model, with_default
 from frbcli.case.quantities import (
     Angle,
@@ -26,12 +27,9 @@ from frbcli.case.quantities import (
     Force,
     Hold,
     Label,
-    Modulus,
-    OpenFraction,
     Pressure,
     Quantity,
     Rate,
-    Ratio,
     SignedSpeed,
     Speed,
     Stiffness,
@@ -42,6 +40,9 @@ from frbcli.case.quantities import (
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
 from frbcli.case.text import as_text
 from frbcli.errors import Fault, InputError
+from frbcli.film.cavitation import table
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.table import law_named
 from frbcli.units import NUMBER
 
 ATMOSPHERE = 1e5
@@ -96,35 +97,6 @@ class Oil(Model):
         return self.vogel.at(self.temperature)
 
 
-class Penalty(Model):
-    """Penalty model (3.31): on the absolute pressure of (3.9), or on the dimensionless one of (3.19)."""
-
-    pressure: Literal["absolute", "dimensionless"] = "absolute"
-
-
-class Peeken(Model):
-    """Peeken's model."""
-
-    bunsen: Ratio = Field(default=0.1, description="Bunsen's coefficient, the share of dissolved gas")
-
-
-class Elrod(Model):
-    """Elrod's model."""
-
-    bulk_modulus: Modulus | None = Field(default=None, description="of the full film; incompressible if not given")
-
-
-class TwoPhase(Model):
-    """The mass-conserving two-phase model."""
-
-    steepness: OpenFraction = Field(default=0.99, description="x_1")
-    whirl_steepness: OpenFraction | None = Field(
-        default=None, description="x_1 while the journal whirls at about half the speed, in run-ups"
-    )
-    form: Literal["conservative", "published"] = "conservative"
-    diffusion: Literal["consistent", "streamline", "none"] = "consistent"
-
-
 class FilmModel(Model):
     """How the films are computed."""
 
@@ -143,10 +115,18 @@ class FilmModel(Model):
     solution: Literal["auto", "table", "cells"] = Field(
         default="auto", description="in runs: tabulated before them where that is possible, or solved on cells"
     )
-    penalty: Penalty = Penalty()
-    peeken: Peeken = Peeken()
-    elrod: Elrod = Elrod()
-    two_phase: TwoPhase = Field(default=TwoPhase(), alias="two-phase")
+
+    if TYPE_CHECKING:  # the tables of the laws, which these declare
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    def given(self, cavitation: str) -> Any:
+        """The values of the table [film.NAME] of a cavitation law by attribute, None if the law has no keys."""
+        law = law_named(cavitation)
+        return getattr(self, attribute(law)) if law.keys else None
+
+
+adopt(FilmModel)
 
 
 class SpeedProfile(Model):
@@ -311,6 +291,28 @@ class Case(Model):
             for film in ((bearing.inner, bearing.outer) if isinstance(bearing, FloatingRingBearing) else (bearing,))
         )
         return tuple(self.cavitation(film) for film in films)
+
+
+def add_law(law: type[Law]) -> None:
+    """Let film.cavitation take a law of one's own in this process, and [film.NAME] its keys; see CavitationLaw.
+
+    A law of the same name that was added before is replaced. Raises ValueError if it is none, or has the name of a
+    shipped law.
+    """
+    table.add(law)
+    _adopt_laws()
+
+
+def remove_law(name: str) -> None:
+    """Take a law away that add_law has added. Raises KeyError for any other."""
+    table.remove(name)
+    _adopt_laws()
+
+
+def _adopt_laws() -> None:
+    adopt(FilmModel, (RingFilm,))
+    for holder in (FloatingRingBearing, Case):
+        holder.model_rebuild(force=True)
 
 
 def json_schema() -> dict[str, Any]:

@@ -95,13 +95,14 @@ def _kinematic(
     terminal: Terminal,
 ) -> int:
     """A kinematic test with several models; their films all have finite length."""
-    from frbcli.bearing_tests.plan import COMPARED
     from frbcli.cli.kinematic import run_test
+    from frbcli.film.cavitation.table import laws, names
 
     if set(theory) - {"finite"}:
         problem = f"is not for a {test}, which solves the whole film."
         raise InputError(case.name, (Fault("--theory", ",".join(theory), None, problem, "Leave it out."),))
-    return run_test(case, test, cavitation or COMPARED, target, picture, terminal, compared=True) or 0
+    models = cavitation or names(law for law in laws() if law.cavitates)
+    return run_test(case, test, models, target, picture, terminal, compared=True) or 0
 
 
 def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:

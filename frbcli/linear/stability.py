@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.bearing import FilmForce
 from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.channels import coupled
-from frbcli.scene.coupling import REMEMBERING
 from frbcli.scene.keys import bearing_key, cavitation_keys
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
@@ -296,7 +296,7 @@ def _without_coefficients(case: Case) -> list[Fault]:
     problem = "keeps oil of its own: eight coefficients per speed do not say whether the rotor is stable."
     remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
     named = dict(cavitation_keys(case))
-    faults += [Fault(key, name, None, problem, remedy) for key, name in named.items() if name in REMEMBERING]
+    faults += [Fault(key, name, None, problem, remedy) for key, name in named.items() if law_named(name).keeps_oil]
     return faults
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.plot.signals import CAVITATION_NAMES
+from frbcli.film.cavitation.table import label_of
 from frbcli.plot.style import BLACK, COLOURS, GREY, legend_below, new_figure, styled
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungResult
 
@@ -23,7 +23,7 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
         raise ValueError("a ladder needs a rung")
     reference = ladder.reference.rung
     with styled():
-        name = CAVITATION_NAMES.get(reference.cavitation, reference.cavitation)
+        name = label_of(reference.cavitation)
         window = min(item.error.until_s for item in ladder.ladder)
         tolerances = sorted({item.rung.tolerance for item in ladder.ladder}, reverse=True)
         several = len({item.rung.coupling for item in ladder.ladder}) > 1

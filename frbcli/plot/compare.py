@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films, joined
+from frbcli.film.cavitation.table import label_of
 from frbcli.plot.envelope import curve
-from frbcli.plot.signals import CAVITATION_NAMES, ends
+from frbcli.plot.signals import ends
 from frbcli.plot.style import COLOURS, MOST_MARKED, new_figure, styled
 from frbcli.results.store import Run
 from frbcli.studies.compare import Comparison, Variant
@@ -97,5 +98,5 @@ def _name(variant: Variant, several: bool) -> str:
     """several: models, not only couplings of one."""
     if not several:
         return variant.coupled
-    name = f"{CAVITATION_NAMES.get(variant.cavitation, variant.cavitation)}, {variant.theory}"
+    name = f"{label_of(variant.cavitation)}, {variant.theory}"
     return name if variant.coupling == "auto" else f"{name},\n{variant.coupling}"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
 from frbcli.bearing_tests.steady_film import FilmField
-from frbcli.plot.signals import CAVITATION_NAMES
+from frbcli.film.cavitation.table import label_of
 from frbcli.plot.style import COLOURS, GREY, LEVEL_MAP, new_figure, styled
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
         assert field is not None
         colour, line = COLOURS[number % len(COLOURS)], LINES[number % len(LINES)]
         phi, values = mid_line(field, field.pressure, result.plan.section.far)
-        pressure.plot(phi, values / BAR, color=colour, linestyle=line, label=name_of(result.cavitation))
+        pressure.plot(phi, values / BAR, color=colour, linestyle=line, label=label_of(result.cavitation))
         phi, values = mid_line(field, field.fraction, result.plan.section.far)
         oil.plot(phi, values, color=colour, linestyle=line)
         phi, values = _turn(field, field.gap)
@@ -83,7 +83,7 @@ def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
                 phi, field.z, turned.T, cmap=LEVEL_MAP, vmin=low, vmax=high, shading="nearest", rasterized=True
             )
             meshes.append(mesh)
-        left.set_title(name_of(result.cavitation), fontsize=9.0)
+        left.set_title(label_of(result.cavitation), fontsize=9.0)
         left.set_ylabel("z of section", fontsize=8.0)
     for column, label in ((0, "pressure in bar"), (1, "oil fraction")):
         bar = figure.colorbar(meshes[column], ax=rows[:, column], location="bottom", shrink=0.8, aspect=35)
@@ -98,11 +98,6 @@ def mid_line(field: FilmField, values: Array, far: str) -> tuple[Array, Array]:
     if far == "symmetry":
         return _turn(field, values[:, -1])
     return _turn(field, np.array([np.interp(0.5, field.z, row) for row in values]))
-
-
-def name_of(cavitation: str) -> str:
-    """A model as pictures call it."""
-    return CAVITATION_NAMES.get(cavitation, cavitation)
 
 
 def _turn(field: FilmField, values: Array) -> tuple[Array, Array]:

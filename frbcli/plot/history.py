@@ -5,7 +5,8 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from frbcli.bearing_tests.kinematic import KinematicTest
-from frbcli.plot.film import BAR, LINES, name_of
+from frbcli.film.cavitation.table import label_of
+from frbcli.plot.film import BAR, LINES
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
 
 HEIGHT = 5.4
@@ -26,7 +27,7 @@ def history_figure(found: KinematicTest) -> Figure:
             if history is None:
                 continue
             values = history.force[:, 1] if found.test == "squeeze" else history.probe_pressure / BAR
-            label = name_of(result.cavitation) + ("" if result.status == "ok" else ", not converged")
+            label = label_of(result.cavitation) + ("" if result.status == "ok" else ", not converged")
             colour, line = COLOURS[number % len(COLOURS)], LINES[number % len(LINES)]
             above.plot(history.time_s, values, color=colour, linestyle=line, label=label)
             below.plot(history.time_s, history.gap_ratio, color=GREY)

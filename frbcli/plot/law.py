@@ -9,8 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from frbcli.film.cavitation.saturation import elrod_fraction, peeken_fraction, two_phase_fraction
-from frbcli.plot.signals import CAVITATION_NAMES
+from frbcli.film.cavitation.law import FilmOil, Law
+from frbcli.film.cavitation.table import label_of, laws
+from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.plot.style import COLOURS, GREY, Picture, new_figure, styled
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 BAR = 1e5
 STEEPNESSES = (0.9, 0.95, 0.99, 0.999)  # x_1 beside that of the case
-BUNSENS = (0.1, 0.5, 1.0)  # alpha_B beside that of the case; air in oil has about 0.1
 DASHES = ((5, 1.5), (1.5, 1), (6, 1.5, 1.5, 1.5), (8, 2), (3, 1, 1, 1, 1, 1))
 LINES: tuple[Any, ...] = ("-", *((0, dash) for dash in DASHES))
 POINTS = 4001
@@ -31,8 +31,7 @@ def law_figure(case: Case) -> Picture:
     """theta(p) of the conserving models with the parameters of a case, whose own model is drawn thick."""
     film, cavity = case.film, case.oil.cavitation_pressure
     with styled():
-        model = CAVITATION_NAMES.get(film.cavitation, film.cavitation)
-        words = f"oil fraction over pressure; the case's model: {model}"
+        words = f"oil fraction over pressure; the case's model: {label_of(film.cavitation)}"
         figure = new_figure(case.title or case.name, words, height=4.6)
         left, right = figure.subplots(1, 2, sharey=True)
         _draw_steps(left, case)
@@ -49,38 +48,46 @@ def law_figure(case: Case) -> Picture:
 
 def _draw_steps(axes: Axes, case: Case) -> None:
     """The steps (4.32) down to where the widest one ends, a dot at the steepest slope x_1 of each."""
-    x, cavity = case.film.two_phase.steepness, case.oil.cavitation_pressure
+    x, cavity = case.film.given(TwoPhase.name).steepness, case.oil.cavitation_pressure
     values = sorted({*STEEPNESSES, x})
     start = max(0.0, 2.0 * values[0] - 1.0)
     ratio = np.linspace(max(0.0, start - 0.1 * (1.0 - start)), 1.0 + 0.2 * (1.0 - start), POINTS)
     for number, value in enumerate(values):
-        own = value == x and case.film.cavitation == "two-phase"
+        own = value == x and case.film.cavitation == TwoPhase.name
         place = np.array([value])
-        _draw(axes, number, ratio * cavity, two_phase_fraction(ratio, value), f"two-phase, $x_1$ = {value:g}", own)
+        _draw(axes, number, ratio * cavity, TwoPhase(value).curve(ratio), f"two-phase, $x_1$ = {value:g}", own)
         colour = COLOURS[number % len(COLOURS)]
-        axes.plot(place * cavity / BAR, two_phase_fraction(place, value), color=colour, marker="o", markersize=4.0)
+        axes.plot(place * cavity / BAR, TwoPhase(value).curve(place), color=colour, marker="o", markersize=4.0)
     axes.margins(x=0.0)
     axes.set_title("Two-phase: a step (4.32)")
 
 
 def _draw_models(axes: Axes, case: Case) -> None:
-    """Elrod's, the two-phase and Peeken's model from no pressure to above p_cav."""
-    film, cavity = case.film, case.oil.cavitation_pressure
+    """All models whose oil fraction follows from the pressure, from no pressure to above p_cav."""
+    cavity = case.oil.cavitation_pressure
     ratio = np.linspace(LEAST, WIDEST, POINTS)
-    modulus = film.elrod.bulk_modulus
-    packed = np.inf if modulus is None else modulus / cavity
-    words = "incompressible" if modulus is None else f"bulk modulus {modulus / BAR:.4g} bar"
-    x = film.two_phase.steepness
-    curves = [
-        (f"Elrod, {words}", elrod_fraction(ratio, packed), film.cavitation == "elrod"),
-        (f"two-phase, $x_1$ = {x:g}", two_phase_fraction(ratio, x), film.cavitation == "two-phase"),
-    ]
-    for bunsen in sorted({*BUNSENS, film.peeken.bunsen}):
-        own = film.cavitation == "peeken" and bunsen == film.peeken.bunsen
-        curves.append((f"Peeken, $\\alpha_B$ = {bunsen:g}", peeken_fraction(ratio, bunsen), own))
-    for number, (label, fraction, own) in enumerate(curves):
-        _draw(axes, number, ratio * cavity, fraction, label, own)
+    over_cavity = FilmOil(cavity, case.oil.ambient_pressure, cavity, case.oil.density)
+    number = 0
+    for law in laws():
+        chosen = case.film.given(law.name)
+        for given in _compared(law, chosen):
+            try:
+                fraction = law.scaled(given, over_cavity).curve(ratio)
+            except NotImplementedError:
+                continue
+            own = law.name == case.film.cavitation and given == chosen
+            _draw(axes, number, ratio * cavity, fraction, law.legend(given), own)
+            number += 1
     axes.set_title("The models beside each other")
+
+
+def _compared(law: type[Law], given: Any) -> list[Any]:
+    """The values of the case for the keys of a law, and others for those which the law compares, sorted by these."""
+    found = [given]
+    for key, values in law.compared:
+        others = {*values, getattr(given, key)}
+        found = [one.model_copy(update={key: value}) for one in found for value in sorted(others)]
+    return found
 
 
 def _draw(axes: Axes, number: int, pressure: Array, fraction: Array, label: str, own: bool) -> None:

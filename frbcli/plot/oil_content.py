@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
+from frbcli.film.cavitation.table import laws, names
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.signals import heading
 from frbcli.plot.style import legend_below, new_figure, styled
@@ -23,12 +24,13 @@ def oil_content_figure(
 
     Raises RunFileError if a run has none: its cavitation model does not conserve oil.
     """
-    names = [name for name in runs[0].signals if name.startswith(SIGNAL)]
+    told = [name for name in runs[0].signals if name.startswith(SIGNAL)]
     for run in runs:
-        if not names or any(name not in run.signals for name in names):
-            remedy = "Run the case with a model that conserves oil: peeken, elrod or two-phase."
+        if not told or any(name not in run.signals for name in told):
+            keeping = ", ".join(names(law for law in laws() if law.keeps_oil))
+            remedy = f"Run the case with a model that keeps its oil: {keeping}."
             raise refuse(run.path, "does not tell how full its films are.", remedy)
-    curves = [(name[len(SIGNAL) + 1 :].replace("_", " "), [run.signal(name) for run in runs]) for name in names]
+    curves = [(name[len(SIGNAL) + 1 :].replace("_", " "), [run.signal(name) for run in runs]) for name in told]
     with styled():
         figure = new_figure(*heading(runs))
         axes = figure.subplots()

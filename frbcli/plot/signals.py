@@ -13,6 +13,7 @@ from frbcli.analysis.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, joined, located, points
 from frbcli.case.load import LARGEST_FILE
 from frbcli.case.toml import TomlFault, parse
+from frbcli.film.cavitation.table import label_of
 from frbcli.plot.envelope import extremes
 from frbcli.plot.style import plain
 from frbcli.results.container import refuse
@@ -23,8 +24,6 @@ from frbcli.results.store import Run
 MICRO = 1e6
 MOST_SEARCHED = 2_000_000  # samples in which events are sought
 _MODEL = re.compile("[a-z-]{1,40}")
-CAVITATION_NAMES = {"sommerfeld": "Sommerfeld", "half-sommerfeld": "half-Sommerfeld", "reynolds": "Reynolds",
-                    "peeken": "Peeken", "elrod": "Elrod"}  # fmt: skip
 
 
 def motion(run: Run, node: str) -> tuple[Signal, Signal]:
@@ -94,7 +93,7 @@ def model(run: Run) -> str:
     cavitation = next(iter(cavitation), "") if isinstance(cavitation, dict) else cavitation
     if not isinstance(cavitation, str) or not _MODEL.fullmatch(cavitation):
         cavitation = ""
-    words = [CAVITATION_NAMES.get(cavitation, cavitation)]
+    words = [label_of(cavitation)]
     if theory in ("short", "finite"):
         words.append(f"{theory} bearing")
     return ", ".join(word for word in words if word)

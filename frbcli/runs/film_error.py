@@ -145,15 +145,14 @@ def _cell_forces(plan: Plan, system: System, case: Case) -> Forces:
     """Fine and own force of a film with cells that has settled."""
     assert plan.cells is not None
     cells = FINER * plan.cells[0], FINER * plan.cells[1]
-    fine = [volume_film(case, place, cells)[0] for place in film_places(case)]
+    fine = [volume_film(case, place, cells) for place in film_places(case)]
 
-    def settled(film: VolumeFilm, follows: int, at: Array, rate: Array, omega: float) -> Array:
+    def settled(film: VolumeFilm, at: Array, rate: Array, omega: float) -> Array:
         d, v = at / film.section.clearance, rate / film.section.clearance
         motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
-        return np.array(force(film, film.pressure(steady_solution(film, follows, motion).state)))
+        return np.array(force(film, film.pressure(steady_solution(film, motion).state)))
 
     def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
-        follows = system.follows[i]
-        return settled(fine[i], follows, at, rate, omega), settled(system.volumes[i], follows, at, rate, omega)
+        return settled(fine[i], at, rate, omega), settled(system.volumes[i], at, rate, omega)
 
     return forces

@@ -111,7 +111,7 @@ def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tupl
         w = film.full()
         if np.any(at != 0.0) and omegas[i] != 0.0:
             with contextlib.suppress(NotConverged):
-                w = steady_solution(film, system.follows[i], motion).w
+                w = steady_solution(film, motion).w
         wet[W, i] = wet[W_BEFORE, i] = w
         wet[OIL, i] = film.content(motion, w)
     return wet, np.zeros((2, len(system.volumes), FLOWS))

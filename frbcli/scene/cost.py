@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.table import Mesh
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.coupling import APART, SEMI
@@ -40,8 +41,6 @@ ELASTIC = 1.7
 FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 CELL_COUNT, CELL_POWER = 288, 1.4  # 48 x 6
-# Of the time of a solve on cells; others: 1.
-LAW_FACTORS = {"sommerfeld": 0.7, "half-sommerfeld": 0.7, "reynolds": 0.8, "two-phase": 1.2, "peeken": 1.2}
 LONGEST_STEP_s = 1e-3  # of a run: a slow rotor still falls, and its shaft still vibrates
 MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
 MICRO_STEPS = 2.0  # of a film in a macro step of a co-simulation
@@ -88,7 +87,7 @@ def solve_us(plan: Plan) -> float:
         us *= 1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS
     if plan.cells is not None:
         count = plan.cells[0] * plan.cells[1]
-        us *= LAW_FACTORS.get(plan.cavitation, 1.0) * (count / CELL_COUNT) ** CELL_POWER
+        us *= law_named(plan.cavitation).cost * (count / CELL_COUNT) ** CELL_POWER
     return us
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
+from frbcli.film.cavitation.table import law_named
 
 COUPLINGS = ("monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation")
 MONOLITHIC, FULL, SEMI, APART = COUPLINGS
-REMEMBERING = ("peeken", "elrod", "two-phase")  # oil is kept; the other models have no state
 REASONS = {
     MONOLITHIC: "rotor and film are one equation in every stage",
     FULL: "the film follows the journal at once, solved with the rotor in every stage",
@@ -20,7 +20,7 @@ def chosen_coupling(coupling: str, cavitation: str) -> str:
     """One of COUPLINGS for what a case says: "auto" or one of them."""
     if coupling != "auto":
         return coupling
-    return MONOLITHIC if cavitation in REMEMBERING else FULL
+    return MONOLITHIC if law_named(cavitation).keeps_oil else FULL
 
 
 def plan_coupling(case: Case) -> tuple[str, str]:
@@ -32,7 +32,7 @@ def plan_coupling(case: Case) -> tuple[str, str]:
 def coupling_fault(case: Case, with_cells: bool) -> Fault | None:
     """What is wrong with the coupling that a case asks for."""
     coupling, cavitation = case.film.coupling, _deciding(case)
-    if coupling in (FULL, SEMI) and cavitation in REMEMBERING:
+    if coupling in (FULL, SEMI) and law_named(cavitation).keeps_oil:
         problem = f"needs a film without a state of its own; {cavitation} keeps its oil from step to step."
         return Fault("film.coupling", coupling, None, problem, f"Choose {MONOLITHIC}, {APART} or auto.")
     if coupling == SEMI and with_cells:
@@ -43,4 +43,4 @@ def coupling_fault(case: Case, with_cells: bool) -> Fault | None:
 
 def _deciding(case: Case) -> str:
     """The cavitation model that decides how a case is advanced: one that keeps its oil, if any film has such a one."""
-    return next((model for model in case.cavitations if model in REMEMBERING), case.film.cavitation)
+    return next((model for model in case.cavitations if law_named(model).keeps_oil), case.film.cavitation)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.table import Mesh
 from frbcli.film.section_faults import starves
 from frbcli.scene.films import film_places
@@ -17,7 +18,6 @@ from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, pub
 from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 
-CLOSED = ("sommerfeld", "half-sommerfeld")  # models whose force in a rectangular gap can be tabulated
 MIDDLE = 0.5  # axial position of a circumferential groove that parts two equal films
 TABULATED = ("none", "circumferential-groove", "axial-grooves")  # supplies of gaps that are rectangles
 
@@ -76,7 +76,7 @@ def choose_films(case: Case) -> FilmChoice:
         mesh_why = "set in the case" if given is not None else "parabolas over the width need few along the axis"
         if case.film.solution == "cells":
             mesh_why += "; film.solution is set in the case"
-        elif set(case.cavitations) == {"penalty"}:
+        elif all(law_named(model).tabulated for model in case.cavitations):
             mesh_why += f"; no table: {table_obstacle(case)}"
         return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, _cell_error(case, cells), theory_why, mesh_why)
     if not all_clipped(case):
@@ -114,7 +114,7 @@ def short_error(slenderness: float, eccentricity: float) -> float:
 
 def all_clipped(case: Case) -> bool:
     """Whether no film is more than the clipped solution of a linear equation."""
-    return set(case.cavitations) <= set(CLOSED)
+    return all(law_named(model).closed for model in case.cavitations)
 
 
 def needs_cells(case: Case) -> bool:
@@ -133,7 +133,7 @@ def film_form(case: Case, film: FilmGeometry, theory: str) -> str:
         return CHAINS
     supply = getattr(film.supply, "pressure", case.oil.ambient_pressure)
     equal = supply == case.oil.ambient_pressure == case.oil.cavitation_pressure
-    equal = equal or case.cavitation(film) == "sommerfeld"
+    equal = equal or not law_named(case.cavitation(film)).cavitates
     if theory == "short":
         return CLOSED_FORM if equal else CLIPPED
     return TABLE if equal else FIELDS

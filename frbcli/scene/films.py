@@ -10,14 +10,9 @@ import numpy as np
 
 from frbcli.case.bearing import Bores, FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
-from frbcli.film.cavitation.elrod import Elrod
-from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
-from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.data import BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL, STANDS
+from frbcli.film.cavitation.law import FilmOil, Law
+from frbcli.film.cavitation.penalty import Penalty
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.grid import VolumeGrid, volume_grid
 from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.gap import Section, ends_at_ambient, graded_ring
@@ -28,7 +23,6 @@ from frbcli.scene.channels import coupled, mouths_in_outer_film, pull
 from frbcli.scene.section import film_section
 
 ROTOR, HOUSING = -1, -2  # what a film lies against, if it is not a ring
-CLOSED_ENDS = ("sommerfeld", "half-sommerfeld")  # models that know no missing oil at the ends
 PUMPED = 0.3  # share of the pressure that the largest speed could build up: a good unit of the unknown w
 
 
@@ -103,24 +97,10 @@ def turning(places: tuple[FilmPlace, ...], ring_count: int, half_speed: bool = F
     return shares
 
 
-def make_law(case: Case, cavitation: str, section: Section) -> tuple[Law, int]:
-    """The law of a film in a run, and what its parameters follow; those of a penalty are of the centred journal."""
-    film = case.film
-    if cavitation == "reynolds":
-        return Reynolds(), STANDS
-    if cavitation == "penalty":
-        exponent = steepness_exponent(0.0)
-        if film.penalty.pressure == "absolute":
-            return Penalty(PREFACTOR, exponent * section.pressure_scale / section.ambient_pressure), BY_ECCENTRICITY
-        return Penalty(0.5 * PREFACTOR, 2.0 * exponent), BY_ECCENTRICITY_AND_SPEED
-    if cavitation == "peeken":
-        return Peeken(film.peeken.bunsen), STANDS
-    if cavitation == "elrod":
-        modulus = film.elrod.bulk_modulus
-        return (Elrod() if modulus is None else Elrod(modulus / section.pressure_scale)), STANDS
-    if cavitation == "two-phase":
-        return TwoPhase(film.two_phase.steepness), STANDS if film.two_phase.whirl_steepness is None else BY_WHIRL
-    return Sommerfeld(clips=cavitation == "half-sommerfeld"), STANDS
+def make_law(case: Case, cavitation: str, section: Section) -> Law:
+    """The law of a film; what it follows is of the centred journal at 1 rad/s. Raises KeyError if there is no such."""
+    oil = FilmOil(section.pressure_scale, section.ambient_pressure, section.cavitation_pressure, case.oil.density)
+    return law_named(cavitation).scaled(case.film.given(cavitation), oil)
 
 
 def channel_pulls(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:
@@ -136,27 +116,28 @@ def channel_pulls(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...
     return tuple(pulls)
 
 
-def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int]) -> tuple[VolumeFilm, int]:
-    """A film on volumes for a run, equal cells (around, along), and what its law follows."""
+def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int]) -> VolumeFilm:
+    """A film on volumes for a run, equal cells (around, along)."""
     geometry, cavitation = place.geometry, case.cavitation(place.geometry)
     section = film_section(case, geometry, place.mouths)
-    # Reynolds' pressure, never below that of the air then, lets oil out only, as into a bath. The flow of (4.37)
-    # at no pressure, which the law would have to make up, keeps Newton's method from converging.
-    only_out = cavitation == "reynolds" and section.cavitation_pressure >= section.ambient_pressure
-    if (cavitation in CLOSED_ENDS or only_out) and geometry.ends == "free-to-air":
+    law_class = law_named(cavitation)
+    # A pressure that is never below that of the air lets oil out only, as into a bath. The flow of (4.37) at no
+    # pressure, which the law would have to make up, keeps Newton's method from converging.
+    only_out = law_class.holds_cavity and section.cavitation_pressure >= section.ambient_pressure
+    if (law_class.closed or only_out) and geometry.ends == "free-to-air":
         section = ends_at_ambient(section)
-    law, follows = make_law(case, cavitation, section)
+    law = make_law(case, cavitation, section)
     speed = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect
-    return VolumeFilm(section, run_grid(section, cells), law, reference), follows
+    return VolumeFilm(section, run_grid(section, cells), law, reference)
 
 
 def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
     """A penalty film without openings, as it is tabulated for a run."""
     section = film_section(case, geometry)
-    law, follows = make_law(case, "penalty", section)
+    law = make_law(case, case.cavitation(geometry), section)
     assert isinstance(law, Penalty)
-    return SourceFilm(section, law, follows, mesh)
+    return SourceFilm(section, law, mesh)
 
 
 def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:

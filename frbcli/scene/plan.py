@@ -12,10 +12,11 @@ from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRin
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.table import Mesh
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
-from frbcli.scene.coupling import REMEMBERING, plan_coupling
+from frbcli.scene.coupling import plan_coupling
 from frbcli.scene.film_choice import (
     CHAINS,
     FIELDS,
@@ -90,7 +91,7 @@ def make_plan(case: Case) -> Plan:
     for told, cavitation in _cavitations(case):
         if films.form == PUBLISHED:
             decide("cavitation", told, "set in the case; the film keeps its oil from step to step, and creates some")
-        elif cavitation in REMEMBERING:
+        elif law_named(cavitation).keeps_oil:
             decide("cavitation", told, "set in the case; the film conserves oil and keeps it from step to step")
         else:
             decide("cavitation", told, "set in the case; the film has no state of its own, oil is not balanced")

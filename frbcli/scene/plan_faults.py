@@ -6,11 +6,12 @@ from frbcli.case.bearing import CircumferentialGroove
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import section_faults
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.clearance_steps import clearance_faults
-from frbcli.scene.coupling import REMEMBERING, coupling_fault
+from frbcli.scene.coupling import coupling_fault
 from frbcli.scene.film_choice import MIDDLE, all_clipped, needs_cells
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.published import published_faults
@@ -44,7 +45,7 @@ def plan_faults(case: Case) -> list[Fault]:
             missing("bearing.supply.axial_position", f"{supply.axial_position:g}", ("0.5, 0 and 1",))
             continue
         section = film_section(case, place.geometry, place.mouths)
-        if case.cavitation(place.geometry) not in REMEMBERING:  # a film that makes its oil cannot run dry
+        if not law_named(case.cavitation(place.geometry)).keeps_oil:  # a film that makes its oil cannot run dry
             section = ends_at_ambient(section)
         for found in section_faults(section):
             faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))

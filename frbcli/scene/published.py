@@ -25,7 +25,7 @@ DIFFUSIONS = {
 
 def is_published(case: Case) -> bool:
     """Whether the films of a case are in the published form."""
-    return "two-phase" in case.cavitations and case.film.two_phase.form == "published"
+    return TwoPhase.name in case.cavitations and case.film.two_phase.form == "published"
 
 
 def published_faults(case: Case) -> list[Fault]:
@@ -42,7 +42,7 @@ def published_faults(case: Case) -> list[Fault]:
     if case.film.two_phase.whirl_steepness is not None:
         value = f"{case.film.two_phase.whirl_steepness:g}"
         found.append(("film.two-phase.whirl_steepness", value, "is for the conservative form", REMEDY))
-    coupling = chosen_coupling(case.film.coupling, "two-phase")
+    coupling = chosen_coupling(case.film.coupling, TwoPhase.name)
     if coupling != MONOLITHIC:
         problem = "is not modelled for the published form"
         found.append(("film.coupling", coupling, problem, f"Choose {MONOLITHIC} or auto."))

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case, Oil
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section
 from frbcli.film.section_faults import no_inflow, runs_dry, starves
-from frbcli.scene.coupling import REMEMBERING
 from frbcli.scene.films import film_places
 from frbcli.scene.keys import film_keys
 from frbcli.scene.published import is_published
@@ -49,11 +49,12 @@ class UnfedFilm:
 
 
 def is_unfed(section: Section, cavitation: str) -> bool:
-    """Whether no oil is pushed into a film, so far as its cavitation model can tell: Elrod's feels it in an oil bath,
-    too; Peeken's draws oil from any groove."""
-    if cavitation == "elrod":
+    """Whether no oil is pushed into a film, so far as its cavitation law can tell: one that empties feels it in an oil
+    bath, too; one whose cavity falls below p_cav draws oil from any groove."""
+    law = law_named(cavitation)
+    if law.empties:
         return no_inflow(section)
-    return runs_dry(section) if cavitation == "peeken" else starves(section)
+    return runs_dry(section) if law.keeps_oil and not law.starves else starves(section)
 
 
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
@@ -63,7 +64,7 @@ def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
         film, cavitation = place.geometry, case.cavitation(place.geometry)
         section = film_section(case, film, place.mouths)
         if is_unfed(section, cavitation):
-            keeps = cavitation in REMEMBERING and not is_published(case)
+            keeps = law_named(cavitation).keeps_oil and not is_published(case)
             cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)
             found.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
     return tuple(found)
@@ -86,6 +87,6 @@ def _remedy(film: FilmGeometry, oil: Oil, key: str, cavitation: str) -> str:
     if film.supply.kind == "none":
         example = '{ kind = "circumferential-groove", pressure = "2 bar" }'
         first = f"Give it a supply above {cavities}, e.g. {key}.supply = {example}"
-    pushes = cavitation != "elrod" or oil.ambient_pressure > oil.cavitation_pressure
+    pushes = not law_named(cavitation).empties or oil.ambient_pressure > oil.cavitation_pressure
     bath = f', or write {key}.ends = "oil-bath"' if film.ends == "free-to-air" and pushes else ""
     return f"{first}{bath}."

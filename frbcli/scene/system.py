@@ -44,7 +44,7 @@ class System:
     solved: what the tables of penalty films are made of. bodies: (films, 2) what lies
     inside and outside of each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing
     in N m s, the Couette torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the
-    films' cavitation models; follows: what their parameters follow; torque, cavitation_factor: see FilmModel.
+    films' cavitation models; torque, cavitation_factor: see FilmModel.
     """
 
     rotor: LinearRotor
@@ -59,7 +59,6 @@ class System:
     solved: tuple[SourceFilm, ...] = ()
     ring_count: int = 0
     laws: tuple[str, ...] = ()
-    follows: tuple[int, ...] = ()
     torque: str = "all"
     cavitation_factor: str = "none"
 
@@ -98,7 +97,7 @@ class System:
     def film_force(self, index: int, displacement: Array, velocity: Array, omega: float) -> FilmForce:
         """As film.bearing.evaluate; a film with oil of its own is taken as settled. Raises NotConverged."""
         if isinstance(self.films, VolumeFilms):
-            return steady_force(self.volumes[index], self.follows[index], displacement, velocity, omega)
+            return steady_force(self.volumes[index], displacement, velocity, omega)
         if isinstance(self.films, PublishedFilm):
             return published_force(self.films, displacement, velocity, omega)
         return evaluate(self.films[index], self.clearances[index], displacement, velocity, omega)
@@ -125,13 +124,11 @@ def make_system(case: Case, plan: Plan) -> System:
     if plan.cells is not None and plan.form == PUBLISHED:
         return replace(system, films=run_film(case, plan.cells))
     if plan.cells is not None:
-        made = [volume_film(case, place, plan.cells) for place in places]
-        volumes, follows = tuple(film for film, _ in made), tuple(which for _, which in made)
-        whirling = case.film.two_phase.whirl_steepness or 0.0
-        data = volume_films(volumes, follows, channel_pulls(case, volumes), whirling, case.contact.eccentricity)
+        volumes = tuple(volume_film(case, place, plan.cells) for place in places)
+        data = volume_films(volumes, channel_pulls(case, volumes), case.contact.eccentricity)
         data = with_channels(data, volumes, coupled_channels(case, volumes))
         factor = case.film.cavitation_factor
-        return replace(system, films=data, volumes=volumes, follows=follows, cavitation_factor=factor)
+        return replace(system, films=data, volumes=volumes, cavitation_factor=factor)
     bearings = tuple(_bearing(case, place.geometry) for place in places)
     if plan.form == SOLUTIONS:
         solved = tuple(source_film(case, place.geometry, plan.mesh) for place in places)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.table import Mesh
-from frbcli.scene.coupling import REMEMBERING
 from frbcli.scene.films import film_places, is_plain
 
 SOLUTIONS = "table over eccentricity, direction and speed"
@@ -20,9 +20,9 @@ def table_obstacle(case: Case) -> str:
     """Why films that are not all clipped cannot be tabulated, or nothing."""
     film, oil = case.film, case.oil
     for cavitation in case.cavitations:
-        if cavitation in REMEMBERING:
+        if law_named(cavitation).keeps_oil:
             return f"{cavitation} keeps its oil: the force does not follow from the motion alone"
-        if cavitation != "penalty":
+        if not law_named(cavitation).tabulated:
             return f"{cavitation} has no such table"
     if film.grid != "fixed":
         return f"a {film.grid} grid is one of cells"

@@ -8,49 +8,43 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
-from frbcli.film.cavitation.compiled import empty_unknown
+from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
 from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
 from frbcli.film.cells.block_cyclic import solve_ring
 from frbcli.film.cells.channel_flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
-    AMBIENT,
     AREA,
-    CAVITY,
     COS,
     GAP,
-    LAW,
     LEAST_GAP,
     MOUTH,
     PULL,
-    REFERENCE,
     REMEMBERS,
     SIN,
     STOPS_FROM,
     UNKNOWN,
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
-from frbcli.film.cells.states import FRACTION, cell_states, law_parameters
+from frbcli.film.cells.states import FRACTION, cell_states, follow_law
 from frbcli.film.contact_gap import kept_gap
 
-# How a film's grid stands, where the journal is in it, and the parameters of its law.
-# EMPTY: empty_unknown of that law. FOLLOWS_X, FOLLOWS_Y, FOLLOWS_XY: the symmetric matrix by which the gap follows the
-# journal, see kept_gap.
+# How a film's grid stands, where the journal is in it, and from LAW on its law as follow_law has it.
+# FOLLOWS_X, FOLLOWS_Y, FOLLOWS_XY: the symmetric matrix by which the gap follows the journal, see kept_gap.
 (
     GRID_TURN,
     GRID_SPEED,
     GRID_X,
     GRID_Y,
     UNSETTLED,
-    LAW_FIRST,
-    LAW_SECOND,
-    EMPTY,
     FOLLOWS_X,
     FOLLOWS_Y,
     FOLLOWS_XY,
-    GRIDS,
-) = range(12)
+    LAW,
+) = range(9)
+GRIDS = LAW + LAW_NUMBERS
 SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
@@ -64,6 +58,24 @@ def follow(grid, v_x, v_y):  # type: ignore[no-untyped-def]
     """What the film feels of a velocity."""
     xy = grid[FOLLOWS_XY]
     return grid[FOLLOWS_X] * v_x + xy * v_y, xy * v_x + grid[FOLLOWS_Y] * v_y
+
+
+@njit(cache=True, error_model="numpy")
+def set_law(numbers, grid, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+    """Keep with the grid what the film's law is at this motion, see follow_law."""
+    law = np.empty(LAW_NUMBERS)
+    follow_law(numbers, d_x, d_y, v_x, v_y, omega, law)
+    for i in range(LAW_NUMBERS):
+        grid[LAW + i] = law[i]
+
+
+@njit(cache=True, error_model="numpy")
+def law_of(grid):  # type: ignore[no-untyped-def]
+    """(LAW_NUMBERS,) the law that set_law has kept, in one piece."""
+    law = np.empty(LAW_NUMBERS)
+    for i in range(LAW_NUMBERS):
+        law[i] = grid[LAW + i]
+    return law
 
 
 @njit(cache=True, error_model="numpy")
@@ -117,12 +129,9 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
     remembers = numbers[REMEMBERS] != 0.0
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
-        grid[LAW_FIRST], grid[LAW_SECOND] = law_parameters(numbers, d_x, d_y, v_x, v_y, omega)
-        grid[EMPTY] = empty_unknown(
-            int(numbers[LAW]), grid[LAW_FIRST], grid[LAW_SECOND], numbers[REFERENCE], numbers[CAVITY], numbers[AMBIENT]
-        )
+        set_law(numbers, grid, d_x, d_y, v_x, v_y, omega)
     drop, rate = numbers[PULL] * spin * spin, 1.0 / g if remembers else 0.0
-    cell_states(numbers, cells, grid[LAW_FIRST], grid[LAW_SECOND], drop, w, states)
+    cell_states(numbers, cells, law_of(grid), drop, w, states)
     balances(
         numbers, ring, width, cells, states, x, y, omega - 2.0 * spin, rate, past, g, v_f, v_g, spin, stencil, fields,
         flows,
@@ -184,7 +193,7 @@ def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untype
     cell that leaps over all of the steep part stops in its middle, from where it gets to its end directly.
     """
     m, k = w.shape
-    empty = grid[EMPTY]
+    empty = grid[LAW + EMPTY]
     c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
     u_x, u_y = follow(grid, u_x, u_y)
     x, y = c * u_x + s * u_y, c * u_y - s * u_x

@@ -21,19 +21,18 @@ from frbcli.film.cells.channel_flow import (
     push_of_channel,
 )
 from frbcli.film.cells.data import FILM, SLOT
-from frbcli.film.cells.states import law_parameters
-from frbcli.solve.cell_films import FOLLOWS_X, FOLLOWS_XY, FOLLOWS_Y, GRID_SPEED, GRID_TURN, LAW_FIRST, LAW_SECOND
+from frbcli.solve.cell_films import FOLLOWS_X, FOLLOWS_XY, FOLLOWS_Y, GRID_SPEED, GRID_TURN, law_of, set_law
 from frbcli.solve.dense import solve_dense
 
 
 @njit(cache=True, error_model="numpy")
-def set_law(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-untyped-def]
+def set_laws(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-untyped-def]
     """The parameters of the films' laws where the journals are guessed to be."""
     for f in range(clearances.shape[0]):
         d_x = (x_0[2 * f] + g * u[2 * f]) / clearances[f]
         d_y = (x_0[2 * f + 1] + g * u[2 * f + 1]) / clearances[f]
         v_x, v_y = u[2 * f] / clearances[f], u[2 * f + 1] / clearances[f]
-        grids[LAW_FIRST, f], grids[LAW_SECOND, f] = law_parameters(films.numbers[f], d_x, d_y, v_x, v_y, omega[2 * f])
+        set_law(films.numbers[f], grids[:, f], d_x, d_y, v_x, v_y, omega[2 * f])
 
 
 @njit(cache=True, error_model="numpy")
@@ -44,9 +43,8 @@ def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
     for q in range(count):
         f = int(films.mouths[q, FILM])
         means[q] = mouth_pressure(
-            films.numbers[f], films.cells[f], grids[LAW_FIRST, f], grids[LAW_SECOND, f], w[f], films.mouths[q],
-            films.mouth_cells[q],
-        )  # fmt: skip
+            films.numbers[f], films.cells[f], law_of(grids[:, f]), w[f], films.mouths[q], films.mouth_cells[q]
+        )
     channel_pressures(films.channels, films.mouths, grids[GRID_SPEED], means)
     for q in range(count):
         f = int(films.mouths[q, FILM])

@@ -12,7 +12,7 @@ from numba.extending import overload
 
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.solve.cell_films import GRID_X, GRID_Y, cell_numbers, move_cells, sheared
-from frbcli.solve.channels import follow_journals, join, set_law, set_pressures
+from frbcli.solve.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.films import Work, have_cells
 from frbcli.solve.state import Array
 
@@ -111,7 +111,7 @@ def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # typ
     def volumes(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
         if films.mouths.shape[0] > 0:
             if iteration == 0:
-                set_law(films, work.grids, x_0, u, omega, clearances, g)
+                set_laws(films, work.grids, x_0, u, omega, clearances, g)
             set_pressures(films, work.grids, work.w, work.channel)
 
     return volumes

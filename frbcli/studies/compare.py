@@ -12,16 +12,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.bearing_tests.plan import MODELS
 from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.film.cavitation.table import laws, names
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.run import earlier_run, is_interrupted, runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
-from frbcli.scene.film_choice import CLOSED
 from frbcli.scene.plan import THEORIES, make_plan
 
 if TYPE_CHECKING:
@@ -168,14 +167,15 @@ def make_variants(
     case: Case, cavitations: Sequence[str] = (), theories: Sequence[str] = (), couplings: Sequence[str] = ()
 ) -> tuple[Variant, ...]:
     """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
-    faults = [*_unknown("--cavitation", cavitations, MODELS), *_unknown("--theory", theories, THEORIES)]
+    faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, THEORIES)]
     faults += _unknown("--coupling", couplings, COUPLINGS)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
     plan = make_plan(case)
     own = Variant(plan.theory, plan.cavitation, case.film.coupling)
     if not cavitations and not theories and not couplings:
-        others = (Variant(theory, cavitation, own.coupling) for cavitation in CLOSED for theory in THEORIES)
+        closed = names(law for law in laws() if law.closed)
+        others = (Variant(theory, cavitation, own.coupling) for cavitation in closed for theory in THEORIES)
         found = [own, *(variant for variant in others if _fits(case, variant))]
     else:
         found = [
@@ -187,7 +187,7 @@ def make_variants(
     variants = tuple(dict.fromkeys(found))
     if len(variants) < 2:
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
-        remedy = f"There are --cavitation {','.join(MODELS)} and --theory {','.join(THEORIES)}, "
+        remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(THEORIES)}, "
         remedy += f"--coupling {','.join(COUPLINGS)}."
         raise InputError(case.name or "case", (Fault("comparison", "", None, problem, remedy),))
     return variants

@@ -1,121 +1,167 @@
-"""The cavitation laws cell by cell, compiled: the same as the classes in film/cavitation, which tests hold them to."""
+"""The laws compiled, each by itself, and how a compiled film calls one that it does not know.
+
+A film holds the addresses of two functions of its law, which numba makes from `cell`, `follow` and `empty` (law.py).
+So the kernels of films are compiled once for all laws, also for those that a user adds, and nothing compiled of
+a law is kept anywhere but in its own functions. Numba keeps these beside the file of a shipped law, until that file
+changes; those of a user's law are made anew in every process, since they may call what stands in other files.
+"""
 
 from __future__ import annotations
 
-import math
+import ctypes
+import inspect
+from collections.abc import Callable
+from dataclasses import fields
+from functools import cache
+from types import FunctionType
+from typing import Any, NamedTuple
 
-from numba import njit
+import numpy as np
+from llvmlite import ir
+from numba import cfunc, njit, types
+from numba.extending import intrinsic
+from numba.np.numpy_support import carray
+from numba.np.unsafe import ndarray
 
-from frbcli.film.cavitation.elrod import Elrod
-from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation import penalty
+from frbcli.film.cavitation.law import CellState, Law, Scales
+from frbcli.film.cavitation.table import LARGEST_PARAMETERS, SHIPPED
 
-SOMMERFELD, REYNOLDS, PENALTY, PEEKEN, ELROD, TWO_PHASE = range(6)
+# What a film keeps of its law while its journal moves: the parameters, and w below which a cell is empty.
+EMPTY = LARGEST_PARAMETERS
+LAW_NUMBERS = LARGEST_PARAMETERS + 1
+ECCENTRICITY, SPEED, WHIRL, MOTION = range(4)  # what a law may follow
+STATES = 6  # of a cell, see Law.cell
 
-
-def law_code(law: Law) -> tuple[int, float, float]:
-    """(kind, its first parameter, its second) of a law. Raises KeyError for one that is not compiled."""
-    codes: dict[type, tuple[int, tuple[str, ...]]] = {
-        Sommerfeld: (SOMMERFELD, ()),
-        Reynolds: (REYNOLDS, ()),
-        Penalty: (PENALTY, ("prefactor", "steepness")),
-        Peeken: (PEEKEN, ("bunsen",)),
-        Elrod: (ELROD, ("bulk_modulus",)),
-        TwoPhase: (TWO_PHASE, ("steepness", "outer_slope")),
-    }
-    kind, names = codes[type(law)]
-    first, second = [float(getattr(law, name)) for name in names] + [0.0] * (2 - len(names))
-    return kind, first, second
-
-
-@njit(cache=True, error_model="numpy")
-def wright_omega(x):  # type: ignore[no-untyped-def]
-    """The real solution of omega + ln omega = x, by two steps of Fritsch, Shafer and Crowley's iteration."""
-    if x < -36.0:
-        return math.exp(x)
-    if x < 1.0:
-        e = math.exp(x)
-        omega = e / (1.0 + e) if x < -1.0 else 0.5671432904097838 + 0.36 * x + 0.07 * x * x
-    else:
-        omega = x - math.log(x) * (1.0 - 1.0 / (1.0 + x))
-    for _ in range(2):
-        r = x - omega - math.log(omega)
-        q = (1.0 + omega) * (1.0 + omega + 2.0 * r / 3.0)
-        omega *= 1.0 + r / (1.0 + omega) * (q - 0.5 * r) / (q - r)
-    return omega
+_POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+_FOLLOW = types.void(_POINTER, _POINTER, _POINTER, _POINTER)
+_CELLS = types.void(types.intp, _POINTER, _POINTER, _POINTER, _POINTER)
+_DOUBLES = ctypes.POINTER(ctypes.c_double)
+_first: Any = ndarray.to_fixed_tuple  # the first numbers of an array as a tuple
+# Stand in the templates below for those of one law.
+cell, follow, empty, COUNT = Law.cell, Law.follow, Law.empty, 1
 
 
-@njit(cache=True, error_model="numpy")
-def empty_unknown(kind, first, second, reference, cavity, ambient):  # type: ignore[no-untyped-def]
-    """w below which a cell is empty and its oil hardly changes any more; -inf for laws without such an end."""
-    if kind != TWO_PHASE:
-        return -math.inf
-    return second * (2.0 * first - 1.0) - 1.0 - 2.0 * (1.0 - first) * (cavity + ambient) / reference
+class CompiledLaw(NamedTuple):
+    """C functions of a law. follow(given, motion, scales, law) fills law (LAW_NUMBERS,) from the parameters of the
+    centred journal; cells(n, law, scales, w, states) fills states (6, n) of the unknowns w (n,)."""
+
+    follow: Any
+    cells: Any
 
 
-@njit(cache=True, error_model="numpy")
-def cell_law(kind, first, second, w, reference, cavity, ambient):  # type: ignore[no-untyped-def]
-    """(pressure, oil fraction, source, and their derivatives by w) of one cell; see CellState for their units."""
-    if kind == SOMMERFELD:
-        return cavity + w * reference, 1.0, 0.0, reference, 0.0, 0.0
-    if kind == PENALTY:
-        target = w * reference
-        omega = wright_omega(math.log(first * second) - second * target)
-        above = -math.log(omega / (first * second)) / second if omega > 1.0 else target + omega / second
-        slope = reference / (1.0 + omega)
-        return cavity + above, 1.0, omega / second, slope, 0.0, -omega * slope
-    if kind == ELROD:
-        if w > 0.0:
-            packed = w * reference / first
-            held = math.exp(min(packed, 1.0))
-            return cavity + w * reference, held * max(packed, 1.0), 0.0, reference, held * reference / first, 0.0
-        return cavity, 1.0 + w, 0.0, 0.0, 1.0, 0.0
-    if kind == REYNOLDS:
-        if w > 0.0:
-            return cavity + w * reference, 1.0, 0.0, reference, 0.0, 0.0
-        return cavity, 1.0, -w * reference, 0.0, 0.0, -reference
-    absolute = cavity + ambient
-    ratio = absolute / reference
-    if kind == PEEKEN:
-        if w > 0.0:
-            return cavity + w * reference, 1.0, 0.0, reference, 0.0, 0.0
-        partial = max(w, -1.0 - ratio)
-        linear = first + ratio - partial * (1.0 - first)
-        root = math.sqrt(max(linear * linear + 4.0 * ratio * (1.0 - first) * partial, 0.0))
-        fall = -2.0 * partial / (linear + root)
-        steep = first / (1.0 - fall * (1.0 - first)) ** 2
-        fall -= (w - partial) / (steep + ratio)
-        rise = 1.0 / (steep + ratio)
-        return cavity - fall * absolute, 1.0 + w + fall * ratio, 0.0, absolute * rise, steep * rise, 0.0
-    return _two_phase(first, second, w, cavity, absolute, ratio)
+@cache
+def compiled_law(law: Any) -> CompiledLaw:
+    """The functions of a law, compiled in this process or found where numba keeps them."""
+    shared = {"COUNT": max(len(fields(law)), 1), "cell": compiled_cell(law)}
+    shared |= {name: _jitted(getattr(law, name)) for name in ("follow", "empty")}
+    return CompiledLaw(_for_law(law, _follow, _FOLLOW, shared), _for_law(law, _cells, _CELLS, shared))
 
 
-@njit(cache=True, error_model="numpy")
-def _two_phase(steepness, outer_slope, w, cavity, absolute, ratio):  # type: ignore[no-untyped-def]
-    """See TwoPhase.cells."""
-    x_0 = 2.0 * steepness - 1.0
-    bottom = outer_slope * x_0 - 1.0 + (x_0 - 1.0) * ratio
-    if w > 0.0 or w < bottom:
-        depth, start = (0.0, 0.0) if w > 0.0 else (x_0 - 1.0, bottom)
-        rise, slope = depth + (w - start) / (ratio + outer_slope), outer_slope
-    else:
-        height, m = 1.0 - outer_slope * x_0, outer_slope * (1.0 - x_0) / (1.0 - x_0 * outer_slope)
-        cubic, linear = height * (1.0 - m), height * m + (1.0 - x_0) * ratio
-        p = (1.5 * cubic + linear) / (2.0 * cubic)
-        q = (0.5 * (cubic + linear) - (w - bottom)) / (2.0 * cubic)
-        radius = math.sqrt(p / 3.0)
-        sine = min(max(q / (2.0 * radius * radius * radius), -1.0), 1.0)
-        place = 0.5 - 2.0 * radius * math.sin(math.asin(sine) / 3.0)
-        for _ in range(2):
-            place = min(max(place, 0.0), 1.0)
-            defect = cubic * place * place * (3.0 - 2.0 * place) + linear * place - (w - bottom)
-            place -= defect / (6.0 * cubic * place * (1.0 - place) + linear)
-        place = min(max(place, 0.0), 1.0)
-        rise = (x_0 - 1.0) * (1.0 - place)
-        slope = height / (1.0 - x_0) * ((1.0 - m) * 6.0 * place * (1.0 - place) + m)
-    by_w = 1.0 / (slope + ratio)
-    return cavity + rise * absolute, 1.0 + w - rise * ratio, 0.0, absolute * by_w, slope * by_w, 0.0
+def compiled_cell(law: type[Law]) -> Any:
+    """`cell` of a law for kernels that are made for this law alone."""
+    return _jitted(law.cell)
+
+
+def addresses(law: Law) -> tuple[float, float]:
+    """Of follow and cells of a law, as numbers of a film. Those of today's machines are below 2^53, so exact."""
+    kind: Any = type(law)
+    found = tuple(function.address for function in compiled_law(kind))
+    if any(int(float(address)) != address for address in found):
+        raise MemoryError("an address of a compiled function does not fit into a number")
+    return float(found[0]), float(found[1])
+
+
+def given_parameters(law: Law) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """(LARGEST_PARAMETERS,) parameters of a law, filled up with zeros."""
+    found = np.zeros(LARGEST_PARAMETERS)
+    found[: len(law.parameters)] = law.parameters
+    return found
+
+
+def compiled_cells(law: Law, w: np.ndarray[Any, np.dtype[np.float64]], scales: Scales) -> CellState:
+    """Law.cells by the compiled form."""
+    unknowns = np.ascontiguousarray(w, dtype=np.float64)
+    numbers, pressures, states = given_parameters(law), np.array(scales), np.empty((STATES, *unknowns.shape))
+    arrays = (array.ctypes.data_as(_DOUBLES) for array in (numbers, pressures, unknowns, states))
+    kind: Any = type(law)
+    compiled_law(kind).cells.ctypes(unknowns.size, *arrays)
+    return CellState(*states)
+
+
+def _call_follow(typingctx, address, given, motion, scales, law):  # type: ignore[no-untyped-def]
+    """CompiledLaw.follow at an address, with arrays in one piece."""
+    return types.void(types.intp, given, motion, scales, law), _call(0)
+
+
+def _call_cells(typingctx, address, n, law, scales, w, states):  # type: ignore[no-untyped-def]
+    """CompiledLaw.cells at an address, with arrays in one piece."""
+    return types.void(types.intp, types.intp, law, scales, w, states), _call(1)
+
+
+call_follow: Any = intrinsic(_call_follow)
+call_cells: Any = intrinsic(_call_cells)
+
+
+def _call(numbers: int) -> Callable[..., Any]:
+    """Code that calls an address with some whole numbers and then with the data of arrays."""
+
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        pointer = ir.DoubleType().as_pointer()
+        given = list(arguments[1 : 1 + numbers])
+        kinds = [value.type for value in given]
+        for kind, array in zip(signature.args[1 + numbers :], arguments[1 + numbers :], strict=True):
+            given.append(context.make_array(kind)(context, builder, array).data)
+            kinds.append(pointer)
+        function = ir.FunctionType(ir.VoidType(), kinds)
+        builder.call(builder.inttoptr(arguments[0], function.as_pointer()), given)
+        return context.get_dummy_value()
+
+    return generate
+
+
+def _follow(given, motion, scales, law):  # type: ignore[no-untyped-def]
+    """CompiledLaw.follow of the law whose functions stand for follow and empty."""
+    at, pressures, out = carray(motion, (MOTION,)), carray(scales, (3,)), carray(law, (LAW_NUMBERS,))
+    parameters = follow(_first(carray(given, (COUNT,)), COUNT), at[ECCENTRICITY], at[SPEED], at[WHIRL])
+    for i in range(COUNT):
+        out[i] = parameters[i]
+    out[EMPTY] = empty(parameters, Scales(pressures[0], pressures[1], pressures[2]))
+
+
+def _cells(n, law, scales, w, states):  # type: ignore[no-untyped-def]
+    """CompiledLaw.cells of the law whose function stands for cell."""
+    parameters, pressures = _first(carray(law, (COUNT,)), COUNT), carray(scales, (3,))
+    at = Scales(pressures[0], pressures[1], pressures[2])
+    unknowns, out = carray(w, (n,)), carray(states, (STATES, n))
+    for i in range(n):
+        out[0, i], out[1, i], out[2, i], out[3, i], out[4, i], out[5, i] = cell(unknowns[i], parameters, at)
+
+
+def _for_law(law: type[Law], template: Any, signature: Any, shared: dict[str, Any]) -> Any:
+    """A template compiled with the functions of a law, as if it stood in the file of the law."""
+    shipped = law in SHIPPED
+    file = inspect.getfile(law) if shipped else __file__
+    code = template.__code__.replace(co_filename=file)
+    function = FunctionType(code, {**globals(), **shared})
+    function.__module__ = law.__module__ if shipped else __name__
+    function.__qualname__ = f"{law.__qualname__}.{template.__name__}"
+    return cfunc(signature, cache=shipped, error_model="numpy")(function)
+
+
+def _jitted(function: Any) -> Any:
+    """A plain function as numba takes it, with every plain function that it calls."""
+    if not _is_plain(function):
+        return function
+    known = function.__globals__
+    called = {name: _jitted(known[name]) for name in function.__code__.co_names if _is_plain(known.get(name))}
+    names = {**known, **called}
+    made = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
+    return njit(error_model="numpy")(made)
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, FunctionType)
+
+
+wright_omega = njit(cache=True, error_model="numpy")(penalty.wright_omega)

@@ -2,21 +2,42 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+
+BAR = 1e5
 
 
 @dataclass(frozen=True)
-class Elrod:
+class Elrod(Law):
     """bulk_modulus: beta of the full film over 12 eta / psi^2, in 1/s; infinite for an incompressible oil."""
 
-    bulk_modulus: float = np.inf
-    conserves = True
-    order = FRONTS
-    clips = False
+    bulk_modulus: float = math.inf
+
+    name = "elrod"
+    label = "Elrod"
+    equation = "(3.34) to (3.37)"
+    meaning = "Elrod's model."
+    cell_words = "full above `p_cav`, or `p_cav` and less oil"
+    keys = (
+        Key("bulk_modulus", None, "of the full film; incompressible if not given", "210 GPa", unit="Pa", above=0.0),
+    )
+    starves = True
+    empties = True
+
+    @classmethod
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        return cls() if given.bulk_modulus is None else cls(given.bulk_modulus / oil.scale)
+
+    @classmethod
+    def legend(cls, given: Any) -> str:
+        modulus = given.bulk_modulus
+        return f"Elrod, {'incompressible' if modulus is None else f'bulk modulus {modulus / BAR:.4g} bar'}"
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         full = w > 0.0
@@ -33,3 +54,18 @@ class Elrod:
             fraction_slope=np.where(full, steep, 1.0),
             source_slope=zero,
         )
+
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        if w > 0.0:
+            packed = w * scales.reference / parameters[0]
+            held = math.exp(min(packed, 1.0))
+            steep = held * scales.reference / parameters[0]
+            return (
+                scales.cavitation + w * scales.reference, held * max(packed, 1.0), 0.0, scales.reference, steep, 0.0
+            )  # fmt: skip
+        return scales.cavitation, 1.0 + w, 0.0, 0.0, 1.0, 0.0
+
+    def curve(self, ratio: Array) -> Array:
+        """theta (3.35) of a full film, 0 below p_cav: at p_cav itself it takes every value up to 1."""
+        return np.asarray(np.where(ratio < 1.0, 0.0, np.exp((ratio - 1.0) / self.bulk_modulus)), dtype=np.float64)

@@ -1,9 +1,9 @@
-"""What a cavitation law is."""
+"""What a cavitation law is: one class in one file, which declares and computes everything that is particular to it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,7 @@ class CellState:
     source_slope: Array
 
 
-@dataclass(frozen=True)
-class Scales:
+class Scales(NamedTuple):
     """Scaled gauge pressures in 1/s of one film: reference (> 0) of the unknown, cavitation, ambient (absolute)."""
 
     reference: float
@@ -33,25 +32,130 @@ class Scales:
     ambient: float
 
 
+class FilmOil(NamedTuple):
+    """What a law may need of a film: scale, 12 eta / psi^2 in Pa s, which a pressure is divided by to be scaled;
+    ambient and cavitation pressure, absolute, in Pa; density of the full oil in kg / m^3."""
+
+    scale: float
+    ambient: float
+    cavitation: float
+    density: float
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of the table [film.NAME] of a law.
+
+    A number has a unit ("" for none), an example with its unit, and bounds: above, below exclusive, least, most
+    inclusive. A word has choices. default: SI; None: need not be given.
+    """
+
+    name: str
+    default: float | str | None
+    meaning: str = ""
+    example: str = ""
+    unit: str = ""
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    most: float | None = None
+    choices: tuple[str, ...] = ()
+
+
+Cell = tuple[float, float, float, float, float, float]
+Numbers = tuple[float, ...]
 FRONTS = 1.5  # fronts between cells make the order 1 to 2: the middle of it
 
 
-class Law(Protocol):
-    """A cavitation model.
+class Law:
+    """A cavitation law; a subclass is a frozen dataclass, its fields are the numbers of the law as a film takes them.
 
-    conserves: whether oil neither appears nor vanishes in its cells; clips: whether loads take no pressure below p_cav;
-    order: by which forces become exact with smaller cells.
+    What a class declares:
+    name: in film.cavitation; label: in pictures; equation: its numbers in the dissertation, or the source; meaning: of
+    the table [film.NAME], a sentence; cell_words: what a cell does, for the documents; keys: of that table.
+    conserves: whether oil neither appears nor vanishes in its cells; keeps_oil: whether the oil of a cell is a state
+    that goes on from one moment to the next; cavitates: whether it does anything below p_cav; clips: whether loads take
+    no pressure below p_cav; closed: whether the pressure is that of a linear equation, known in closed form between
+    rectangles; tabulated: whether its source follows from the pressure of the cell alone, as a penalty's, so that
+    films without openings are tabulated; starves: whether its cavity stays so near to p_cav that no oil is drawn in;
+    empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
+    whether a source keeps the pressure from falling below p_cav; published_form: whether it has a published form, on
+    quadratic elements.
+    order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law.
+    compared: values of keys that the picture of theta(p) shows beside those of the case.
     """
 
-    @property
-    def conserves(self) -> bool: ...
+    name: ClassVar[str]
+    label: ClassVar[str]
+    equation: ClassVar[str] = ""
+    meaning: ClassVar[str] = ""
+    cell_words: ClassVar[str] = ""
+    keys: ClassVar[tuple[Key, ...]] = ()
+    conserves: ClassVar[bool] = True
+    keeps_oil: ClassVar[bool] = True
+    cavitates: ClassVar[bool] = True
+    clips: ClassVar[bool] = False
+    closed: ClassVar[bool] = False
+    tabulated: ClassVar[bool] = False
+    starves: ClassVar[bool] = False
+    empties: ClassVar[bool] = False
+    holds_cavity: ClassVar[bool] = False
+    published_form: ClassVar[bool] = False
+    order: ClassVar[float] = FRONTS
+    cost: ClassVar[float] = 1.0
+    compared: ClassVar[tuple[tuple[str, tuple[float, ...]], ...]] = ()
 
-    @property
-    def clips(self) -> bool: ...
+    @classmethod
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        """The law of one film from the values `given` for its keys, by attribute, and from its oil. What it follows in
+        a film is that of the centred journal at 1 rad/s, see follow."""
+        return cls()
 
-    @property
-    def order(self) -> float: ...
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """The compiled form: pressure, oil fraction, source and their slopes by w of one cell, see CellState.
+
+        parameters: the fields of the law, in their order. Numba compiles it with every function that it calls: plain
+        Python on numbers, with the functions of `math`; all six results are floats.
+        """
+        raise NotImplementedError
+
+    @staticmethod
+    def follow(parameters: Numbers, eccentricity: float, speed: float, whirl: float) -> Numbers:
+        """The parameters at an eccentricity, a speed omega_J + omega_S in rad/s and a share (0 to 1) of half-frequency
+        whirl; following them again changes nothing. Compiled as `cell` is."""
+        return parameters
+
+    @staticmethod
+    def empty(parameters: Numbers, scales: Scales) -> float:
+        """w below which a cell is empty and its oil hardly changes any more; by default there is no such. Compiled as
+        `cell` is."""
+        return -np.inf
 
     def cells(self, w: Array, scales: Scales) -> CellState:
-        """The state of cells with the unknown w, of any shape."""
-        ...
+        """The plain form: the state of cells with the unknown w, of any shape. A law without one takes its compiled
+        form for it."""
+        from frbcli.film.cavitation.compiled import compiled_cells
+
+        return compiled_cells(self, w, scales)
+
+    def curve(self, ratio: Array) -> Array:
+        """theta at p / p_cav (n,), of a law that keeps oil and whose pressures are scaled with p_cav. Raises
+        NotImplementedError where theta does not follow from the pressure."""
+        raise NotImplementedError
+
+    @classmethod
+    def legend(cls, given: Any) -> str:
+        """The law with the values `given` for its keys, as the picture of theta(p) calls it."""
+        return cls.label
+
+    @property
+    def parameters(self) -> Numbers:
+        """Its numbers, as `cell` takes them."""
+        return tuple(float(getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
+
+    def followed(self, eccentricity: float, speed: float, whirl: float = 0.0) -> Self:
+        """The law at an eccentricity, a speed and a share of whirl, see follow."""
+        names = (field.name for field in fields(self))  # type: ignore[arg-type]
+        values = self.follow(self.parameters, eccentricity, speed, whirl)
+        return replace(self, **dict(zip(names, values, strict=True)))  # type: ignore[type-var]

@@ -9,16 +9,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, Law, Numbers, Scales
 
 
 @dataclass(frozen=True)
-class Reynolds:
+class Reynolds(Law):
     """No parameters."""
 
+    name = "reynolds"
+    label = "Reynolds"
+    equation = "(3.30)"
+    cell_words = "pressure above `p_cav`, or a source that keeps it there"
     conserves = False
-    order = FRONTS
-    clips = False
+    keeps_oil = False
+    holds_cavity = True
+    cost = 0.8
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         full = w > 0.0
@@ -31,3 +36,9 @@ class Reynolds:
             fraction_slope=zero,
             source_slope=np.where(full, 0.0, -scales.reference),
         )
+
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        if w > 0.0:
+            return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
+        return scales.cavitation, 1.0, -w * scales.reference, 0.0, 0.0, -scales.reference

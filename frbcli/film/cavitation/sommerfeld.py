@@ -1,4 +1,4 @@
-"""Sommerfeld's condition: no cavitation at all. Half-Sommerfeld (3.29) clips its result when the loads are taken."""
+"""Sommerfeld's condition, no cavitation at all, and half-Sommerfeld (3.29), which clips its result."""
 
 from __future__ import annotations
 
@@ -6,17 +6,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, Law, Numbers, Scales
 
 
 @dataclass(frozen=True)
-class Sommerfeld:
-    """clips: half-Sommerfeld, the loads take no pressure below p_cav."""
+class Sommerfeld(Law):
+    """No parameters."""
 
-    clips: bool = False
-    conserves = True
-    order = FRONTS
+    name = "sommerfeld"
+    label = "Sommerfeld"
+    cell_words = "no cavitation: pressures below `p_cav` pull"
+    keeps_oil = False
+    cavitates = False
+    closed = True
+    cost = 0.7
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         zero, one = np.zeros_like(w), np.ones_like(w)
         return CellState(scales.cavitation + w * scales.reference, one, zero, one * scales.reference, zero, zero)
+
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
+
+
+@dataclass(frozen=True)
+class HalfSommerfeld(Sommerfeld):
+    """The same, and loads take no pressure below p_cav."""
+
+    name = "half-sommerfeld"
+    label = "half-Sommerfeld"
+    equation = "(3.29)"
+    cell_words = "the same; the loads take `p_cav` where the pressure is below it"
+    cavitates = True
+    clips = True

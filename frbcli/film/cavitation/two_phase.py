@@ -2,27 +2,69 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import FRONTS, Array, CellState, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 # theta'_0, the slope outside of the step. As published it makes the full film as compressible as a bulk modulus of
 # 1000 p_cav does; the unknown w needs none, so it may be chosen as small as one likes.
 PUBLISHED_SLOPE = 1e-3
+STAYS = 0.0
 POLISHING = 2  # Newton steps after the closed form, whose round-off is large near the ends of the step
 
 
 @dataclass(frozen=True)
-class TwoPhase:
-    """steepness: x_1 of (4.35), the place of the steepest slope over p_cav; outer_slope: theta'_0, at least 0."""
+class TwoPhase(Law):
+    """steepness: x_1 of (4.35), the place of the steepest slope over p_cav; outer_slope: theta'_0, at least 0;
+    whirl_steepness: what x_1 becomes in a half-frequency whirl, 0: it stays."""
 
     steepness: float
     outer_slope: float = PUBLISHED_SLOPE
-    conserves = True
-    order = FRONTS
-    clips = False
+    whirl_steepness: float = STAYS
+
+    name = "two-phase"
+    label = "two-phase"
+    equation = "(4.32) to (4.35)"
+    meaning = "The mass-conserving two-phase model."
+    cell_words = "a cubic step of `theta(p)` below `p_cav`"
+    keys = (
+        Key("steepness", 0.99, "x_1", "0.99", above=0.0, below=1.0),
+        Key(
+            "whirl_steepness", None, "x_1 while the journal whirls at about half the speed, in run-ups", "0.99",
+            above=0.0, below=1.0,
+        ),
+        Key("form", "conservative", choices=("conservative", "published")),
+        Key("diffusion", "consistent", choices=("consistent", "streamline", "none")),
+    )  # fmt: skip
+    starves = True
+    published_form = True
+    cost = 1.2
+
+    @classmethod
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        return cls(given.steepness, whirl_steepness=given.whirl_steepness or STAYS)
+
+    @classmethod
+    def legend(cls, given: Any) -> str:
+        return f"two-phase, $x_1$ = {given.steepness:g}"
+
+    @staticmethod
+    def follow(parameters: Numbers, eccentricity: float, speed: float, whirl: float) -> Numbers:
+        steepness, outer_slope, whirling = parameters
+        if whirling != STAYS:
+            steepness += (whirling - steepness) * whirl
+        return steepness, outer_slope, STAYS
+
+    @staticmethod
+    def empty(parameters: Numbers, scales: Scales) -> float:
+        """Where the step begins."""
+        steepness, outer_slope, _ = parameters
+        absolute = scales.cavitation + scales.ambient
+        return outer_slope * (2.0 * steepness - 1.0) - 1.0 - 2.0 * (1.0 - steepness) * absolute / scales.reference
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         """w = theta - 1 + (p - p_cav) / reference, solved for p: linear beyond the step, a cubic on it."""
@@ -44,6 +86,40 @@ class TwoPhase:
             fraction_slope=slope * rise_slope,
             source_slope=np.zeros_like(w),
         )
+
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """As `cells`."""
+        steepness, outer_slope, _ = parameters
+        cavity = scales.cavitation
+        absolute = cavity + scales.ambient
+        ratio = absolute / scales.reference
+        x_0 = 2.0 * steepness - 1.0
+        bottom = outer_slope * x_0 - 1.0 + (x_0 - 1.0) * ratio
+        if w > 0.0 or w < bottom:
+            depth, start = (0.0, 0.0) if w > 0.0 else (x_0 - 1.0, bottom)
+            rise, slope = depth + (w - start) / (ratio + outer_slope), outer_slope
+        else:
+            height, m = 1.0 - outer_slope * x_0, outer_slope * (1.0 - x_0) / (1.0 - x_0 * outer_slope)
+            cubic, linear = height * (1.0 - m), height * m + (1.0 - x_0) * ratio
+            p = (1.5 * cubic + linear) / (2.0 * cubic)
+            q = (0.5 * (cubic + linear) - (w - bottom)) / (2.0 * cubic)
+            radius = math.sqrt(p / 3.0)
+            sine = min(max(q / (2.0 * radius * radius * radius), -1.0), 1.0)
+            place = 0.5 - 2.0 * radius * math.sin(math.asin(sine) / 3.0)
+            for _ in range(POLISHING):
+                place = min(max(place, 0.0), 1.0)
+                defect = cubic * place * place * (3.0 - 2.0 * place) + linear * place - (w - bottom)
+                place -= defect / (6.0 * cubic * place * (1.0 - place) + linear)
+            place = min(max(place, 0.0), 1.0)
+            rise = (x_0 - 1.0) * (1.0 - place)
+            slope = height / (1.0 - x_0) * ((1.0 - m) * 6.0 * place * (1.0 - place) + m)
+        by_w = 1.0 / (slope + ratio)
+        return cavity + rise * absolute, 1.0 + w - rise * ratio, 0.0, absolute * by_w, slope * by_w, 0.0
+
+    def curve(self, ratio: Array) -> Array:
+        """theta (4.32)."""
+        return self.fraction(ratio)[0]
 
     def fraction(self, y: Array) -> tuple[Array, Array]:
         """theta and its slope at y = p / p_cav (n,), (4.32) and (4.33)."""

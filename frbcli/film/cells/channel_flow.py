@@ -12,11 +12,9 @@ from __future__ import annotations
 
 from numba import njit
 
-from frbcli.film.cavitation.compiled import cell_law
 from frbcli.film.cells.balances import CHANNELS_NET, SIDES
 from frbcli.film.cells.block_cyclic import CENTRE
 from frbcli.film.cells.data import (
-    AMBIENT,
     CAVITY,
     CLIPS,
     CONDUCTANCE,
@@ -26,17 +24,15 @@ from frbcli.film.cells.data import (
     FORCE_SCALE,
     GROOVE_PRESSURE,
     INNER,
-    LAW,
     MOUTH,
     OUTER,
     PRESSURE_SCALE,
     PUSH_X,
     PUSH_Y,
-    REFERENCE,
     RESISTANCE,
     THROWN,
 )
-from frbcli.film.cells.states import PRESSURE, PRESSURE_SLOPE
+from frbcli.film.cells.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 
 
 @njit(cache=True, error_model="numpy")
@@ -66,16 +62,13 @@ def ask_of_channels(cells, right):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def mouth_pressure(numbers, cells, first, second, w, mouth, places):  # type: ignore[no-untyped-def]
+def mouth_pressure(numbers, cells, law, w, mouth, places):  # type: ignore[no-untyped-def]
     """Mean pressure of the cells of a mouth, by their conductances."""
     total = 0.0
     for n in range(places.shape[0]):
         i, j = places[n, 0], places[n, 1]
         if i >= 0:
-            p, _, _, _, _, _ = cell_law(
-                int(numbers[LAW]), first, second, w[i, j], numbers[REFERENCE], numbers[CAVITY], numbers[AMBIENT]
-            )
-            total += cells[EXCHANGE, i, j] * p
+            total += cells[EXCHANGE, i, j] * pressure_of(numbers, law, w[i, j])
     return total / mouth[CONDUCTANCE]
 
 

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.cavitation.compiled import law_code
+from frbcli.film.cavitation.compiled import addresses, given_parameters
+from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.axial import axial_weights, end_slopes
 from frbcli.film.cells.plain.balance import NO_DISTANCE
 from frbcli.film.cells.plain.film import VolumeFilm
@@ -20,16 +21,16 @@ from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
-# Numbers of one film. PULL: by which the given pressures fall with the square of the grid's speed, in s; WHIRLING: what
-# FIRST becomes in a half-frequency whirl; STOPS_FROM, LEAST_GAP: see contact_gap.py.
+# Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; PULL: by which the given pressures fall with
+# the square of the grid's speed, in s; STOPS_FROM, LEAST_GAP: see contact_gap.py; from PARAMETERS on: those of its law,
+# of a centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
     CAVITY,
     AMBIENT,
-    LAW,
-    FIRST,
-    SECOND,
+    FOLLOW_AT,
+    CELLS_AT,
     CLIPS,
     REMEMBERS,
     NEAR,
@@ -40,16 +41,13 @@ CLOSED, GIVEN, FREE = range(3)
     FAR_RISE,
     FAR_BEND,
     FORCE_SCALE,
-    FOLLOWS,
     PULL,
-    WHIRLING,
     STOPS_FROM,
     LEAST_GAP,
-    FILM_NUMBERS,
-) = range(23)
-# Whether the penalty's b (3.32) follows the eccentricity, FIRST and SECOND being those of the centred journal; whether
-# both follow the speed, being those of 1 rad/s; whether the first follows the whirl of the journal.
-STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL = range(4)
+    PARAMETERS,
+) = range(20)
+SCALES_END = AMBIENT + 1  # REFERENCE, CAVITY and AMBIENT stand beside each other, as Scales has them
+FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
 # length of the cell; what a unit of pressure on it pushes the journal by.
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
@@ -83,14 +81,11 @@ class VolumeFilms(NamedTuple):
 
 def volume_films(
     films: Sequence[VolumeFilm],
-    follows: Sequence[int] = (),
     pulls: Sequence[float] = (),
-    whirling: float = 0.0,
     contact_eccentricity: float = LARGEST_ECCENTRICITY,
 ) -> VolumeFilms:
-    """The films as arrays; all have grids of the same shape. follows: what the parameters of their laws do; pulls: in
-    s; whirling: what the laws' first parameter becomes in a whirl, if it follows that; contact_eccentricity: from which
-    on the surfaces touch."""
+    """The films as arrays; all have grids of the same shape. pulls: in s; contact_eccentricity: from which on the
+    surfaces touch."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
@@ -103,16 +98,14 @@ def volume_films(
     )
     for index, film in enumerate(films):
         _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
-        data.numbers[index, FOLLOWS] = follows[index] if follows else STANDS
         data.numbers[index, PULL] = pulls[index] if pulls else 0.0
-        data.numbers[index, WHIRLING] = whirling
         data.numbers[index, STOPS_FROM], data.numbers[index, LEAST_GAP] = gap_limits(contact_eccentricity)
     return data
 
 
 def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Array) -> None:
     section, grid, scales, law = film.section, film.grid, film.scales, film.law
-    kind, first, second = law_code(law)
+    follow_at, cells_at = addresses(law)
     near, far = end_slopes(grid.z)
     centred = (0.0, 0.0)
     values = {
@@ -120,11 +113,10 @@ def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Ar
         REFERENCE: scales.reference,
         CAVITY: scales.cavitation,
         AMBIENT: scales.ambient,
-        LAW: kind,
-        FIRST: first,
-        SECOND: second,
+        FOLLOW_AT: follow_at,
+        CELLS_AT: cells_at,
         CLIPS: float(law.clips),
-        REMEMBERS: float(law.conserves and not law.clips and kind != 0),
+        REMEMBERS: float(law.keeps_oil),
         NEAR: ENDS[section.near],
         FAR: ENDS[section.far],
         FAR_PRESSURE: section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0,
@@ -136,6 +128,7 @@ def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Ar
     }
     for place, value in values.items():
         numbers[place] = value
+    numbers[PARAMETERS:] = given_parameters(law)
     face = grid.phi[1:]
     ring[SIN], ring[COS], ring[GAP] = (
         np.sin(grid.centre),

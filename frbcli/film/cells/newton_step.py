@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import balances
 from frbcli.film.cells.block_cyclic import CENTRE, solve_ring
 from frbcli.film.cells.data import AREA, CAVITY, CLIPS, COS, FORCE_SCALE, GAP, PULL, PUSH_X, PUSH_Y, SIN, UNKNOWN
-from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, law_parameters
+from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 
 
 @njit(cache=True, error_model="numpy")
@@ -88,8 +90,9 @@ def film_newton(  # type: ignore[no-untyped-def]
 
     See balances for the arguments; returns film_loads.
     """
-    first, second = law_parameters(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin)
-    cell_states(numbers, cells, first, second, numbers[PULL] * spin * spin, w, states)
+    law = np.empty(LAW_NUMBERS)
+    follow_law(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin, law)
+    cell_states(numbers, cells, law, numbers[PULL] * spin * spin, w, states)
     balances(
         numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
     )

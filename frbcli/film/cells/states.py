@@ -4,24 +4,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
-from frbcli.film.cavitation.compiled import cell_law
-from frbcli.film.cells.data import (
-    AMBIENT,
-    BY_ECCENTRICITY_AND_SPEED,
-    BY_WHIRL,
-    CAVITY,
-    FIRST,
-    FOLLOWS,
-    GIVEN_PRESSURE,
-    LAW,
-    REFERENCE,
-    SECOND,
-    STANDS,
-    UNKNOWN,
-    WHIRLING,
-)
+from frbcli.film.cavitation.compiled import ECCENTRICITY, MOTION, SPEED, WHIRL, call_cells, call_follow
+from frbcli.film.cells.data import CELLS_AT, FOLLOW_AT, GIVEN_PRESSURE, PARAMETERS, REFERENCE, SCALES_END, UNKNOWN
 
 # Layers of the states of the cells, their slopes by w last.
 PRESSURE, FRACTION, SOURCE, PRESSURE_SLOPE, FRACTION_SLOPE, SOURCE_SLOPE, STATES = range(7)
@@ -42,26 +29,20 @@ def whirl_share(d_x, d_y, v_x, v_y, speed):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def law_parameters(numbers, d_x, d_y, v_x, v_y, speed):  # type: ignore[no-untyped-def]
-    """The two parameters of a film's law at the displacement d, its rate v and the speed omega_J + omega_S, (3.32)."""
-    first, second = numbers[FIRST], numbers[SECOND]
-    if numbers[FOLLOWS] == BY_WHIRL:
-        return first + (numbers[WHIRLING] - first) * whirl_share(d_x, d_y, v_x, v_y, speed), second
-    if numbers[FOLLOWS] != STANDS:
-        second *= 10.0 ** (-2.0 * math.sqrt(d_x * d_x + d_y * d_y))
-    if numbers[FOLLOWS] == BY_ECCENTRICITY_AND_SPEED:
-        rate = max(abs(speed), 1.0)
-        first, second = first * rate, second / rate
-    return first, second
+def follow_law(numbers, d_x, d_y, v_x, v_y, speed, law):  # type: ignore[no-untyped-def]
+    """law (LAW_NUMBERS,) <- what a film's law is at the displacement d, its rate v and the speed omega_J + omega_S."""
+    motion = np.empty(MOTION)
+    motion[ECCENTRICITY], motion[SPEED] = math.sqrt(d_x * d_x + d_y * d_y), speed
+    motion[WHIRL] = whirl_share(d_x, d_y, v_x, v_y, speed)
+    call_follow(int(numbers[FOLLOW_AT]), numbers[PARAMETERS:], motion, numbers[REFERENCE:SCALES_END], law)
 
 
 @njit(cache=True, error_model="numpy")
-def cell_states(numbers, cells, first, second, drop, w, states):  # type: ignore[no-untyped-def]
-    """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law with these parameters. drop: by which
-    the given pressures are lower than they were made."""
+def cell_states(numbers, cells, law, drop, w, states):  # type: ignore[no-untyped-def]
+    """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law as follow_law has it; all arrays in
+    one piece. drop: by which the given pressures are lower than they were made."""
     m, k = w.shape
-    kind = int(numbers[LAW])
-    reference, cavity, ambient = numbers[REFERENCE], numbers[CAVITY], numbers[AMBIENT]
+    call_cells(int(numbers[CELLS_AT]), m * k, law, numbers[REFERENCE:SCALES_END], w, states)
     for i in range(m):
         for j in range(k):
             if cells[UNKNOWN, i, j] == 0.0:
@@ -72,8 +53,12 @@ def cell_states(numbers, cells, first, second, drop, w, states):  # type: ignore
                 )
                 for layer in range(PRESSURE_SLOPE, STATES):
                     states[layer, i, j] = 0.0
-            else:
-                p, theta, q, p_w, theta_w, q_w = cell_law(kind, first, second, w[i, j], reference, cavity, ambient)
-                states[PRESSURE, i, j], states[FRACTION, i, j], states[SOURCE, i, j] = p, theta, q
-                states[PRESSURE_SLOPE, i, j], states[FRACTION_SLOPE, i, j] = p_w, theta_w
-                states[SOURCE_SLOPE, i, j] = q_w
+
+
+@njit(cache=True, error_model="numpy")
+def pressure_of(numbers, law, w):  # type: ignore[no-untyped-def]
+    """Pressure of one cell with the unknown w."""
+    unknown, state = np.empty(1), np.empty(STATES)
+    unknown[0] = w
+    call_cells(int(numbers[CELLS_AT]), 1, law, numbers[REFERENCE:SCALES_END], unknown, state)
+    return state[PRESSURE]

@@ -8,11 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.errors import NotConverged
-from frbcli.film.cavitation.compiled import law_code
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.axial import axial_weights
-from frbcli.film.cells.data import BY_ECCENTRICITY_AND_SPEED, STANDS
 from frbcli.film.cells.grid import VolumeGrid, fitted_grid
 from frbcli.film.cells.plain.balance import Balance, Motion, Storage
 from frbcli.film.gap import Section, gap_rate
@@ -62,18 +60,17 @@ def row_equations(section: Section, grid: VolumeGrid, eccentricity: float) -> Ro
 
 @dataclass(frozen=True)
 class SourceFilm:
-    """A section with a penalty whose parameters follow what `follows` says (data.py), on mesh.circumferential x
-    mesh.axial cells. A law that follows the speed of rotation takes the cavitation pressure at all edges."""
+    """A section with a penalty on mesh.circumferential x mesh.axial cells. A law that follows the speed of rotation
+    takes the cavitation pressure at all edges."""
 
     section: Section
     law: Penalty
-    follows: int
     mesh: Mesh
 
     @property
     def relative(self) -> bool:
         """Whether the law's pressure follows the speed of rotation."""
-        return self.follows == BY_ECCENTRICITY_AND_SPEED
+        return self.law.by_speed
 
     @property
     def numbers(self) -> Array:
@@ -87,10 +84,7 @@ class SourceFilm:
         section, along = _half(self.section, self.mesh.axial)
         grid = fitted_grid(section, (eccentricity, 0.0), self.mesh.circumferential, along)
         equations = row_equations(section, grid, eccentricity)
-        kind, prefactor, steepness = law_code(self.law)
-        if self.follows != STANDS:
-            steepness *= 10.0 ** (-2.0 * eccentricity)
-        law = np.array([kind, prefactor, steepness])
+        law = np.array(self.law.followed(eccentricity, speed=1.0).parameters)
         forces = np.empty(velocities.shape)
         most = row_forces(
             law,

@@ -12,14 +12,16 @@ import math
 import numpy as np
 from numba import njit
 
-from frbcli.film.cavitation.compiled import cell_law
+from frbcli.film.cavitation.compiled import compiled_cell
+from frbcli.film.cavitation.law import Scales
+from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_ring
 
 SETTLED = 1e-3  # of the largest pressure: a correction after which what is left is its square
 PLAIN, DAMPING, LIMIT = 8, 0.5, 60  # iterations without damping; how it goes on from one to the next; all
 # Layers of the states of the cells: pressure above that of cavitation and source, and their slopes by w.
 ABOVE_CAVITY, SOURCE, RISE, FALL, LAYERS = range(5)
-KIND, FIRST, SECOND, LAW_NUMBERS = range(4)
+penalty_cell = compiled_cell(Penalty)
 
 
 @njit(cache=True, error_model="numpy")
@@ -62,13 +64,13 @@ def _settle(law, unit, stencil, loads, area, v_r, v_t, w, cells, newton, blocks,
     """w (m, k) <- unknowns, in units of `unit`, of the film that moves with (v_r, v_t); cells (LAYERS, m, k) <- its
     states. Returns the iterations, LIMIT if it has not settled."""
     m, k = w.shape
-    kind, first, second = int(law[KIND]), law[FIRST], law[SECOND]
-    speed = math.sqrt(v_r * v_r + v_t * v_t) + first
+    parameters, scales = (law[0], law[1], law[2]), Scales(unit, 0.0, 0.0)
+    speed = math.sqrt(v_r * v_r + v_t * v_t) + law[0]
     for iteration in range(LIMIT):
         largest, change = 0.0, 0.0
         for i in range(m):
             for j in range(k):
-                p, _, q, p_w, _, q_w = cell_law(kind, first, second, w[i, j], unit, 0.0, 0.0)
+                p, _, q, p_w, _, q_w = penalty_cell(w[i, j], parameters, scales)
                 change = max(change, abs(p - cells[ABOVE_CAVITY, i, j]))
                 largest = max(largest, abs(p))
                 cells[ABOVE_CAVITY, i, j], cells[SOURCE, i, j] = p, q
@@ -88,9 +90,9 @@ def _settle(law, unit, stencil, loads, area, v_r, v_t, w, cells, newton, blocks,
 def row_forces(law, unit, stencil, loads, area, push, width, velocities, forces):  # type: ignore[no-untyped-def]
     """forces (d, l, 2) <- integrals of the pressure above that of cavitation for the velocities (d, l, 2).
 
-    law: (LAW_NUMBERS,); unit: that w counts in beside the size of the velocity, 1/s; stencil, loads, area, push, width:
-    of RowEquations. Along l velocities are best sorted by size, the largest first: each begins where the one before it
-    has led. Returns the most iterations of one, LIMIT if it has not settled.
+    law: (3,) parameters of the penalty; unit: that w counts in beside the size of the velocity, 1/s; stencil, loads,
+    area, push, width: of RowEquations. Along l velocities are best sorted by size, the largest first: each begins
+    where the one before it has led. Returns the most iterations of one, LIMIT if it has not settled.
     """
     m, k = area.shape
     cells, newton = np.zeros((LAYERS, m, k)), np.zeros((ENTRIES, m, k))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import AxialGroove, groove_pressure
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.chain import chain_grid, chain_table
@@ -53,8 +54,8 @@ class RectangularBearing:
 
 
 def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: Mesh) -> FilmData:
-    """The film of a bearing. theory: "short" | "finite"; cavitation: "sommerfeld" | "half-sommerfeld"."""
-    clipped = cavitation == "half-sommerfeld"
+    """The film of a bearing. theory: "short" | "finite"; cavitation: a law that is closed."""
+    clipped = law_named(cavitation).clips
     supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
     sigma = (supply - bearing.ambient_pressure) / bearing.pressure_scale
     level = (bearing.cavitation_pressure - bearing.ambient_pressure) / bearing.pressure_scale

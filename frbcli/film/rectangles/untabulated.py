@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.clip import clipped_line, force_weights
@@ -58,7 +59,7 @@ def direct_force(
     motion = _motion(bearing, displacement, velocity, omega)
     pressure = section_pressure(bearing, mesh, motion.eccentricity, motion.w_r, motion.w_t)
     level = _scaled(bearing, bearing.cavitation_pressure)
-    if cavitation == "sommerfeld":  # any level below all pressures: a constant pressure carries nothing
+    if not law_named(cavitation).clips:  # any level below all pressures: a constant pressure carries nothing
         level = float(pressure.values.min())
     weights, lengths = force_weights(pressure.vertices), element_lengths(pressure.vertices)
     total = np.zeros(2)
