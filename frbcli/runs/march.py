@@ -22,6 +22,7 @@ from frbcli.runs.error_budget import budget_of_stretches, quick_budget, summed
 from frbcli.runs.film_error import sample_count
 from frbcli.runs.header import named, ring_names
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
+from frbcli.runs.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import Plan
@@ -30,7 +31,6 @@ from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import System
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.published.time_loop import advance_published
-from frbcli.solve.restored import array, check_samples, restored
 from frbcli.solve.state import (
     CONTACT,
     FINISHED,

@@ -20,10 +20,10 @@ from frbcli.runs.fewer_cells import on_fewer_cells
 from frbcli.runs.header import header
 from frbcli.runs.interrupt import held_back
 from frbcli.runs.march import March, Progress
+from frbcli.runs.restored import WrongCheckpoint
 from frbcli.scene.plan import make_plan
 from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import run_down_profile, run_up_profile
-from frbcli.solve.restored import WrongCheckpoint
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0
