@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from numba import types
 from numba.extending import overload
 
 from frbcli.film.rectangles.film_force import film_force
@@ -67,11 +68,33 @@ def drag_integral(films: Any, work: Work, f: int, d_x: float, d_y: float, factor
     raise NotImplementedError
 
 
+def _one_of(films: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Any:
+    """film_force of film f of a tuple of films of several kinds."""
+    raise NotImplementedError
+
+
+@overload(_one_of)
+def _first_or_later(films, f, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+    if len(films) == 1:
+        return lambda films, f, d_x, d_y, v_x, v_y, omega: film_force(films[0], d_x, d_y, v_x, v_y, omega)
+
+    def several(films, f, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+        if f == 0:
+            return film_force(films[0], d_x, d_y, v_x, v_y, omega)
+        return _one_of(films[1:], f - 1, d_x, d_y, v_x, v_y, omega)
+
+    return several
+
+
 @overload(film_numbers, inline="always")
 def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
+    if isinstance(films, types.UniTuple):
         return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: film_force(
             films[f], d_x, d_y, v_x, v_y, omega
+        )
+    if not have_cells(films):  # of several kinds: what the compiler knows of each stands at a fixed place of the tuple
+        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: _one_of(
+            films, f, d_x, d_y, v_x, v_y, omega
         )
 
     def volumes(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]

@@ -15,7 +15,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numba.extending import overload
 
 from frbcli.film.cells.balances import FLOWS, SIDES
@@ -66,47 +65,30 @@ def have_cells(films: Any) -> bool:
     return getattr(films, "instance_class", None) is VolumeFilms
 
 
-def _new_work(films: Any, wet: Array, stages: int) -> Work | NoCells:
-    raise NotImplementedError
-
-
-@overload(_new_work)
-def _work_of_a_kind(films, wet, stages):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        return lambda films, wet, stages: NoCells(
-            np.zeros((stages, 0, 0, 0)), np.zeros((GRIDS, 0)), np.zeros((0, 0))
-        )
-
-    def volumes(films, wet, stages):  # type: ignore[no-untyped-def]
-        count, m, k = wet.shape[1], wet.shape[2], wet.shape[3]
-        mouths, slots = films.mouths.shape[0], 0
-        for q in range(mouths):
-            slots = max(slots, 1 + int(films.mouths[q, SLOT]))
-        coupled = count if mouths > 0 else 0
-        return Work(
-            np.zeros((count, STATES, m, k)),
-            np.zeros((ENTRIES, m, k)),
-            np.zeros((m, k, k)),
-            np.zeros((count, m, k, k + SIDES + slots)),
-            np.zeros((count, m, k)),
-            np.zeros((count, m, k)),
-            np.zeros((stages, count, m, k)),
-            np.zeros((stages, count, FLOWS)),
-            np.zeros((GRIDS, count)),
-            np.zeros((count, 4)),
-            np.zeros((coupled, m, k)),
-            np.zeros((mouths, 1 + 2 * coupled)),
-            np.zeros((count, slots)),
-            np.zeros((2 * coupled, 2 * coupled)),
-        )
-
-    return volumes
-
-
-@njit(cache=True, error_model="numpy")
-def make_work(films, wet, stages):  # type: ignore[no-untyped-def]
-    """Scratch for films and their state wet (WET, F, m, k): Work, or NoCells."""
-    return _new_work(films, wet, stages)
+def make_work(films: Any, wet: Array, stages: int) -> Work | NoCells:
+    """Scratch for films and their state wet (WET, F, m, k)."""
+    if not isinstance(films, VolumeFilms):
+        return NoCells(np.zeros((stages, 0, 0, 0)), np.zeros((GRIDS, 0)), np.zeros((0, 0)))
+    _, count, m, k = wet.shape
+    mouths = films.mouths.shape[0]
+    slots = 1 + int(films.mouths[:, SLOT].max()) if mouths else 0
+    coupled = count if mouths else 0
+    return Work(
+        np.zeros((count, STATES, m, k)),
+        np.zeros((ENTRIES, m, k)),
+        np.zeros((m, k, k)),
+        np.zeros((count, m, k, k + SIDES + slots)),
+        np.zeros((count, m, k)),
+        np.zeros((count, m, k)),
+        np.zeros((stages, count, m, k)),
+        np.zeros((stages, count, FLOWS)),
+        np.zeros((GRIDS, count)),
+        np.zeros((count, 4)),
+        np.zeros((coupled, m, k)),
+        np.zeros((mouths, 1 + 2 * coupled)),
+        np.zeros((count, slots)),
+        np.zeros((2 * coupled, 2 * coupled)),
+    )
 
 
 def begin_stage(

@@ -9,6 +9,7 @@ and the damping of the films allow.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -21,7 +22,7 @@ from frbcli.solve.micro_step import films_follow, parabola
 from frbcli.solve.ring_spin import spin_up
 from frbcli.solve.scratch import make_scratch
 from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, start_stage
-from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK
+from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, RotorData, State
 from frbcli.solve.step import (
     SMALLEST_STEP,
     begin_stages,
@@ -35,6 +36,7 @@ from frbcli.solve.step import (
     reject,
     write_outputs,
 )
+from frbcli.solve.tableau import Tableau
 
 GROWTH = 1.25  # of a macro step at most: it cannot be taken back
 SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
@@ -123,23 +125,36 @@ def _amend(responses, compliance, clearances, given, a):  # type: ignore[no-unty
     return off
 
 
-@njit(cache=True, error_model="numpy")
-def advance_in_turn(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil):  # type: ignore[no-untyped-def]
+def advance_in_turn(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
+    out_v: Array, out_oil: Array,
+) -> tuple[int, int]:  # fmt: skip
     """As march.advance, for rotor and films that are solved apart; the state comes from cosimulation.in_turn.
 
     control.longest_step is the longest macro step. state.past: (3, 1 + 6 films + 3 rings) at the last macro times:
     time; the journals' displacements and velocities; the rings' angles and speeds; the films' forces, the rings'
     torques.
     """
+    stages = tableau.times.shape[0]
+    scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
+    status, rows = _advance(rotor, films, tableau, control, state, scratch, work, budget, out_q, out_v, out_oil)
+    return int(status), int(rows)
+
+
+@njit(cache=True, error_model="numpy")
+def _advance(  # type: ignore[no-untyped-def]
+    rotor, films, tableau, control, state, scratch, work, budget, out_q, out_v, out_oil
+):
+    """advance_in_turn with the arrays that it works in."""
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
-    wet, flows, work = state.wet, state.flows, make_work(films, state.wet, tableau.times.shape[0])
+    wet, flows = state.wet, state.flows
     spins, times, speeds, angles = rotor.spins, rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
     weights, moments, defect = tableau.stage, tableau.times, tableau.defect
     tolerance, contact_at, stiffness = control.tolerance, control.contact_eccentricity, control.contact_stiffness
     n, m, stages, rings = q.shape[0], 2 * clearances.shape[0], moments.shape[0], spins.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = make_scratch(rotor, numbers, stages)
+    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
     responses, given, lagrange, q_new = _responses(rotor, pick), np.zeros(m + rings), np.zeros(3), np.zeros(n)
     three, motions = np.zeros(3), np.zeros((3, 2 * m + 2 * rings))
     bodies, turned, torque = np.zeros(1 + rings), np.zeros(1 + rings), np.zeros(rings)

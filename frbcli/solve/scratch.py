@@ -1,15 +1,17 @@
-"""What the stages of a step work in, whichever loop takes them. Compiled."""
+"""Arrays that the stages of a step work in, whichever loop takes them: made before the compiled loop is called.
+
+To make them inside of it would cost seconds of compilation.
+"""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from frbcli.solve.inverse import prepare
 from frbcli.solve.stage import JOURNAL_ROWS, STAGE_ROWS
-from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array
+from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
 
 
 class Scratch(NamedTuple):
@@ -27,19 +29,20 @@ class Scratch(NamedTuple):
     stage_a: Array
 
 
-@njit(cache=True, error_model="numpy")
-def make_scratch(rotor, numbers, stages):  # type: ignore[no-untyped-def]
+def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
     """Scratch for a rotor; its inverse is the one that the numbers tell of, if any."""
     n, m = rotor.mass.shape[0], 2 * rotor.clearances.shape[0]
-    pick, products, loads = np.empty((m, n)), np.zeros((3, n, n)), np.zeros((3, n))
-    spread, compliance = np.zeros((n, m)), np.zeros((m, m))
-    for k in range(m):
-        pick[k] = rotor.journals[k // 2, k % 2]
-    if numbers[INVERSE_G] > 0.0:
-        prepare(
-            rotor, pick, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], products, loads, spread, compliance
-        )
-    at, film = np.zeros((STAGE_ROWS, n)), np.zeros((JOURNAL_ROWS, m))
-    return Scratch(
-        pick, products, loads, spread, compliance, at, film, np.zeros((n, stages)), np.zeros((n, stages))
+    scratch = Scratch(
+        np.ascontiguousarray(rotor.journals.reshape(m, n)),
+        np.zeros((3, n, n)),
+        np.zeros((3, n)),
+        np.zeros((n, m)),
+        np.zeros((m, m)),
+        np.zeros((STAGE_ROWS, n)),
+        np.zeros((JOURNAL_ROWS, m)),
+        np.zeros((n, stages)),
+        np.zeros((n, stages)),
     )
+    if numbers[INVERSE_G] > 0.0:
+        prepare(rotor, scratch.pick, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:5])
+    return scratch

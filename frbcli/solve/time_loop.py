@@ -7,6 +7,7 @@ is in state.py, the methods in tableau.py.
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -18,7 +19,7 @@ from frbcli.solve.journal_newton import NEWTON_LIMIT, correct, forces
 from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
 from frbcli.solve.scratch import make_scratch
 from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, start_stage
-from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK
+from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, RotorData, State
 from frbcli.solve.step import (
     UNSOLVED,
     begin_past,
@@ -34,9 +35,23 @@ from frbcli.solve.step import (
     reject,
     write_outputs,
 )
+from frbcli.solve.tableau import Tableau
 
 CELL_LIMIT = 24  # as NEWTON_LIMIT, for films with cells, whose kinks take longer
 NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
+
+
+class Own(NamedTuple):
+    """What this loop works in beside the Scratch of the stages: newton (m, m); past (HISTORY + stages - 1, 1 + m) times
+    and journals' velocities; q_new (n,); bodies, angles (1 + rings,) speeds and angles of rotor and rings; torque
+    (rings,)."""
+
+    newton: Array
+    past: Array
+    q_new: Array
+    bodies: Array
+    angles: Array
+    torque: Array
 
 
 @njit(cache=True, error_model="numpy")
@@ -51,28 +66,47 @@ def _largest_eccentricity(clearances, pick, q):  # type: ignore[no-untyped-def]
     return largest
 
 
-@njit(cache=True, error_model="numpy")
-def advance(rotor, films, tableau, control, state, budget, out_q, out_v, out_oil):  # type: ignore[no-untyped-def]
+def advance(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
+    out_v: Array, out_oil: Array,
+) -> tuple[int, int]:  # fmt: skip
     """Advance the state until the output buffers are full, `budget` steps are done, or the run ends.
 
     out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more
     than one step can write; out_oil: (rows, films) for the oil fraction of films with cells. Returns (status,
     rows written). The course of the steps does not depend on how often this is called.
     """
+    stages, m, bodies = tableau.times.shape[0], 2 * rotor.clearances.shape[0], 1 + rotor.spins.shape[0]
+    scratch = make_scratch(rotor, state.numbers, stages)
+    work = make_work(films, state.wet, stages)
+    own = Own(
+        np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros_like(state.q), np.zeros(bodies),
+        np.zeros(bodies), np.zeros(bodies - 1),
+    )  # fmt: skip
+    status, rows = _advance(
+        rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil
+    )
+    return int(status), int(rows)
+
+
+@njit(cache=True, error_model="numpy")
+def _advance(  # type: ignore[no-untyped-def]
+    rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil
+):
+    """advance with the arrays that it works in."""
     # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
     numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past
-    wet, flows, work = state.wet, state.flows, make_work(films, state.wet, tableau.times.shape[0])
+    wet, flows = state.wet, state.flows
     spins, turning, grids = rotor.spins, rotor.turning, work.grids
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
     weights, moments, defect, three = tableau.stage, tableau.times, tableau.defect, tableau.guess
     tolerance, contact_at, contact_stiffness = (
         control.tolerance, control.contact_eccentricity, control.contact_stiffness)
-    n, m, stages = q.shape[0], 2 * clearances.shape[0], moments.shape[0]
+    m, stages = 2 * clearances.shape[0], moments.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
-    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = make_scratch(rotor, numbers, stages)
-    newton, past, q_new = np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n)
-    bodies, angles_now, torque = np.zeros(1 + spins.shape[0]), np.zeros(1 + spins.shape[0]), np.zeros(spins.shape[0])
+    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
+    newton, past, q_new, bodies, angles_now, torque = own
     has_cells = wet.shape[1] > 0
     written, done = 0, 0
 

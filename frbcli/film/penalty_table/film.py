@@ -16,8 +16,8 @@ from frbcli.film.cells.plain.balance import Balance, Motion, Storage
 from frbcli.film.gap import Section, gap_rate
 from frbcli.film.grid import Array
 from frbcli.film.penalty_table.rows import LIMIT, row_forces
-from frbcli.film.penalty_table.table import slow_speed, source_table, table_numbers
-from frbcli.film.rectangles.film_force import SOURCE, FilmData
+from frbcli.film.penalty_table.table import PenaltyTableFilm, slow_speed, source_table, table_numbers
+from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.rectangles.table import Mesh
 
 CENTRED = 1e-6  # eccentricity that stands for the centre
@@ -120,7 +120,7 @@ class SourceFilm:
     def film(self) -> FilmData:
         """The film, tabulated, for the time loop. Raises NotConverged."""
         table = source_table(self.forces, self.numbers)
-        return FilmData(SOURCE, 0, force_scale(self.section), 0.0, 0.0, 0.0, table, self.numbers)
+        return PenaltyTableFilm(force_scale(self.section), table, self.numbers)
 
 
 def force_scale(section: Section) -> float:

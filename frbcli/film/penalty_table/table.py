@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -33,6 +34,14 @@ AT_REST = 1e-3  # of L: below this speed the direction of w is arbitrary, and do
 # Numbers of a table: L of the centred journal; the step of the third axis; whether w and the force count over the speed
 # of rotation.
 SLOW, STEP, RELATIVE, TABLE_NUMBERS = range(4)
+
+
+class PenaltyTableFilm(NamedTuple):
+    """A penalty film in a table. table, numbers: of source_table and table_numbers; force_scale as in ShortFilm."""
+
+    force_scale: float
+    table: Array
+    numbers: Array
 
 
 def table_numbers(steepness: float, relative: bool) -> Array:

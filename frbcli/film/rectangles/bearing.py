@@ -9,10 +9,11 @@ import numpy as np
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import AxialGroove, groove_pressure
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.chain import chain_grid, chain_table
-from frbcli.film.rectangles.fields import field_grid, field_table
-from frbcli.film.rectangles.film_force import CHAIN, FIELDS, SHORT, SHORT_GENERAL, TABLE, FilmData, film_force
-from frbcli.film.rectangles.table import Mesh, force_table
+from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
+from frbcli.film.rectangles.fields import FieldsFilm, field_grid, field_table
+from frbcli.film.rectangles.film_force import FilmData, film_force
+from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
+from frbcli.film.rectangles.table import Mesh, TableFilm, force_table
 
 EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
 
@@ -64,18 +65,18 @@ def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: M
     limit = EQUAL_PRESSURES * bearing.ambient_pressure / bearing.pressure_scale
     # Without cavitation the hydrostatic pressure carries nothing: it is the same all around.
     equal = not clipped or (abs(sigma) <= limit and abs(level) <= limit)
-    radius_to_width = 0.5 * bearing.diameter / bearing.section_width
-    table, grid = np.zeros((0, 0, 0, 0)), np.zeros((0, 0))
+    scale, radius_to_width = bearing.force_scale, 0.5 * bearing.diameter / bearing.section_width
     if theory == "short":
-        kind = SHORT if equal else SHORT_GENERAL
-    elif equal:
-        kind, table = TABLE, force_table(mesh, radius_to_width, clipped)
-    else:
-        kind, table, grid = FIELDS, field_table(mesh, radius_to_width), field_grid(mesh)
-    return FilmData(kind, int(clipped), bearing.force_scale, radius_to_width**-2, sigma, level, table, grid)
+        slenderness = radius_to_width**-2
+        if equal:
+            return ShortFilm(scale, slenderness, int(clipped))
+        return SuppliedShortFilm(scale, slenderness, sigma, level)
+    if equal:
+        return TableFilm(scale, force_table(mesh, radius_to_width, clipped))
+    return FieldsFilm(scale, sigma, level, field_table(mesh, radius_to_width), field_grid(mesh))
 
 
-def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh: Mesh) -> FilmData:
+def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh: Mesh) -> ChainFilm:
     """The film between axial grooves, finite length; all grooves have the same pressure."""
     scale, pressure = bearing.pressure_scale, bearing.grooves[0]
 
@@ -96,7 +97,7 @@ def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh
     radius_to_width = 0.5 * bearing.diameter / bearing.width
     table = chain_table(mesh.axial, radius_to_width, profile, constant)
     clip_level = level if clipped else 0.0
-    return FilmData(CHAIN, int(clipped), bearing.force_scale, radius_to_width**-2, 0.0, clip_level, table, grid)
+    return ChainFilm(bearing.force_scale, int(clipped), clip_level, table, grid)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -31,6 +32,17 @@ VALUES = GAUSS_WEIGHTS * SHAPE[FIRST_NODE] * SHAPE[SECOND_NODE]
 # Rows of the axial table: (R/B)^2 lambda_k, load and groove pressure of each mode; weights of the lines; constant force
 # of the grooves (two columns); from SHAPES on the modes at the lines, one row each.
 DECAY, LOAD, GROOVE, SHARE, CONSTANT, SHAPES = range(6)
+
+
+class ChainFilm(NamedTuple):
+    """A film between axial grooves. table, grid: of chain_table and chain_grid; level: scaled gauge pressure of the
+    cavity, 1/s; force_scale, clipped as in ShortFilm."""
+
+    force_scale: float
+    clipped: int
+    level: float
+    table: Array
+    grid: Array
 
 
 def chain_grid(edges: Array, elements: int) -> Array:

@@ -8,6 +8,7 @@ the fields are tabulated over the eccentricity, summed at every call, and clippe
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -23,6 +24,17 @@ LINES = 8  # Gauss points over half the width: the edge of the cavity crosses th
 # Rows of the grid: element boundaries and lengths; positions and shares of the axial lines (the first LINES columns);
 # the six rows of force_weights.
 VERTICES, LENGTHS, POSITIONS, SHARES, WEIGHTS = range(5)
+
+
+class FieldsFilm(NamedTuple):
+    """A film whose pressure fields are tabulated. table, grid: of field_table and field_grid; sigma, level: scaled
+    gauge pressures of supply and cavity, 1/s; force_scale as in ShortFilm."""
+
+    force_scale: float
+    sigma: float
+    level: float
+    table: Array
+    grid: Array
 
 
 def field_vertices(mesh: Mesh) -> Array:

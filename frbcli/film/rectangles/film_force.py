@@ -1,44 +1,65 @@
 """One film as the time loop sees it: force and derivatives from displacement, velocity and angular speed.
 
-All films share one type, FilmData, so that the time loop is compiled once and found in the cache by every later start.
+The kind of a film is its type: the compiler sees it and compiles what the films of a case need. A kind is a row of
+POLAR if it is solved along and across the line of centres; films whose grooves stand still are solved in x and y.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any
 
 from numba import njit
+from numba.extending import overload
 
-from frbcli.film.grid import Array
-from frbcli.film.penalty_table.table import source_force
-from frbcli.film.rectangles.chain import chain_force
-from frbcli.film.rectangles.fields import fields_force
-from frbcli.film.rectangles.short import short_closed, short_general
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, table_force
+from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
+from frbcli.film.rectangles.chain import ChainFilm, chain_force
+from frbcli.film.rectangles.fields import FieldsFilm, fields_force
+from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, short_closed, short_general
+from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, TableFilm, table_force
 
-SHORT, SHORT_GENERAL, TABLE, FIELDS, CHAIN, SOURCE = range(6)
+FilmData = ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm
+
 NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
 
+# What each kind says: the force (r, t), its derivatives by w (rr, rt, tr, tt) and by the eccentricity (r, t).
+POLAR = {
+    ShortFilm: lambda film, eccentricity, w_r, w_t, omega: short_closed(
+        eccentricity, w_r, w_t, film.slenderness, film.clipped == 1
+    ),
+    SuppliedShortFilm: lambda film, eccentricity, w_r, w_t, omega: short_general(
+        eccentricity, w_r, w_t, film.slenderness, film.sigma, film.level
+    ),
+    TableFilm: lambda film, eccentricity, w_r, w_t, omega: table_force(film.table, eccentricity, w_r, w_t),
+    FieldsFilm: lambda film, eccentricity, w_r, w_t, omega: fields_force(
+        film.table, film.grid, eccentricity, w_r, w_t, film.sigma, film.level
+    ),
+    PenaltyTableFilm: lambda film, eccentricity, w_r, w_t, omega: source_force(
+        film.table, film.numbers, eccentricity, w_r, w_t, omega
+    ),
+}
 
-class FilmData(NamedTuple):
-    """One film, ready to be evaluated. Arrays that a kind does not use are empty.
 
-    kind: SHORT | SHORT_GENERAL | TABLE | FIELDS | CHAIN | SOURCE; clipped: half-Sommerfeld (1) or Sommerfeld (0);
-    force_scale: N s, turns the integral of P over one section into the force of the whole bearing;
-    slenderness: (b/R)^2; sigma, level: scaled gauge pressures of supply and cavity, 1/s;
-    table: of force_table (TABLE), field_table (FIELDS), chain_table (CHAIN) or source_table (SOURCE); grid: of
-    field_grid, chain_grid or table_numbers.
-    """
+def _along_and_across(film: Any, eccentricity: float, w_r: float, w_t: float, omega: float) -> Any:
+    """The eight numbers of POLAR for a film of any kind."""
+    raise NotImplementedError
 
-    kind: int
-    clipped: int
-    force_scale: float
-    slenderness: float
-    sigma: float
-    level: float
-    table: Array
-    grid: Array
+
+@overload(_along_and_across)
+def _of_a_kind(film, eccentricity, w_r, w_t, omega):  # type: ignore[no-untyped-def]
+    return POLAR[film.instance_class]
+
+
+def _in_frame(film: Any, d_x: float, d_y: float, w_x: float, w_y: float, omega: float) -> Any:
+    """film_force with w in place of the velocity, by the frame in which the film is solved."""
+    raise NotImplementedError
+
+
+@overload(_in_frame)
+def _by_kind(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+    if film.instance_class is ChainFilm:
+        return lambda film, d_x, d_y, w_x, w_y, omega: _standing(film, d_x, d_y, w_x, w_y, omega)
+    return lambda film, d_x, d_y, w_x, w_y, omega: _polar(film, d_x, d_y, w_x, w_y, omega)
 
 
 @njit(cache=True, error_model="numpy")
@@ -51,32 +72,18 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     numbers.
     """
     # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
-    w_x, w_y = v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x
-    if film.kind == CHAIN:
-        return _standing(film, d_x, d_y, w_x, w_y, omega)
+    return _in_frame(film, d_x, d_y, v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x, omega)
+
+
+@njit(cache=True, error_model="numpy")
+def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+    """film_force of a film that is solved along and across the line of centres."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     c, s = (d_x / eccentricity, d_y / eccentricity) if eccentricity > NEAR_CENTRE else (1.0, 0.0)
     beyond = eccentricity > LARGEST_ECCENTRICITY
     eccentricity = min(max(eccentricity, NEAR_CENTRE), LARGEST_ECCENTRICITY)
     w_r, w_t = c * w_x + s * w_y, c * w_y - s * w_x
-    if film.kind == SHORT:
-        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = short_closed(
-            eccentricity, w_r, w_t, film.slenderness, film.clipped == 1
-        )
-    elif film.kind == SHORT_GENERAL:
-        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = short_general(
-            eccentricity, w_r, w_t, film.slenderness, film.sigma, film.level
-        )
-    elif film.kind == TABLE:
-        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = table_force(film.table, eccentricity, w_r, w_t)
-    elif film.kind == SOURCE:
-        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = source_force(
-            film.table, film.grid, eccentricity, w_r, w_t, omega
-        )
-    else:
-        f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = fields_force(
-            film.table, film.grid, eccentricity, w_r, w_t, film.sigma, film.level
-        )
+    f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = _along_and_across(film, eccentricity, w_r, w_t, omega)
     if beyond:  # in contact: the film stays as it is at the end of the tables
         e_r = e_t = 0.0
     # Turning the displacement by dt turns force and w with it: dF/dt = (J F - dF/dw J w) / eps

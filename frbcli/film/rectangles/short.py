@@ -7,11 +7,31 @@ section reads P = A z (1 - z) + sigma z on 0 <= z <= 1, with sigma the scaled su
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 ANGLES = 96  # points of the trapezoidal rule in Sommerfeld's angle where no closed form exists
+
+
+class ShortFilm(NamedTuple):
+    """A short film whose edges have the cavitation pressure. force_scale: N s, turns the integral of P over one section
+    into the force of the whole bearing; slenderness: (b/R)^2; clipped: half-Sommerfeld (1) or Sommerfeld (0)."""
+
+    force_scale: float
+    slenderness: float
+    clipped: int
+
+
+class SuppliedShortFilm(NamedTuple):
+    """A short half-Sommerfeld film with any pressures at its edges. sigma, level: scaled gauge pressures of supply and
+    cavity, 1/s; the others as in ShortFilm."""
+
+    force_scale: float
+    slenderness: float
+    sigma: float
+    level: float
 
 
 @njit(cache=True, error_model="numpy")

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -31,6 +32,13 @@ class Mesh:
 
     axial: int
     circumferential: int
+
+
+class TableFilm(NamedTuple):
+    """A film in a table over the eccentricity, of force_table; force_scale as in ShortFilm."""
+
+    force_scale: float
+    table: Array
 
 
 def eccentricity_axis() -> Array:
