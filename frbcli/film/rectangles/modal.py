@@ -146,12 +146,16 @@ def unit_fields(vertices, eccentricity, decays, mode_loads):  # type: ignore[no-
                 weight = GAUSS_WEIGHTS[g] * lengths[e] * SHAPE[i, g]
                 load[0, e, i] -= weight * cosine
                 load[1, e, i] -= weight * sine
+    # Loops in place of slices and products of arrays, which take three seconds to compile.
     fields = np.empty((4, modes, 2 * m))
-    local = np.empty((3, 3))
+    local, own, defect = np.empty((3, 3)), np.empty((2, m, 3)), np.empty((2, m, 3))
     for k in range(modes):
-        solution = solve_ring(lengths, cube, decays[k], load * mode_loads[k])
+        for s in range(2):
+            for e in range(m):
+                for i in range(3):
+                    own[s, e, i] = mode_loads[k] * load[s, e, i]
+        solution = solve_ring(lengths, cube, decays[k], own)
         # K' P + K P' = 0: the load does not depend on the eccentricity.
-        defect = np.zeros((2, m, 3))
         for e in range(m):
             _element(lengths[e], change[e], decays[k], local)
             n = 2 * (e + 1) if e + 1 < m else 0
@@ -164,6 +168,7 @@ def unit_fields(vertices, eccentricity, decays, mode_loads):  # type: ignore[no-
                     )
         derivative = solve_ring(lengths, cube, decays[k], defect)
         for s in range(2):
-            fields[s, k] = solution[s]
-            fields[2 + s, k] = derivative[s]
+            for i in range(2 * m):
+                fields[s, k, i] = solution[s, i]
+                fields[2 + s, k, i] = derivative[s, i]
     return fields

@@ -75,7 +75,9 @@ def clipped_forces(  # type: ignore[no-untyped-def]
     line = np.empty((3, n))
     level = 0.0 if clipped else -1e300
     for z in range(lines):
-        unit[:] = 0.0
+        for f in range(4):
+            for i in range(n):
+                unit[f, i] = 0.0
         for k in range(modes):
             for f in range(4):
                 for i in range(n):
@@ -92,7 +94,7 @@ def clipped_forces(  # type: ignore[no-untyped-def]
             part = np.zeros((3, 2))
             clipped_line(line, level, vertices, lengths, weights, part)
             if not clipped:  # the level itself integrates to zero in exact arithmetic only
-                part[0, :] = 0.0
+                part[0, 0] = part[0, 1] = 0.0
                 for e in range(lengths.shape[0]):
                     e2 = 2 * e + 2 if 2 * e + 2 < n else 0
                     for c in range(2):
