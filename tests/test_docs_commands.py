@@ -1,0 +1,115 @@
+"""Every command line that the documents show is one that `frb` takes: its options, its case, its settings, its plan."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+import pytest
+
+import frbcli
+from frbcli.bearing_tests.plan import kinematic_plan
+from frbcli.case.schema import Case
+from frbcli.cli.main import COMMANDS, frb
+from frbcli.errors import InputError
+
+ROOT = Path(__file__).parent.parent
+OWN_TEST = ("command-line.md",)  # its lines are run by test_command_line.py
+PLACEHOLDERS = {"CASE": "my.toml", "RUN.h5": "run.h5", "NAME": "jeffcott", "FILE": "out.txt", "DIR": "study"}
+WRONG_ON_PURPOSE = ("bearing.clearnce",)
+NO_LINE = ("...", "KEY=")  # shows a form, not a line
+LONGEST_s = 60.0
+
+
+def lines_of(page: Path) -> Iterator[str]:
+    """The command lines in blocks of code and within sentences."""
+    text = page.read_text(encoding="utf-8")
+    for block in re.findall(r"```[a-z]*\n(.*?)```", text, flags=re.DOTALL):
+        for line in block.replace("\\\n", " ").splitlines():
+            if match := re.match(r"^(?:\$ )?(frb .*)$", line):
+                yield match[1]
+    for line in re.findall(r"`(frb [^`]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
+        if len(line.split()) > 2:  # "frb runup" alone names the command
+            yield line
+
+
+def shown() -> list[str]:
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    lines = dict.fromkeys(line for page in pages if page.name not in OWN_TEST for line in lines_of(page))
+    return [line for line in lines if not any(form in line for form in NO_LINE)]
+
+
+def words_of(line: str) -> list[str]:
+    """The arguments behind `frb`, up to a pipe, a redirection or a comment; placeholders stand for files."""
+    words = shlex.split(line, comments=True)[1:]
+    ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
+    return [PLACEHOLDERS.get(word, word) for word in words[: min(ends, default=len(words))]]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory with a case and with the runs that the lines name."""
+    folder = tmp_path_factory.mktemp("documents")
+    settings = ["film.theory=short", "speed.duration=50 ms"]
+    case = frbcli.load_case("jeffcott", settings)
+    (folder / "my.toml").write_text(case.source_text, encoding="utf-8")
+    frbcli.runup(case, folder / "run.h5")
+    named = {word for line in shown() for word in words_of(line) if word.endswith(".h5")}
+    for name in named - {"run.h5"}:
+        shutil.copy(folder / "run.h5", folder / name)
+    return folder
+
+
+def commands_of(words: list[str]) -> tuple[str, list[str]]:
+    return words[0], words[1:]
+
+
+@pytest.mark.parametrize("line", shown())
+def test_a_line_is_one_that_frb_takes(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    name, words = commands_of(words_of(line))
+    if name.startswith("-"):
+        return
+    assert name in COMMANDS
+    command = frb.get_command(click.Context(frb), name)
+    assert command is not None
+    if any(key in line for key in WRONG_ON_PURPOSE):
+        with pytest.raises(InputError):
+            command.make_context(name, words)
+        return
+    if "--help" in words:
+        return
+    given = command.make_context(name, words).params
+    case = given.get("case")
+    if name in ("runup", "rundown", "check", "accuracy", "compare") and isinstance(case, Case):
+        frbcli.make_plan(case)
+    if name in ("rotation", "squeeze", "whirl") and isinstance(case, Case):
+        kinematic_plan(case, None, name)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("line", [line for line in shown() if "dask" not in line])
+def test_a_line_runs(line: str, folder: Path, tmp_path: Path) -> None:
+    """Each in a process; what takes longer than a minute is interrupted, and says so."""
+    place = shutil.copytree(folder, tmp_path / "here")
+    words = words_of(line)
+    if "runup" in words or "rundown" in words:
+        words.append("--force")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "frbcli", *words], cwd=place, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        _, said = process.communicate(timeout=LONGEST_s)
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=LONGEST_s)
+    assert "Traceback" not in said
+    expected = (2,) if any(key in line for key in WRONG_ON_PURPOSE) else (0, 3, 130)
+    assert process.returncode in expected, said
