@@ -264,7 +264,7 @@ def test_linear_critical_speeds_of_a_fast_ramp_and_of_a_rigid_rotor() -> None:
     assert linear_critical_speeds(load_case("floating-ring")) is None
 
 
-@pytest.mark.benchmark
+@pytest.mark.nightly
 def test_two_hundred_thousand_samples_take_less_than_half_a_second() -> None:
     run = make_run()
     assert len(run) > 200_000

@@ -33,7 +33,7 @@ def test_quick_hard_cases_end_as_listed(hard: HardCase) -> None:
     assert hard_case_result((hard, references().get(hard.name))).problems == ()
 
 
-@pytest.mark.benchmark
+@pytest.mark.nightly
 def test_all_hard_cases_end_as_listed() -> None:
     found = run_hard_cases()
     assert {result.hard.name: result.problems for result in found.results if not result.ok} == {}

@@ -55,7 +55,7 @@ def assert_same(run: Run, other: Run) -> None:
     assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
 
 
-@pytest.mark.benchmark
+@pytest.mark.nightly
 @pytest.mark.parametrize("machine", MACHINES, ids=lambda machine: machine.name)
 def test_killed_at_random_times_it_resumes_to_equal_results(
     machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

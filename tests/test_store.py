@@ -254,7 +254,7 @@ def test_a_killed_run_leaves_a_file_that_opens(tmp_path: Path) -> None:
     assert max(reached) > 0.0  # at least one was killed while it was writing checkpoints
 
 
-@pytest.mark.benchmark
+@pytest.mark.nightly
 def test_ten_seconds_are_written_quickly(tmp_path: Path) -> None:
     names = [f"signal_{i}" for i in range(12)]
     writer = RunWriter(tmp_path / "run.h5", Header("t", "runup", "c", "", dict.fromkeys(names, "m")))

@@ -432,7 +432,7 @@ def worked_and_waited() -> tuple[float, float]:
     return sum(cpu for cpu, _ in times) / 1e9, sum(queued for _, queued in times) / 1e9
 
 
-@pytest.mark.benchmark
+@pytest.mark.nightly
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the scheduler's statistics of Linux")
 def test_all_cores_work(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """64 run-ups of some tenths of a second each: the share of the cores' time that the workers ask for."""

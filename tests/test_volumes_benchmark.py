@@ -1,4 +1,4 @@
-"""Cost of the compiled film on volumes, CPU time in one process: `pytest -m benchmark -s` prints it.
+"""Cost of the compiled film on volumes, CPU time in one process: `pytest -m nightly -s` prints it.
 
 One iteration of Newton's method of the two-phase film, with its derivatives by the journal's velocity, beside the naive
 way: one assembly with scikit-fem and one sparse solve on quadratic elements with as many nodes, without derivatives.
@@ -30,7 +30,7 @@ from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pres
 from frbcli.film.cells.states import FRACTION, STATES, cell_states, follow_law
 from frbcli.film.rectangles.bearing import RectangularBearing
 
-pytestmark = pytest.mark.benchmark
+pytestmark = pytest.mark.nightly
 
 REPEATS, ITERATIONS, STEPS = 5, 200, 300
 STEP_s, WHIRL, OMEGA = 1e-4, 2.0 * math.pi * 10.0, 2.0 * math.pi * 100.0
