@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +11,10 @@ from synthetic_run import as_run
 
 import frbcli
 from frbcli.analysis import signals
+from frbcli.analysis.events import find_events
 from frbcli.analysis.order_tracking import OrderTrack, order_track, order_tracks
+from frbcli.analysis.signals import SignalOf
+from frbcli.analysis.spectrum import waterfall
 from frbcli.errors import InputError
 from frbcli.results.store import Run
 
@@ -101,6 +105,46 @@ def test_a_long_run_is_tracked_in_pieces(monkeypatch: pytest.MonkeyPatch) -> Non
     assert lazy.longest <= 1001
     np.testing.assert_allclose(pieces.time_s, whole.time_s, rtol=1e-12)
     np.testing.assert_allclose(pieces.forward, whole.forward, rtol=0, atol=1e-9 * 3.66e-6)
+
+
+class Endless:
+    """Two million samples of a slow rotor that are made when they are read."""
+
+    signals = ("time_s", "speed_Hz", "eccentricity", "journal_x_m", "journal_y_m")
+    status = "finished"
+    references = {"clearance_m": 35e-6}  # noqa: RUF012
+
+    def __len__(self) -> int:
+        return 2_000_000
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        raise AssertionError(f"{name} was read at once")
+
+    def read(self, name: str, start: int, stop: int) -> np.ndarray:
+        time_s = np.arange(start, stop) * 5e-5
+        made = {"time_s": time_s, "speed_Hz": 0.3 * time_s, "eccentricity": np.full(stop - start, 0.1)}
+        turned = 2 * np.pi * 0.15 * time_s**2
+        return made[name] if name in made else 1e-6 * (np.cos(turned) if "_x_" in name else np.sin(turned))
+
+
+@pytest.mark.parametrize("look", ["orders", "events", "spectra"])
+def test_memory_does_not_grow_with_the_samples(look: str) -> None:
+    """Each signal has 16 MB."""
+    run = Endless()
+    columns = [SignalOf(run, name) for name in ("time_s", "journal_x_m", "journal_y_m", "speed_Hz")]
+    tracemalloc.start()
+    try:
+        if look == "orders":
+            track = order_track(run, 1.0)
+            np.testing.assert_allclose(track.amplitude("forward"), 1e-6, rtol=1e-3)
+        elif look == "events":
+            assert find_events(run) == ()
+        else:
+            found = waterfall(*columns, 35e-6, max_frequency_Hz=36.0, most=200)
+            assert found.amplitude.shape[1] <= 200
+        assert tracemalloc.get_traced_memory()[1] < 40e6
+    finally:
+        tracemalloc.stop()
 
 
 def test_it_is_public() -> None:

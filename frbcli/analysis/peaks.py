@@ -34,7 +34,7 @@ def prominent_peaks(values: Values, least: float) -> list[Peak]:
     if len(values) < 3:
         return []
     found = []
-    for place in local_maxima(values, float(np.min(values)) + least):
+    for place in _swings(values, least):
         height = values[place]
         left, right = _foot(values[:place][::-1], height), _foot(values[place + 1 :], height)
         prominence = float(height - max(left, right))
@@ -44,6 +44,24 @@ def prominent_peaks(values: Values, least: float) -> list[Peak]:
             after = place + 1 + int(np.argmax(values[place + 1 :] <= half))
             found.append(Peak(int(place), prominence, before, after))
     return found
+
+
+def _swings(values: Values, least: float) -> list[int]:
+    """The maxima from which `values` (n,) fall by `least` before they rise beyond them: few of many in noise."""
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(values)), prepend=0.0) != 0.0)
+    swings: list[int] = []
+    lowest, top = np.inf, -1  # since the last swing; the highest sample that is `least` above the lowest one
+    for place in np.append(turns, len(values) - 1).tolist():
+        value = values[place]
+        if top < 0:
+            lowest = min(lowest, value)
+            top = place if value - lowest >= least else -1
+        elif value > values[top]:
+            top = place
+        elif values[top] - value >= least:
+            swings.append(top)
+            lowest, top = value, -1
+    return swings
 
 
 def _foot(side: Values, height: float) -> float:

@@ -169,11 +169,12 @@ class _Window:
         if len(reach) >= width:
             length = fast_length(len(reach))
             through = np.fft.ifft(np.fft.fft(reach, length) * np.fft.fft(self._shape, length))[width - 1 : len(reach)]
-            self._found.append(through[-self._first % every :: every])
+            self._found.append(through[-self._first % every :: every].copy())  # a view would keep all of it
         kept = max(0, len(reach) - width + 1)
-        self._first, self._reach = self._first + kept, reach[kept:]
+        self._first, self._reach = self._first + kept, reach[kept:].copy()
 
     def found(self, steps: int) -> Motion:
         """(m - 2 half,) of m steps in all."""
         found = np.concatenate([np.empty(0, dtype=np.complex128), *self._found])
+        self._found.clear()
         return found[: max(0, steps - 2 * self._half)]
