@@ -16,6 +16,7 @@ from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
+from frbcli.film.cavitation.table import names
 from frbcli.plot.compare import comparison_figure
 from frbcli.results.store import Run, read_run
 from frbcli.runs import march
@@ -125,7 +126,7 @@ def test_every_unknown_model_is_named_with_what_there_is() -> None:
     assert [(fault.key, fault.value) for fault in faults] == [
         ("--cavitation", "foam"), ("--cavitation", "wet"), ("--theory", "long")
     ]  # fmt: skip
-    assert "half-sommerfeld, sommerfeld, reynolds, penalty, peeken, elrod, two-phase" in faults[0].remedy
+    assert f"There are: {', '.join(names())}." in faults[0].remedy
     assert "short, finite" in faults[2].remedy
 
 
