@@ -362,9 +362,15 @@ def status_and_cost(file: h5py.File, chance: random.Random) -> None:
 
 def _metadata_bytes(base: bytes, chance: random.Random) -> bytes:
     """Bytes of HDF5's own changed, in the part of the file that holds no numbers."""
-    content = bytearray(base)
+    content, own = bytearray(base), np.ones(len(base), dtype=bool)
+    with h5py.File(io.BytesIO(base), "r") as file:
+        for data in (*file["signals"].values(), *file["checkpoint"].values()):
+            begin = data.id.get_offset() or 0
+            own[begin : begin + data.nbytes] = False
+    own[: USER_BLOCK + 8] = False
+    places = np.flatnonzero(own)
     for _ in range(chance.choice([1, 1, 2, 8])):
-        at = chance.randrange(USER_BLOCK + 8, len(content))
+        at = int(places[chance.randrange(len(places))])
         content[at] = chance.choice([0, 1, 255, 127, content[at] ^ (1 << chance.randrange(8)), chance.randrange(256)])
     return sealed(bytes(content))
 

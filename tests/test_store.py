@@ -295,3 +295,31 @@ def test_output_without_permission_is_refused(tmp_path: Path) -> None:
             check_output(tmp_path / "run.h5")
     finally:
         tmp_path.chmod(0o700)
+
+
+def test_a_text_that_cannot_be_found_is_refused_at_once(run_path: Path) -> None:
+    content = bytearray(run_path.read_bytes())
+    heap = content.index(b"GCOL")
+    for change in ({8: 0, 9: 0}, {16: 0, **dict.fromkeys(range(24, 32), 0)}, {24: 255}):
+        broken = bytearray(content)
+        for at, byte in change.items():
+            broken[heap + at] = byte
+        write_whole(run_path, memoryview(broken))
+        with pytest.raises(RunFileError, match="not a whole run"):
+            read_run(run_path)
+    crowded = bytes(content) + b"GCOL\x01\0\0\0" * 20_000
+    write_whole(run_path, memoryview(crowded))
+    with pytest.raises(RunFileError, match="texts"):
+        read_run(run_path)
+
+
+def test_a_file_of_holes_is_refused_for_its_size(run_path: Path) -> None:
+    size = 20 * 1024**3
+    head = b"frb-run 1 length=%d crc32=00000000\n" % (size - USER_BLOCK)
+    with run_path.open("r+b") as file:
+        file.write(head.ljust(USER_BLOCK, b"\0"))
+        file.truncate(size)
+    began = time.process_time()
+    with pytest.raises(RunFileError, match="larger than 8 GiB"):
+        read_run(run_path)
+    assert time.process_time() - began < 1.0

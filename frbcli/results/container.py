@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import zlib
 from io import BufferedReader
 from pathlib import Path
 
 from frbcli.errors import Fault, RunFileError
+from frbcli.results import heaps
 from frbcli.results.place import wrong_place
 
 MAGIC = b"frb-run 1 "
@@ -83,15 +85,26 @@ def _check_seal(path: Path, file: BufferedReader) -> None:
     if length + USER_BLOCK > LARGEST:
         raise refuse(path, f"is larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step and run the case again.")
     whole = head.startswith(_beginning(length)) and file.peek(len(SIGNATURE)).startswith(SIGNATURE)
-    if not whole or head != _user_block(length, _checksum(file)):
+    checksum, places = _checksum(file) if whole else (0, [])
+    crowded = len(places) > heaps.MOST
+    if not whole or (head != _user_block(length, checksum) and not crowded):
         raise refuse(path, "was cut short or changed after frb wrote it.", "Run the case again.")
+    if crowded or not heaps.are_sound(file, USER_BLOCK, USER_BLOCK + length, places):
+        raise refuse(path, "is not a whole run: its texts cannot be found.", "Run the case again.")
+    file.seek(0)
 
 
-def _checksum(file: BufferedReader) -> int:
-    checksum = 0
-    while piece := file.read(PIECE):
+def _checksum(file: BufferedReader) -> tuple[int, list[int]]:
+    """The checksum of what follows, and where a collection of texts may begin in it."""
+    checksum, before = 0, b""
+    places: list[int] = []
+    while len(places) <= heaps.MOST and (piece := file.read(PIECE)):
         checksum = zlib.crc32(piece, checksum)
-    return checksum
+        seen = before + piece
+        first = file.tell() - len(seen)
+        places += [first + match.start() for match in re.finditer(heaps.BEGINNING, seen)]
+        before = seen[1 - len(heaps.BEGINNING) :]
+    return checksum, places
 
 
 def _beginning(length: int) -> bytes:
