@@ -128,7 +128,7 @@ def make_system(case: Case, plan: Plan) -> System:
         made = [volume_film(case, place, plan.cells) for place in places]
         volumes, follows = tuple(film for film, _ in made), tuple(which for _, which in made)
         whirling = case.film.two_phase.whirl_steepness or 0.0
-        data = volume_films(volumes, follows, channel_pulls(case, volumes), whirling, case.contact.eccentricity)
+        data = volume_films(volumes, follows, channel_pulls(case, volumes), whirling)
         data = with_channels(data, volumes, coupled_channels(case, volumes))
         factor = case.film.cavitation_factor
         return replace(system, films=data, volumes=volumes, follows=follows, cavitation_factor=factor)

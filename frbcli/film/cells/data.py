@@ -12,16 +12,14 @@ from frbcli.film.cavitation.compiled import law_code
 from frbcli.film.cells.axial import axial_weights, end_slopes
 from frbcli.film.cells.plain.balance import NO_DISTANCE
 from frbcli.film.cells.plain.film import VolumeFilm
-from frbcli.film.contact_gap import gap_limits
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
 # Numbers of one film. PULL: by which the given pressures fall with the square of the grid's speed, in s; WHIRLING: what
-# FIRST becomes in a half-frequency whirl; STOPS_FROM, LEAST_GAP: see contact_gap.py.
+# FIRST becomes in a half-frequency whirl.
 (
     ASPECT,
     REFERENCE,
@@ -43,10 +41,8 @@ CLOSED, GIVEN, FREE = range(3)
     FOLLOWS,
     PULL,
     WHIRLING,
-    STOPS_FROM,
-    LEAST_GAP,
     FILM_NUMBERS,
-) = range(23)
+) = range(21)
 # Whether the penalty's b (3.32) follows the eccentricity, FIRST and SECOND being those of the centred journal; whether
 # both follow the speed, being those of 1 rad/s; whether the first follows the whirl of the journal.
 STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED, BY_WHIRL = range(4)
@@ -86,11 +82,9 @@ def volume_films(
     follows: Sequence[int] = (),
     pulls: Sequence[float] = (),
     whirling: float = 0.0,
-    contact_eccentricity: float = LARGEST_ECCENTRICITY,
 ) -> VolumeFilms:
     """The films as arrays; all have grids of the same shape. follows: what the parameters of their laws do; pulls: in
-    s; whirling: what the laws' first parameter becomes in a whirl, if it follows that; contact_eccentricity: from which
-    on the surfaces touch."""
+    s; whirling: what the laws' first parameter becomes in a whirl, if it follows that."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
@@ -106,7 +100,6 @@ def volume_films(
         data.numbers[index, FOLLOWS] = follows[index] if follows else STANDS
         data.numbers[index, PULL] = pulls[index] if pulls else 0.0
         data.numbers[index, WHIRLING] = whirling
-        data.numbers[index, STOPS_FROM], data.numbers[index, LEAST_GAP] = gap_limits(contact_eccentricity)
     return data
 
 
