@@ -336,7 +336,7 @@ mesh = [1, 2.5]
         ('clearance = "35 um"', 'clearance = 35e-6\ntemperature = 350\nviscosity = 0.01', "bearing.temperature", "own"),
         ('kind = "single-film"', "", "bearing.kind", "missing"),
         ("[bearing]", "[contact]\npolicy = 'elastic'\n[bearing]", "contact.stiffness", "missing"),
-        ("[bearing]", "[contact]\neccentricity = 1\n[bearing]", "contact.eccentricity", "less than 1"),
+        ("[bearing]", "[contact]\neccentricity = 1\n[bearing]", "contact.eccentricity", "at most 0.9999"),
         ("[bearing]", "[start]\ndisplacement = [0.8, 0.8]\n[bearing]", "start.displacement", "outside"),
         ("[bearing]", "[start]\ndisplacement = [0, 0]\nposition = 'centre'\n[bearing]", "start.position", "beside"),
         ("[bearing]", "[accuracy]\ntarget = 0.2\n[bearing]", "accuracy.target", "at most"),

@@ -168,7 +168,7 @@ class Contact(Model):
     """What happens when the journal reaches the shell."""
 
     policy: Literal["stop", "elastic"] = "stop"
-    eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, below=1)] = CONTACT_BEGINS
+    eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = CONTACT_BEGINS
     stiffness: Stiffness | None = Field(default=None, description="of the surfaces, for the elastic policy")
 
 

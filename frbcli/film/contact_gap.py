@@ -9,28 +9,47 @@ from numba import njit
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
 KEPT = 0.2  # of the gap at which the surfaces touch: what no load presses out
-
-
-def gap_limits(contact_eccentricity: float) -> tuple[float, float]:
-    """(eccentricity from which the film's gap closes more slowly than the journal moves, least gap over the clearance)
-    for surfaces that touch from this eccentricity on; the gap stays where films can be computed."""
-    least = max(KEPT * (1.0 - contact_eccentricity), 1.0 - LARGEST_ECCENTRICITY)
-    return 1.0 - least / KEPT, least
+LATEST = 1.0 - (1.0 - LARGEST_ECCENTRICITY) / KEPT  # beginning from which films can be computed in the gap that is kept
 
 
 @njit(cache=True, error_model="numpy")
-def kept_gap(stops_from, least, d_x, d_y):  # type: ignore[no-untyped-def]
-    """(x, y, xx, yy, xy): the displacement (x, y) that the film feels of (d_x, d_y), over the clearance, and its
-    derivatives, a symmetric matrix, which also is what the film feels of the velocity.
+def closes_freely_until(contact_eccentricity):  # type: ignore[no-untyped-def]
+    """Eccentricity from which on the film's gap closes more slowly than the journal moves: where the surfaces touch,
+    or somewhat before if the gap that is kept would be too small for the films."""
+    return min(contact_eccentricity, LATEST)
 
-    Beyond stops_from the felt eccentricity goes as tanh to 1 - least, with a slope from 1 to 0: the gap, its rate and
-    so the force have no jump, and a gap that does not close any more squeezes nothing.
+
+@njit(cache=True, error_model="numpy")
+def contact_gap(begins, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
+    """What a film feels of a journal beyond the eccentricity `begins`, see closes_freely_until; d: displacement over
+    the clearance, v: its rate.
+
+    The felt eccentricity goes on as begins + room tanh((eps - begins) / room), room = (1 - KEPT) (1 - begins): its
+    slope falls from 1 to 0, so that the gap, its rate and with them the force have no jump. The felt velocity is the
+    rate of the felt displacement, as the balance of the oil asks for: a gap that does not close squeezes nothing.
+
+    Returns ten numbers: felt displacement (x, y); felt velocity (x, y); the matrix G (xx, yy, xy), by which the felt
+    displacement follows the displacement and the felt velocity the velocity; and the matrix (xx, yy, xy) by which the
+    felt velocity G v follows the displacement. Both are symmetric: the felt displacement is a gradient.
     """
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
-    if eccentricity <= stops_from:
-        return d_x, d_y, 1.0, 1.0, 0.0
-    n_x, n_y, left = d_x / eccentricity, d_y / eccentricity, 1.0 - least - stops_from
-    way = math.tanh((eccentricity - stops_from) / left)
-    along, radial = (stops_from + left * way) / eccentricity, 1.0 - way * way
-    xx, yy = radial * n_x * n_x + along * n_y * n_y, radial * n_y * n_y + along * n_x * n_x
-    return along * d_x, along * d_y, xx, yy, (radial - along) * n_x * n_y
+    n_x, n_y, room = d_x / eccentricity, d_y / eccentricity, (1.0 - KEPT) * (1.0 - begins)
+    share = math.tanh((eccentricity - begins) / room)
+    # slopes of the felt displacement along and across the line of centres, and how they change with the eccentricity
+    radial, along = 1.0 - share * share, (begins + room * share) / eccentricity
+    bend, turn = -2.0 * share * radial / room, (radial - along) / eccentricity
+    v_r, v_t = n_x * v_x + n_y * v_y, n_x * v_y - n_y * v_x
+    u_r, u_t = radial * v_r, along * v_t
+    rr, rt, tt = bend * v_r, turn * v_t, turn * v_r
+    return (
+        along * d_x,
+        along * d_y,
+        n_x * u_r - n_y * u_t,
+        n_y * u_r + n_x * u_t,
+        radial * n_x * n_x + along * n_y * n_y,
+        radial * n_y * n_y + along * n_x * n_x,
+        (radial - along) * n_x * n_y,
+        rr * n_x * n_x - 2.0 * rt * n_x * n_y + tt * n_y * n_y,
+        rr * n_y * n_y + 2.0 * rt * n_x * n_y + tt * n_x * n_x,
+        (rr - tt) * n_x * n_y + rt * (n_x * n_x - n_y * n_y),
+    )

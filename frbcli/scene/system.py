@@ -125,7 +125,7 @@ def make_system(case: Case, plan: Plan) -> System:
         return replace(system, films=run_film(case, plan.cells))
     if plan.cells is not None:
         volumes = tuple(volume_film(case, place, plan.cells) for place in places)
-        data = volume_films(volumes, channel_pulls(case, volumes), case.contact.eccentricity)
+        data = volume_films(volumes, channel_pulls(case, volumes))
         data = with_channels(data, volumes, coupled_channels(case, volumes))
         factor = case.film.cavitation_factor
         return replace(system, films=data, volumes=volumes, cavitation_factor=factor)

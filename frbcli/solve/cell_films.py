@@ -19,31 +19,24 @@ from frbcli.film.cells.data import (
     AREA,
     COS,
     GAP,
-    LEAST_GAP,
     MOUTH,
     PULL,
     REMEMBERS,
     SIN,
-    STOPS_FROM,
     UNKNOWN,
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.states import FRACTION, cell_states, follow_law
-from frbcli.film.contact_gap import kept_gap
 
 # How a film's grid stands, where the journal is in it, and from LAW on its law as follow_law has it.
-# FOLLOWS_X, FOLLOWS_Y, FOLLOWS_XY: the symmetric matrix by which the gap follows the journal, see kept_gap.
 (
     GRID_TURN,
     GRID_SPEED,
     GRID_X,
     GRID_Y,
     UNSETTLED,
-    FOLLOWS_X,
-    FOLLOWS_Y,
-    FOLLOWS_XY,
     LAW,
-) = range(9)
+) = range(6)
 GRIDS = LAW + LAW_NUMBERS
 SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
@@ -51,13 +44,6 @@ CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
 SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
-
-
-@njit(cache=True, error_model="numpy")
-def follow(grid, v_x, v_y):  # type: ignore[no-untyped-def]
-    """What the film feels of a velocity."""
-    xy = grid[FOLLOWS_XY]
-    return grid[FOLLOWS_X] * v_x + xy * v_y, xy * v_x + grid[FOLLOWS_Y] * v_y
 
 
 @njit(cache=True, error_model="numpy")
@@ -118,10 +104,6 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     """film_numbers of films.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
     pressures of the channels over its cells, see channels.py."""
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
-    d_x, d_y, grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY] = kept_gap(
-        numbers[STOPS_FROM], numbers[LEAST_GAP], d_x, d_y
-    )
-    v_x, v_y = follow(grid, v_x, v_y)
     c, s = math.cos(turn), math.sin(turn)
     x, y = c * d_x + s * d_y, c * d_y - s * d_x
     grid[GRID_X], grid[GRID_Y] = x, y
@@ -167,8 +149,6 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
     # back from the grid's directions: Q^T B Q
     a, b, p, q = c * xx - s * yx, c * xy - s * yy, s * xx + c * yx, s * xy + c * yy
-    xx, xy, yx, yy = a * c - b * s, a * s + b * c, p * c - q * s, p * s + q * c
-    follows_x, follows_y, follows_xy = grid[FOLLOWS_X], grid[FOLLOWS_Y], grid[FOLLOWS_XY]
     return (
         c * f_x - s * f_y,
         s * f_x + c * f_y,
@@ -176,17 +156,17 @@ def cell_numbers(  # type: ignore[no-untyped-def]
         0.0,
         0.0,
         0.0,
-        xx * follows_x + xy * follows_xy,
-        xx * follows_xy + xy * follows_y,
-        yx * follows_x + yy * follows_xy,
-        yx * follows_xy + yy * follows_y,
+        a * c - b * s,
+        a * s + b * c,
+        p * c - q * s,
+        p * s + q * c,
     )
 
 
 @njit(cache=True, error_model="numpy")
 def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untyped-def]
-    """The unknowns w (m, k) follow a correction u of the journal's velocity and those of its channels' pressures,
-    changes (slots,); 1 if the film had not settled.
+    """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
+    pressures, changes (slots,); 1 if the film had not settled.
 
     Of a small gap in a short step the oil counts far more than its flow, and a cell's oil is an S over w: steep between
     empty and full, flat on both sides. From one flat side Newton's method would leap to the other and back for ever; a
@@ -195,7 +175,6 @@ def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untype
     m, k = w.shape
     empty = grid[LAW + EMPTY]
     c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
-    u_x, u_y = follow(grid, u_x, u_y)
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
     grid[GRID_X] += g * x
     grid[GRID_Y] += g * y

@@ -21,7 +21,12 @@ from frbcli.film.cells.channel_flow import (
     push_of_channel,
 )
 from frbcli.film.cells.data import FILM, SLOT
-from frbcli.solve.cell_films import FOLLOWS_X, FOLLOWS_XY, FOLLOWS_Y, GRID_SPEED, GRID_TURN, law_of, set_law
+from frbcli.solve.cell_films import (
+    GRID_SPEED,
+    GRID_TURN,
+    law_of,
+    set_law,
+)
 from frbcli.solve.dense import solve_dense
 
 
@@ -55,7 +60,9 @@ def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def join(films, grids, states, fields, clearances, force, cross, answers, changes):  # type: ignore[no-untyped-def]
+def join(  # type: ignore[no-untyped-def]
+    films, grids, states, fields, clearances, follows_x, follows_y, force, cross, answers, changes
+):
     """Let the solved films feel each other: their forces, and cross (2 films, 2 films), N s / m, what the channels make
     of the derivatives by the journals' velocities. answers (mouths, 1 + 2 films) <- the changes of the channels'
     pressures, by themselves and per journal velocity in m/s; changes (films, slots) <- the former."""
@@ -69,8 +76,8 @@ def join(films, grids, states, fields, clearances, force, cross, answers, change
         answers[q, 0] = own[BY_ITSELF]
         c, s = math.cos(grids[GRID_TURN, f]), math.sin(grids[GRID_TURN, f])
         x, y = (c * own[1] - s * own[2]) / clearances[f], (s * own[1] + c * own[2]) / clearances[f]
-        answers[q, 1 + 2 * f] = grids[FOLLOWS_X, f] * x + grids[FOLLOWS_XY, f] * y
-        answers[q, 2 + 2 * f] = grids[FOLLOWS_XY, f] * x + grids[FOLLOWS_Y, f] * y
+        answers[q, 1 + 2 * f] = follows_x[2 * f] * x + follows_x[2 * f + 1] * y
+        answers[q, 2 + 2 * f] = follows_y[2 * f] * x + follows_y[2 * f + 1] * y
         for other in range(count):
             if int(films.mouths[other, FILM]) == f:
                 matrix[q, other] = own[SIDES + int(films.mouths[other, SLOT])]

@@ -31,7 +31,8 @@ def film_numbers(
     s: int,
     iteration: int,
 ) -> Any:
-    """The ten numbers of film_force for film f; those of cells hold all in the derivatives by the velocity.
+    """The ten numbers of film_force for film f at what it feels of its journal; those of cells hold all in the
+    derivatives by the velocity.
 
     A film whose balances hold already, but not in the first iteration of stage s, is settled: its rates are kept, and
     it only follows the journal. One that does not settle goes on with shorter steps.
@@ -48,8 +49,12 @@ def meet_channels(
     raise NotImplementedError
 
 
-def join_films(films: Any, work: Work, clearances: Array, force: Array) -> None:
-    """After all films have been asked: what coupled channels make of their forces (2 films,), and work.cross."""
+def join_films(
+    films: Any, work: Work, clearances: Array, force: Array, follows_x: Array, follows_y: Array
+) -> None:
+    """After all films have been asked: what coupled channels make of their forces (2 films,), and work.cross.
+
+    follows_x, follows_y: (2 films,), see the rows of stage.py."""
     raise NotImplementedError
 
 
@@ -59,7 +64,7 @@ def follow_channels(films: Any, work: Work, correction: Array, share: float) -> 
 
 
 def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, g: float) -> int:
-    """Take the film along with a correction u of the journal's velocity over the clearance; 1 if it had not settled."""
+    """Take the film along with a correction u of the velocity that it feels, over the clearance; 1 if not settled."""
     raise NotImplementedError
 
 
@@ -141,15 +146,16 @@ def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # typ
 
 
 @overload(join_films)
-def _join_films(films, work, clearances, force):  # type: ignore[no-untyped-def]
+def _join_films(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
     if not have_cells(films):
-        return lambda films, work, clearances, force: None
+        return lambda films, work, clearances, force, follows_x, follows_y: None
 
-    def volumes(films, work, clearances, force):  # type: ignore[no-untyped-def]
+    def volumes(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
         if films.mouths.shape[0] > 0:
             join(
-                films, work.grids, work.states, work.fields, clearances, force, work.cross, work.answers, work.changes
-            )
+                films, work.grids, work.states, work.fields, clearances, follows_x, follows_y, force, work.cross,
+                work.answers, work.changes,
+            )  # fmt: skip
 
     return volumes
 

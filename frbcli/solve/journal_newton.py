@@ -9,34 +9,40 @@ import math
 
 from numba import njit
 
+from frbcli.film.contact_gap import closes_freely_until, contact_gap
+from frbcli.solve.contact import push_back, shell_ahead, touches
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film
-from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FORCE, OMEGA, U_0, X_0, U, norm
+from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FOLLOWS_X, FOLLOWS_Y, FORCE, OMEGA, U_0, X_0, U, norm
 
 NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
-CLOSEST = 0.5  # share of the remaining gap that one Newton correction may close
+CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction may close
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def _bearing(  # type: ignore[no-untyped-def]
-    films, work, f, d_x, d_y, v_x, v_y, speed, g, s, iteration, clearance, contact_at, contact_stiffness
+@njit(cache=True, error_model="numpy")
+def _in_contact(  # type: ignore[no-untyped-def]
+    films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration, c, contact_at, contact_stiffness, film
 ):
-    """The film's force plus, beyond the contact eccentricity, the elastic contact of the case."""
-    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
-        films, work, f, d_x, d_y, v_x, v_y, speed, g, s, iteration
+    """FORCE, BY_X, BY_Y of a bearing in contact: the film at what it feels of the journal, and the elastic shell;
+    FOLLOWS_X, FOLLOWS_Y."""
+    x, y = 2 * f, 2 * f + 1
+    at_x, at_y, rate_x, rate_y, xx, yy, xy, turn_xx, turn_yy, turn_xy = contact_gap(
+        closes_freely_until(contact_at), d_x, d_y, v_x, v_y
     )
-    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
-    if contact_stiffness > 0.0 and eccentricity > contact_at:
-        k = contact_stiffness * clearance
-        along = k * (1.0 - contact_at / eccentricity)
-        n_x, n_y = d_x / eccentricity, d_y / eccentricity
-        f_x -= along * d_x
-        f_y -= along * d_y
-        k_xx -= along + (k - along) * n_x * n_x
-        k_xy -= (k - along) * n_x * n_y
-        k_yx -= (k - along) * n_x * n_y
-        k_yy -= along + (k - along) * n_y * n_y
-    return f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy
+    if work.grids.shape[1] > 0:  # a film with cells has one derivative, of velocity and displacement together
+        turn_xx = turn_yy = turn_xy = 0.0
+    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
+        films, work, f, at_x, at_y, rate_x, rate_y, omega, g, s, iteration
+    )
+    s_x, s_y, s_xx, s_yy, s_xy = push_back(d_x, d_y, c, contact_at, contact_stiffness)
+    film[FORCE, x], film[FORCE, y] = f_x + s_x, f_y + s_y
+    rate_xx, rate_yy, rate_xy = xx + g * turn_xx, yy + g * turn_yy, xy + g * turn_xy
+    film[BY_X, x] = (d_xx * rate_xx + d_xy * rate_xy + g * (k_xx * xx + k_xy * xy - s_xx)) / c
+    film[BY_Y, x] = (d_xx * rate_xy + d_xy * rate_yy + g * (k_xx * xy + k_xy * yy - s_xy)) / c
+    film[BY_X, y] = (d_yx * rate_xx + d_yy * rate_xy + g * (k_yx * xx + k_yy * xy - s_xy)) / c
+    film[BY_Y, y] = (d_yx * rate_xy + d_yy * rate_yy + g * (k_yx * xy + k_yy * yy - s_yy)) / c
+    film[FOLLOWS_X, x], film[FOLLOWS_Y, y] = xx, yy
+    film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = xy
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -53,11 +59,11 @@ def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def reach(d_x, d_y, c_x, c_y, limit):  # type: ignore[no-untyped-def]
-    """Largest factor <= 1 by which the correction c may be applied: the gap to `limit` keeps a share of itself."""
+def reach(d_x, d_y, c_x, c_y, end):  # type: ignore[no-untyped-def]
+    """Largest factor <= 1 by which the correction c may be applied: the gap to `end` keeps a share of itself."""
     here = norm(d_x, d_y)
     there = norm(d_x + c_x, d_y + c_y)
-    allowed = here + CLOSEST * (limit - here)
+    allowed = here + CLOSEST * (end - here)
     factor = 1.0
     while there > allowed and factor > 1e-6:
         factor *= 0.5
@@ -71,30 +77,28 @@ def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iterati
     meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
-        f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _bearing(
-            films,
-            work,
-            f,
-            (film[X_0, x] + g * film[U, x]) / c,
-            (film[X_0, y] + g * film[U, y]) / c,
-            film[U, x] / c,
-            film[U, y] / c,
-            film[OMEGA, x],
-            g,
-            s,
-            iteration,
-            c,
-            contact_at,
-            contact_stiffness,
+        d_x, d_y = (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c
+        v_x, v_y, omega = film[U, x] / c, film[U, y] / c, film[OMEGA, x]
+        if touches(norm(d_x, d_y), contact_at, contact_stiffness):
+            _in_contact(
+                films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration, c, contact_at, contact_stiffness, film
+            )
+            continue
+        f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
+            films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration
         )
         film[FORCE, x], film[FORCE, y] = f_x, f_y
         film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
         film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
-    join_films(films, work, clearances, film[FORCE])
+        film[FOLLOWS_X, x] = film[FOLLOWS_Y, y] = 1.0
+        film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = 0.0
+    join_films(films, work, clearances, film[FORCE], film[FOLLOWS_X], film[FOLLOWS_Y])
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def correct(films, work, compliance, clearances, g, limit, film, newton):  # type: ignore[no-untyped-def]
+def correct(  # type: ignore[no-untyped-def]
+    films, work, compliance, clearances, contact_at, contact_stiffness, g, film, newton
+):
     """One correction of U by Newton's method, and of the films' cells with it.
 
     Returns (share of it that was applied, what may be left of the error of a smooth force, how far the journals moved
@@ -123,12 +127,14 @@ def correct(films, work, compliance, clearances, g, limit, film, newton):  # typ
         if not math.isfinite(move):
             return 0.0, math.inf, math.inf, 0
         moved = max(moved, move)
-        share = min(share, reach(at_x, at_y, c_x, c_y, limit))
+        here = norm(at_x, at_y)
+        end = shell_ahead(here, contact_at, contact_stiffness)
+        share = min(share, reach(at_x, at_y, c_x, c_y, end))
         # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
         # |w|, over the size of w.
         half = 0.5 * film[OMEGA, x]
         film_speed = norm(film[U, x] / c + half * at_y, film[U, y] / c - half * at_x)
-        left = max(left, move * move * (1.0 / (limit - norm(at_x, at_y)) + 1.0 / (g * film_speed + 1e-30)))
+        left = max(left, move * move * (1.0 / (end - here) + 1.0 / (g * film_speed + 1e-30)))
     for i in range(m):
         film[U, i] += share * film[CORRECTION, i]
     for i in range(m):  # the forces at the corrected velocities, to first order: what Newton's equations have used
@@ -138,8 +144,9 @@ def correct(films, work, compliance, clearances, g, limit, film, newton):  # typ
             film[FORCE, i] += share * work.cross[i, j] * film[CORRECTION, j]
     follow_channels(films, work, film[CORRECTION], share)
     for f in range(clearances.shape[0]):
-        c = clearances[f]
-        unsettled += move_film(
-            films, work, f, share * film[CORRECTION, 2 * f] / c, share * film[CORRECTION, 2 * f + 1] / c, g
-        )
+        x, y = 2 * f, 2 * f + 1
+        c_x, c_y = share * film[CORRECTION, x] / clearances[f], share * film[CORRECTION, y] / clearances[f]
+        felt_x = film[FOLLOWS_X, x] * c_x + film[FOLLOWS_Y, x] * c_y
+        felt_y = film[FOLLOWS_X, y] * c_x + film[FOLLOWS_Y, y] * c_y
+        unsettled += move_film(films, work, f, felt_x, felt_y, g)
     return share, min(left, moved), moved, unsettled

@@ -203,7 +203,8 @@ def _advance(  # type: ignore[no-untyped-def]
         if rings > 0:  # only its torques are wanted, with the journals where they are now
             for k in range(m):
                 film[X_0, k], film[U, k] = motions[2, k], 0.0
-            spin_up(films, work, rotor, 0, 0.0, clearances, unused_at, film, bodies, turned, torque, unused, unused)
+            spin_up(films, work, rotor, 0, 0.0, clearances, contact_at, stiffness, unused_at, film, bodies, turned,
+                    torque, unused, unused)  # fmt: skip
 
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
+from frbcli.solve.contact import feel
 from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.stage import FORCE, OMEGA, X_0, Q, U, V
 from frbcli.solve.state import GRID, SLIP, SUM
@@ -38,7 +39,8 @@ def guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles):  # typ
 
 @njit(cache=True, error_model="numpy")
 def spin_up(  # type: ignore[no-untyped-def]
-    films, work, rotor, s, g, clearances, at, film, bodies, angles, torque, stage_v, stage_a
+    films, work, rotor, s, g, clearances, contact_at, contact_stiffness, at, film, bodies, angles, torque, stage_v,
+    stage_a
 ):
     """Let the films' torques (4.17) turn the rings: speeds and angles of the stage. Returns how far, in rad, the angle
     of a ring was off.
@@ -59,7 +61,8 @@ def spin_up(  # type: ignore[no-untyped-def]
         slip = 0.0
         for b in range(bodies.shape[0]):
             slip += rotor.turning[f, SLIP, b] * bodies[b]
-        resistance = rotor.drag[f] * drag_integral(films, work, f, e_x / c, e_y / c, rotor.torque_terms[1])
+        d_x, d_y, _, _, _, _, _, _, _, _ = feel(e_x / c, e_y / c, 0.0, 0.0, contact_at, contact_stiffness)
+        resistance = rotor.drag[f] * drag_integral(films, work, f, d_x, d_y, rotor.torque_terms[1])
         couette = -resistance * slip
         poiseuille = -0.5 * (e_x * film[FORCE, y] - e_y * film[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
         inside, outside = rotor.ring_of[f, 0], rotor.ring_of[f, 1]

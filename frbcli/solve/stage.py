@@ -24,8 +24,9 @@ ELASTIC_LIMIT = 1.5  # eccentricity that no journal exceeds even under elastic c
 # FREE is the acceleration without the films' forces; LATE the same with the gyroscopic term at the stage's own speed.
 V, Q, FREE, LATE, STAGE_ROWS = range(5)
 # u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y.
-# OMEGA is omega_J + omega_S of the journal's own film.
-U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, JOURNAL_ROWS = range(9)
+# OMEGA is omega_J + omega_S of the journal's own film. FOLLOWS_X, FOLLOWS_Y: the change of the velocity that the film
+# feels by that of the journal, see contact.py.
+U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL_ROWS = range(11)
 
 
 @njit(cache=True, error_model="numpy")

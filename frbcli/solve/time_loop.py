@@ -136,7 +136,8 @@ def _advance(  # type: ignore[no-untyped-def]
             for iteration in range(CELL_LIMIT if has_cells else NEWTON_LIMIT):
                 forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
                 numbers[SOLVES] += m // 2
-                share, left, moved, unsettled = correct(films, work, compliance, clearances, g, limit, film, newton)
+                share, left, moved, unsettled = correct(films, work, compliance, clearances, contact_at,
+                                                         contact_stiffness, g, film, newton)
                 if left == math.inf:
                     break
                 if has_cells:  # a film with cells has kinks: no guess at what is left, but the balances themselves
@@ -144,8 +145,8 @@ def _advance(  # type: ignore[no-untyped-def]
                 if share == 1.0:
                     accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a)
                     if spins.shape[0] > 0:
-                        turned = spin_up(films, work, rotor, s, g, clearances, at, film, bodies, angles_now, torque,
-                                         stage_v, stage_a)
+                        turned = spin_up(films, work, rotor, s, g, clearances, contact_at, contact_stiffness, at, film,
+                                         bodies, angles_now, torque, stage_v, stage_a)
                         left = max(left, turned)
                         set_speeds(turning, bodies, angles_now, film, grids)
                     settled = control.linearised or left < NEWTON_SHARE * tolerance

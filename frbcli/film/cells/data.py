@@ -13,17 +13,14 @@ from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.axial import axial_weights, end_slopes
 from frbcli.film.cells.plain.balance import NO_DISTANCE
 from frbcli.film.cells.plain.film import VolumeFilm
-from frbcli.film.contact_gap import gap_limits
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
 # Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; PULL: by which the given pressures fall with
-# the square of the grid's speed, in s; STOPS_FROM, LEAST_GAP: see contact_gap.py; from PARAMETERS on: those of its law,
-# of a centred journal at 1 rad/s.
+# the square of the grid's speed, in s; from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
@@ -42,10 +39,8 @@ CLOSED, GIVEN, FREE = range(3)
     FAR_BEND,
     FORCE_SCALE,
     PULL,
-    STOPS_FROM,
-    LEAST_GAP,
     PARAMETERS,
-) = range(20)
+) = range(18)
 SCALES_END = AMBIENT + 1  # REFERENCE, CAVITY and AMBIENT stand beside each other, as Scales has them
 FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
@@ -82,10 +77,8 @@ class VolumeFilms(NamedTuple):
 def volume_films(
     films: Sequence[VolumeFilm],
     pulls: Sequence[float] = (),
-    contact_eccentricity: float = LARGEST_ECCENTRICITY,
 ) -> VolumeFilms:
-    """The films as arrays; all have grids of the same shape. pulls: in s; contact_eccentricity: from which on the
-    surfaces touch."""
+    """The films as arrays; all have grids of the same shape. pulls: in s."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
@@ -99,7 +92,6 @@ def volume_films(
     for index, film in enumerate(films):
         _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
         data.numbers[index, PULL] = pulls[index] if pulls else 0.0
-        data.numbers[index, STOPS_FROM], data.numbers[index, LEAST_GAP] = gap_limits(contact_eccentricity)
     return data
 
 

@@ -84,7 +84,7 @@ def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     eccentricity = min(max(eccentricity, NEAR_CENTRE), LARGEST_ECCENTRICITY)
     w_r, w_t = c * w_x + s * w_y, c * w_y - s * w_x
     f_r, f_t, w_rr, w_rt, w_tr, w_tt, e_r, e_t = _along_and_across(film, eccentricity, w_r, w_t, omega)
-    if beyond:  # in contact: the film stays as it is at the end of the tables
+    if beyond:  # no table reaches there, and no run goes on there: an elastic shell leaves a gap, see contact_gap
         e_r = e_t = 0.0
     # Turning the displacement by dt turns force and w with it: dF/dt = (J F - dF/dw J w) / eps
     t_r = (w_rr * w_t - w_rt * w_r - f_t) / eccentricity
@@ -100,7 +100,7 @@ def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
 def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     """film_force of a film whose grooves stand still: solved in the frame of the shell."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
-    if eccentricity > LARGEST_ECCENTRICITY:  # in contact: the film stays as it is just before
+    if eccentricity > LARGEST_ECCENTRICITY:  # as in film_force
         d_x, d_y = d_x * LARGEST_ECCENTRICITY / eccentricity, d_y * LARGEST_ECCENTRICITY / eccentricity
     f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy = chain_force(
         film.table, film.grid, d_x, d_y, w_x, w_y, film.level, film.clipped == 1

@@ -17,8 +17,7 @@ from frbcli.film.published.law import Step
 from frbcli.film.published.newton import REFERENCES
 from frbcli.film.published.ring import Ring, make_ring
 from frbcli.film.published.unknown import Unknowns, make_unknowns, pressures_of
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
-from frbcli.solve.stage import norm
+from frbcli.solve.contact import feel
 
 RIGHTS = 3  # what is missing, and its derivatives by both velocities
 
@@ -37,8 +36,7 @@ class FilmEquations(NamedTuple):
 
 class Room(NamedTuple):
     """Scratch. gap (3, e, 9): H, its slope, its rate; matrix (e, 9, 9) and its right sides; w, pressure, by_w, total
-    (nodes,): of the trial, total being its residual; best (nodes,): unknowns with the smallest one; follow (2, 2, 2):
-    see keep_a_gap."""
+    (nodes,): of the trial, total being its residual; best (nodes,): unknowns with the smallest one."""
 
     ring: Ring
     matrix: Array
@@ -51,7 +49,6 @@ class Room(NamedTuple):
     by_w: Array
     total: Array
     best: Array
-    follow: Array
 
 
 def film_equations(film: PublishedFilm) -> FilmEquations:
@@ -79,36 +76,18 @@ def make_room(film: PublishedFilm) -> Room:
         np.zeros(nodes),
         np.zeros(nodes),
         np.zeros(nodes),
-        np.zeros((2, 2, 2)),
     )
 
 
 @njit(cache=True, error_model="numpy")
-def keep_a_gap(follow, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
-    """Displacement and velocity as the film feels them: a journal that has sunk into the shell, as far as an elastic
-    contact lets it, leaves the gap that it had just before; it only moves along it. follow (2, 2, 2) <- derivatives of
-    displacement and velocity by the displacement; the first is also that of the velocity by the velocity."""
-    eccentricity = norm(d_x, d_y)
-    follow[:] = 0.0
-    follow[0, 0, 0] = follow[0, 1, 1] = 1.0
-    if eccentricity <= LARGEST_ECCENTRICITY:
-        return d_x, d_y, v_x, v_y
-    share, n = LARGEST_ECCENTRICITY / eccentricity, (d_x / eccentricity, d_y / eccentricity)
-    towards, along = n[0] * v_x + n[1] * v_y, n[0] * v_y - n[1] * v_x
-    t = (-along * n[1], along * n[0])
-    for i in range(2):
-        for j in range(2):
-            across = (1.0 if i == j else 0.0) - n[i] * n[j]
-            follow[0, i, j] = share * across
-            follow[1, i, j] = -share / eccentricity * (t[i] * n[j] + towards * across + n[i] * t[j])
-    return share * d_x, share * d_y, share * t[0], share * t[1]
-
-
-@njit(cache=True, error_model="numpy")
-def residual(equations, room, w, past, d_x, d_y, v_x, v_y, omega, g):  # type: ignore[no-untyped-def]
+def residual(  # type: ignore[no-untyped-def]
+    equations, room, w, past, d_x, d_y, v_x, v_y, omega, g, contact_at, contact_stiffness
+):
     """Assemble at the unknowns w (nodes,). Returns the size of the residual, and its share of the sum of its terms."""
     elements = equations.elements
-    d_x, d_y, v_x, v_y = keep_a_gap(room.follow, d_x, d_y, v_x, v_y)
+    d_x, d_y, v_x, v_y, xx, yy, xy, turn_xx, turn_yy, turn_xy = feel(
+        d_x, d_y, v_x, v_y, contact_at, contact_stiffness
+    )
     sine, cosine = elements.sine, elements.cosine
     height, slope, rate = room.gap[0], room.gap[1], room.gap[2]
     for e in range(sine.shape[0]):
@@ -121,16 +100,15 @@ def residual(equations, room, w, past, d_x, d_y, v_x, v_y, omega, g):  # type: i
         room.pressure[i], room.by_w[i] = pressure[i], by_w[i]
     gap = Gap(height, slope, rate, 0.5 * omega)
     assemble(elements, equations.step, gap, room.pressure, room.by_w, 1.0 / g, past, room.matrix, room.derived)
-    follow, terms = room.follow, 1e-300
+    rate_xx, rate_yy, rate_xy = xx + g * turn_xx, yy + g * turn_yy, xy + g * turn_xy  # of what is felt by the velocity
+    terms = 1e-300
     room.total[:] = 0.0
     for e in range(sine.shape[0]):
         for a in range(9):
             r = room.derived[e, a]
             room.right[e, a, 0] = r[0]
-            for k in range(2):
-                by_x = (g * r[1] + r[3]) * follow[0, 0, k] + g * r[3] * follow[1, 0, k]
-                by_y = (g * r[2] + r[4]) * follow[0, 1, k] + g * r[4] * follow[1, 1, k]
-                room.right[e, a, 1 + k] = by_x + by_y
+            room.right[e, a, 1] = g * (r[1] * xx + r[2] * xy) + r[3] * rate_xx + r[4] * rate_xy
+            room.right[e, a, 2] = g * (r[1] * xy + r[2] * yy) + r[3] * rate_xy + r[4] * rate_yy
             room.total[elements.nodes[e, a]] += r[0]
             terms += abs(r[0])
     size, left = 0.0, 0.0

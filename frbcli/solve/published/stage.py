@@ -16,6 +16,7 @@ from numba import njit
 
 from frbcli.film.published.ring import solve_ring
 from frbcli.film.published.unknown import pressures_of
+from frbcli.solve.contact import push_back, shell_ahead
 from frbcli.solve.journal_newton import reach
 from frbcli.solve.published.equations import RIGHTS, residual
 from frbcli.solve.stage import CORRECTION, FORCE, OMEGA, U_0, X_0, U, norm
@@ -34,19 +35,14 @@ ENOUGH = 2e-3  # the same where the journal does not move any more
 
 @njit(cache=True, error_model="numpy")
 def _contact(f, d_x, d_y, clearance, g, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
-    """Add the elastic contact of stage.py to forces f (2, RIGHTS): its own, and by the velocity over the clearance."""
-    eccentricity = norm(d_x, d_y)
-    if contact_stiffness <= 0.0 or eccentricity <= contact_at:
-        return
-    k = contact_stiffness * clearance
-    along = k * (1.0 - contact_at / eccentricity)
-    n_x, n_y = d_x / eccentricity, d_y / eccentricity
-    f[0, 0] -= along * d_x
-    f[1, 0] -= along * d_y
-    f[0, 1] -= g * (along + (k - along) * n_x * n_x)
-    f[0, 2] -= g * (k - along) * n_x * n_y
-    f[1, 1] -= g * (k - along) * n_x * n_y
-    f[1, 2] -= g * (along + (k - along) * n_y * n_y)
+    """Add the elastic contact to forces f (2, RIGHTS): its own, and by the velocity over the clearance."""
+    f_x, f_y, k_xx, k_yy, k_xy = push_back(d_x, d_y, clearance, contact_at, contact_stiffness)
+    f[0, 0] += f_x
+    f[1, 0] += f_y
+    f[0, 1] -= g * k_xx
+    f[0, 2] -= g * k_xy
+    f[1, 1] -= g * k_xy
+    f[1, 2] -= g * k_yy
 
 
 @njit(cache=True, error_model="numpy")
@@ -108,16 +104,17 @@ def _put_up_with(  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy")
 def solve_stage(  # type: ignore[no-untyped-def]
-    equations, room, compliance, clearance, g, limit, contact_at, contact_stiffness, tolerance, past, w, film
+    equations, room, compliance, clearance, g, contact_at, contact_stiffness, tolerance, past, w, film
 ):
-    """w (nodes,), U and FORCE of a stage, beginning from those given. limit: eccentricity that is no state any more;
-    tolerance: of a displacement over the clearance; past (e, 9): of theta_t.
+    """w (nodes,), U and FORCE of a stage, beginning from those given. tolerance: of a displacement over the
+    clearance; past (e, 9): of theta_t.
 
     Returns (whether it is solved, residual over the sum of its terms before the last correction, assemblies).
     """
     omega, cost, since = film[OMEGA, 0], 1, 0
     d_x, d_y = (film[X_0, 0] + g * film[U, 0]) / clearance, (film[X_0, 1] + g * film[U, 1]) / clearance
-    size, left = residual(equations, room, w, past, d_x, d_y, film[U, 0] / clearance, film[U, 1] / clearance, omega, g)
+    size, left = residual(equations, room, w, past, d_x, d_y, film[U, 0] / clearance, film[U, 1] / clearance, omega, g,
+                          contact_at, contact_stiffness)  # fmt: skip
     sizes, least, change = np.full(MEMORY, size), math.inf, np.empty_like(w)
     best_size, best_x, best_y = math.inf, film[U, 0], film[U, 1]
     for iteration in range(ITERATIONS):
@@ -131,7 +128,8 @@ def solve_stage(  # type: ignore[no-untyped-def]
         change[:] = room.solution.reshape(-1, RIGHTS)[:, 0]
         u_x, u_y = film[CORRECTION, 0], film[CORRECTION, 1]
         c_x, c_y = g * u_x / clearance, g * u_y / clearance
-        share = reach(d_x, d_y, c_x, c_y, limit) * min(1.0, LARGEST_CORRECTION / largest)
+        end = shell_ahead(norm(d_x, d_y), contact_at, contact_stiffness)
+        share = reach(d_x, d_y, c_x, c_y, end) * min(1.0, LARGEST_CORRECTION / largest)
         if share == 1.0 and norm(c_x, c_y) < NEWTON_SHARE * tolerance and largest < FILM_SETTLED:
             for i in range(len(w)):
                 w[i] += change[i]
@@ -146,7 +144,8 @@ def solve_stage(  # type: ignore[no-untyped-def]
                 room.w[i] = w[i] + share * change[i]
             t_x, t_y = film[U, 0] + share * u_x, film[U, 1] + share * u_y
             d_x, d_y = (film[X_0, 0] + g * t_x) / clearance, (film[X_0, 1] + g * t_y) / clearance
-            size, left = residual(equations, room, room.w, past, d_x, d_y, t_x / clearance, t_y / clearance, omega, g)
+            size, left = residual(equations, room, room.w, past, d_x, d_y, t_x / clearance, t_y / clearance, omega, g,
+                                  contact_at, contact_stiffness)  # fmt: skip
             cost += 1
             if size < target or share < SMALLEST_SHARE:
                 break

@@ -115,7 +115,7 @@ def _stage(parts: Parts, state: State, piece: int, t: float, step: float, s: int
     past = (fraction + step * np.tensordot(weights[s, :s], scratch.rates[:s], axes=1)) / g
     control = parts.control
     solved, _, cost = solve_stage(
-        parts.equations, parts.room, scratch.compliance, parts.clearance, g, parts.limit, control.contact_eccentricity,
+        parts.equations, parts.room, scratch.compliance, parts.clearance, g, control.contact_eccentricity,
         control.contact_stiffness, control.tolerance, past, scratch.w, film)  # fmt: skip
     numbers[SOLVES] += cost
     if not solved:

@@ -1,0 +1,49 @@
+"""Elastic contact of journals and shells in the time loop, compiled: what films feel of it, and what it pushes with."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from frbcli.film.contact_gap import closes_freely_until, contact_gap
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def touches(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+    """Whether a film feels less than the displacement. Where contact ends the run, stiffness 0, it never does."""
+    return contact_stiffness > 0.0 and eccentricity > closes_freely_until(contact_at)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def shell_ahead(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+    """Where the gap ends for Newton's method: at the shell, and in contact as far ahead as the gap was wide there."""
+    if contact_stiffness > 0.0:
+        return max(1.0, eccentricity + 1.0 - closes_freely_until(contact_at))
+    return 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def feel(d_x, d_y, v_x, v_y, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+    """The ten numbers of contact_gap, in contact or not."""
+    if touches(math.sqrt(d_x * d_x + d_y * d_y), contact_at, contact_stiffness):
+        return contact_gap(closes_freely_until(contact_at), d_x, d_y, v_x, v_y)
+    return d_x, d_y, v_x, v_y, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def push_back(d_x, d_y, clearance, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+    """The radial spring of the surfaces beyond the eccentricity of contact: force (x, y) in N, and what it falls by per
+    displacement over the clearance (xx, yy, xy)."""
+    eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
+    if contact_stiffness <= 0.0 or eccentricity <= contact_at:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    k, n_x, n_y = contact_stiffness * clearance, d_x / eccentricity, d_y / eccentricity
+    along = k * (1.0 - contact_at / eccentricity)
+    return (
+        -along * d_x,
+        -along * d_y,
+        along + (k - along) * n_x * n_x,
+        along + (k - along) * n_y * n_y,
+        (k - along) * n_x * n_y,
+    )
