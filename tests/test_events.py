@@ -242,6 +242,23 @@ def test_a_starved_film_has_no_critical_speed_where_its_journal_vibrates(tmp_pat
     assert run.error["quiet_until_s"] == pytest.approx(0.85 * event.t_s)
 
 
+def test_a_self_excited_vibration_is_the_same_in_a_mirror() -> None:
+    run = with_own_vibration()
+    columns = {name: run[name] * (-1.0 if name.endswith("_y_m") or name == "speed_Hz" else 1.0) for name in run.signals}
+    (event,), (mirrored,) = find_events(run), find_events(as_run(columns))
+    assert (mirrored.kind, mirrored.t_s, mirrored.speed_Hz) == (event.kind, event.t_s, -event.speed_Hz)
+    assert mirrored.frequency_ratio == pytest.approx(event.frequency_ratio)
+
+
+def test_a_run_of_any_length_has_events_or_none() -> None:
+    """Also one that is as long as a window, or a step longer."""
+    columns = signals(Rotor(speeds_Hz=(100.0, 100.0), duration_s=0.5, whirl_s=None, critical_Hz=None))
+    for revolutions in (0.01, 1.0, 4.0, 8.0, 16.0, 32.0):
+        for samples in range(-30, 31, 10):
+            count = round(revolutions * 200) + samples
+            assert find_events(as_run({name: values[: max(count, 0)] for name, values in columns.items()})) == ()
+
+
 @pytest.mark.parametrize("damping", [0.02, 0.05, 0.2])
 def test_a_resonance_that_is_passed_at_any_damping_is_a_critical_speed(damping: float) -> None:
     events = find_events(knowing(make_run(Rotor(damping=damping, whirl_s=None)), 145.0))

@@ -109,7 +109,8 @@ def _near_the_speed(
         its_speed = float(turns.speed_Hz[critical])
         yield Event("critical-speed", None, float(turns.time_s[critical]), its_speed, its_speed, 1.0)
     for own in vibrations[:1]:
-        yield Event("self-excited", None, own.time_s, own.speed_Hz, own.frequency_Hz, own.frequency_Hz / own.speed_Hz)
+        ratio = own.frequency_Hz / abs(own.speed_Hz)
+        yield Event("self-excited", None, own.time_s, own.speed_Hz, ratio * own.speed_Hz, ratio)
 
 
 def _clearance_steps(run: RunLike) -> Iterator[Event]:

@@ -119,10 +119,11 @@ def vibrations_beside(
     critical_step, is the end of a resonance.
     """
     half, more = NARROW * STEPS // 2, (NARROW - WIDE) * STEPS // 2
-    if len(tracked[1]) == 0:
+    if len(tracked[1]) < 2:
         return
     forward, backward = (wide[more:-more] - narrow for wide, narrow in (tracked[:2], tracked[2:]))
-    order = 1.0 + np.gradient(np.unwrap(np.angle(forward))) * STEPS / (2.0 * np.pi)
+    speed = turns.speed_Hz[half:-half]
+    order = 1.0 + np.sign(speed) * np.gradient(np.unwrap(np.angle(forward))) * STEPS / (2.0 * np.pi)
     amplitude = (np.abs(forward) + np.abs(backward)) / clearance  # along the longer axis of the orbit
     apart = np.where(np.abs(order - 1.0) >= BESIDE, amplitude, 0.0)
     settled, until = turns.settled, max(0, int(np.searchsorted(turns.time_s, before_s)) - 2 * half)
@@ -131,7 +132,7 @@ def vibrations_beside(
         if last - first < sustained:
             continue
         seen = slice(settled + first, settled + last)
-        frequency = float(np.median((order * np.abs(turns.speed_Hz[half:-half]))[seen]))
+        frequency = float(np.median((order * np.abs(speed))[seen]))
         if modes is None or not near(frequency, modes):
             begins, ends = settled + first + half, settled + last - 1 + half
             time_s = turns.time_s
