@@ -16,6 +16,7 @@ from frbcli.cli.runs import OUTPUT, beside, here
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.results.store import Run
+    from frbcli.scene.cost import ExpectedCost
     from frbcli.solve.run import Observer
     from frbcli.solve.under_way import Progress
 
@@ -27,12 +28,15 @@ ENDED_EARLY = 3
 REFRESH_Hz = 8
 COLUMNS = 80  # of a terminal
 LONGEST_LEFT_s = 1e9  # no guess that anybody waits for
+TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
+SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 REASONS = {
     "contact": "The journal reached the shell (contact.eccentricity). "
     "To go on through contact: --set contact.policy=elastic --set contact.stiffness='1e9 N/m'.",
     "starved": "The film ran out of oil: more left at its ends than came in, so that it carried nothing in the end. "
     "Raise bearing.supply.pressure above oil.cavitation_pressure, or take ends = \"oil-bath\".",
-    "not-converged": "The step size fell to nothing. Try a smaller accuracy.target, or contact.policy=elastic.",
+    "not-converged": "The step size fell to nothing, or to a hundredth of what the plan expected. "
+    "Try a smaller accuracy.target, or contact.policy=elastic.",
     "interrupted": "Go on with the same command and --resume.",
 }
 
@@ -61,10 +65,14 @@ def transient(
     terminal: Terminal,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
+    from frbcli.solve.run import run_cost
+
     path = output or here(case.name, ".h5")
+    cost = run_cost(command, case)
+    if cost.total_s > TOLD_s:
+        terminal.say(cost_line(cost))
     with live_lines(terminal) as show:
-        observe: Observer | None = None if show is None else lambda progress: show(progress_line(progress))
-        run = run_case(case, path, resume=resume, observe=observe)
+        run = run_case(case, path, resume=resume, observe=_watch(terminal, show))
     _report(run, terminal)
     if picture and len(run) > 1:
         from frbcli.plot.style import save_figure
@@ -87,6 +95,35 @@ def transient(
         }
     )
     return exit_code(run.status)
+
+
+def cost_line(cost: ExpectedCost) -> str:
+    """What a run will take, for people who would wonder."""
+    from frbcli.scene.limits import clock, memory
+
+    before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > TOLD_BEFORE_s else ""
+    return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
+
+
+def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
+    """Shows the progress where somebody watches, and says once if a run takes much longer than its plan expected."""
+    from frbcli.scene.limits import clock
+
+    said = False
+
+    def observe(progress: Progress) -> None:
+        nonlocal said
+        if show is not None:
+            show(progress_line(progress))
+        if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
+            said = True
+            left = f"about {clock(progress.left_s)} left" if progress.left_s < LONGEST_LEFT_s else "no end in sight"
+            terminal.say(
+                f"Warning: this run takes {progress.over_plan:.0f} times as long as its plan expected, {left}.\n"
+                "Ctrl-C keeps what is computed."
+            )
+
+    return observe
 
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:

@@ -11,7 +11,9 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import Run, RunWriter, check_output, read_run
 from frbcli.rotor.excitation import SpeedProfile
-from frbcli.scene.plan import make_plan
+from frbcli.scene.cost import ExpectedCost, expected_cost
+from frbcli.scene.limits import require_affordable
+from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.stretches import make_stretches
 from frbcli.scene.system import run_down_profile, run_up_profile
 from frbcli.solve.error_budget import quiet_until
@@ -23,6 +25,7 @@ from frbcli.solve.under_way import March, Progress
 
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
+PROFILES = {"runup": run_up_profile, "rundown": run_down_profile}
 STATUS, STARVED = {FINISHED: "finished", CONTACT: "contact"}, "starved"
 
 Observer = Callable[[Progress], None]
@@ -32,22 +35,33 @@ def runup(case: Case, output: str | Path, resume: bool = False, observe: Observe
     """Run the rotor of a case up as its [speed] says and write the run to `output` (HDF5) as it goes.
 
     resume: go on with an interrupted run of the same case in `output`. observe: called some times a second.
-    Raises InputError for a case that cannot be modelled or an output that cannot be written. Any end for a physical or
-    numerical reason is the status of the run: "finished", "contact", "starved", "not-converged"; Ctrl-C ends it
-    as "interrupted".
+    Raises InputError for a case that cannot be modelled or afforded, or an output that cannot be written. Any end for a
+    physical or numerical reason is the status of the run: "finished", "contact", "starved", "not-converged"; Ctrl-C
+    ends it as "interrupted".
     """
-    return _run("runup", case, run_up_profile(case), output, resume, observe)
+    return _run("runup", case, output, resume, observe)
 
 
 def rundown(case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None) -> Run:
     """Run up, hold, and run down again (section 7.2.2); otherwise as runup."""
-    return _run("rundown", case, run_down_profile(case), output, resume, observe)
+    return _run("rundown", case, output, resume, observe)
 
 
-def _run(
-    command: str, case: Case, profile: SpeedProfile, output: str | Path, resume: bool, observe: Observer | None
-) -> Run:
-    plan = make_plan(case)
+def run_cost(command: str, case: Case) -> ExpectedCost:
+    """What a "runup" or "rundown" of a case is expected to cost. Raises InputError for a case that cannot be modelled
+    or afforded."""
+    return _planned(command, case)[2]
+
+
+def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost]:
+    plan, profile = make_plan(case), PROFILES[command](case)
+    cost = expected_cost(case, plan, profile)
+    require_affordable(case, plan, cost)
+    return plan, profile, cost
+
+
+def _run(command: str, case: Case, output: str | Path, resume: bool, observe: Observer | None) -> Run:
+    plan, profile, _ = _planned(command, case)
     check_output(Path(output))
     earlier = _earlier(command, case, Path(output)) if resume else None
     if earlier is not None and earlier.status != "interrupted":
