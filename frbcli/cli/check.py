@@ -29,6 +29,7 @@ def command(case: Case, terminal: Terminal) -> None:
     from frbcli.case.listing import values
     from frbcli.scene.cost import expected_cost
     from frbcli.scene.expected_error import expected_error
+    from frbcli.scene.limits import require_affordable
     from frbcli.scene.operating import operating_points
     from frbcli.scene.plan import make_plan
     from frbcli.scene.system import run_up_profile
@@ -56,10 +57,15 @@ def command(case: Case, terminal: Terminal) -> None:
             "eccentricity_error": error.eccentricity,
             "film_force_error_relative": error.film_force,
             "cpu_s": cost.cpu_s,
+            "cpu_before_s": cost.before_s,
+            "cpu_after_s": cost.after_s,
+            "memory_B": cost.memory_B,
             "steps": cost.steps,
             "film_solves": cost.film_solves,
         }
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in (*decisions, *lines)])
+    if not kinematic:  # after the plan, which helps to see why it is refused
+        require_affordable(case, plan, cost)
     terminal.emit(
         {
             "command": "check",
@@ -89,13 +95,17 @@ def command(case: Case, terminal: Terminal) -> None:
 
 def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, ...]:
     """What the plan will cost and leave, as its last lines."""
+    from frbcli.scene.limits import clock, memory
     from frbcli.scene.plan import Decision
 
     solves = f"{cost.steps} steps, {cost.film_solves} film solves, on the machine of docs/accuracy.md"
+    beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
     parts = f"of the eccentricities before a whirl grows; film forces {error.film_force:.1g}, relative"
     return (
         Decision("expected error", f"{error.eccentricity:.1g}", parts),
-        Decision("expected cost", f"{cost.cpu_s:.2g} s of CPU time", solves),
+        Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),
+        Decision("beside it", clock(cost.before_s + cost.after_s), beside),
+        Decision("memory", memory(cost.memory_B), "of the whole process, at most"),
     )
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
     from frbcli.runs.march import Progress
     from frbcli.runs.run import Observer
+    from frbcli.scene.cost import ExpectedCost
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
@@ -30,6 +31,8 @@ REFRESH_Hz = 8
 COLUMNS = 80  # of a terminal
 SUMMARY = "-summary.png"
 LONGEST_LEFT_s = 1e9  # no guess that anybody waits for
+TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
+SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
 
 def run_options(function: Function) -> Function:
@@ -58,12 +61,16 @@ def transient(
     terminal: Terminal,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
+    from frbcli.runs.run import run_cost
+
     path = output or here(case.name, ".h5")
     if picture:
         _check_summary(path)
+    cost = run_cost(command, case)
+    if cost.total_s > TOLD_s:
+        terminal.remark(cost_line(cost))
     with live_lines(terminal) as show:
-        observe: Observer | None = None if show is None else lambda progress: show(progress_line(progress))
-        run = run_case(case, path, resume=resume, observe=observe, force=force)
+        run = run_case(case, path, resume=resume, observe=_watch(terminal, show), force=force)
     _report(case, run, terminal)
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
@@ -93,6 +100,35 @@ def _check_summary(path: Path) -> None:
 
     check_output(path)
     check_picture(beside(path, SUMMARY))
+
+
+def cost_line(cost: ExpectedCost) -> str:
+    """What a run will take, for people who would wonder."""
+    from frbcli.scene.limits import clock, memory
+
+    before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > TOLD_BEFORE_s else ""
+    return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
+
+
+def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
+    """Shows the progress where somebody watches, and says once if a run takes much longer than its plan expected."""
+    from frbcli.scene.limits import clock
+
+    said = False
+
+    def observe(progress: Progress) -> None:
+        nonlocal said
+        if show is not None:
+            show(progress_line(progress))
+        if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
+            said = True
+            left = f"about {clock(progress.left_s)} left" if progress.left_s < LONGEST_LEFT_s else "no end in sight"
+            terminal.remark(
+                f"Warning: this run takes {progress.over_plan:.0f} times as long as its plan expected, {left}.\n"
+                "Ctrl-C keeps what is computed."
+            )
+
+    return observe
 
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:

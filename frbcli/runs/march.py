@@ -24,7 +24,7 @@ from frbcli.runs.header import named, ring_names
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
 from frbcli.runs.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.cost import expected_cost
+from frbcli.scene.cost import expected_cost, expected_course
 from frbcli.scene.plan import Plan
 from frbcli.scene.remedies import advised
 from frbcli.scene.segments import Stretch, make_stretches
@@ -39,6 +39,7 @@ from frbcli.solve.state import (
     RUNNING,
     SOLVES,
     STEPS,
+    STUCK,
     TIME,
     TURNS,
     Array,
@@ -48,12 +49,15 @@ from frbcli.solve.time_loop import advance
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
 BUDGET, CELL_BUDGET = 500, 50  # steps between two looks at the clock: some milliseconds
+CHUNK_s = 0.2  # at most, of steps that take long
+# A run whose steps are this many times as many as its plan expected goes nowhere, and would for ever.
+RUNAWAY, FEWEST_STEPS = 100, 2_000_000
 
 
 @dataclass(frozen=True)
 class Progress:
-    """What a run tells while it goes on. Times in s, speed in Hz; eccentricity: the largest of all films now;
-    for_error: of the same run again, to tell its error."""
+    """What a run tells while it goes on. Times in s, speed in Hz; eccentricity: the largest of all films now; cpu_s: so
+    far, and over_plan: over what the plan expected until now; for_error: of the same run again, to tell its error."""
 
     t_s: float
     end_s: float
@@ -64,6 +68,8 @@ class Progress:
     simulated_ms_per_hour: float
     left_s: float
     for_error: bool = False
+    cpu_s: float = 0.0
+    over_plan: float = 0.0
 
 
 class March:
@@ -94,9 +100,11 @@ class March:
         # States at some fixed output times, at which the films are solved again and runs compared.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
         self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
-        self._predicted_cpu_s = expected_cost(case, plan, profile).cpu_s
+        self._expected, self._course = expected_cost(case, plan, profile), expected_course(case, plan, profile)
         self._cpu_s = self._wall_s = 0.0
-        self._budget = BUDGET if plan.cells is None else CELL_BUDGET
+        most = BUDGET if plan.cells is None else CELL_BUDGET
+        self._budget = max(1, min(most, int(CHUNK_s / max(self._expected.step_s, 1e-9))))
+        self._most_steps = max(FEWEST_STEPS, RUNAWAY * self._expected.steps)
 
     def _take_up(self, number: int) -> None:
         """Make a stretch the current one; the time loop sees the profile up to its end."""
@@ -170,6 +178,8 @@ class March:
         signals = self._signals(times, speeds, self._q[:rows], self._v[:rows])
         if status == FINISHED and self._current + 1 < len(self._stretches):
             status = self._change()
+        if status == RUNNING and self._state.numbers[STEPS] > self._most_steps:
+            status = STUCK
         return status, signals
 
     def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
@@ -214,7 +224,7 @@ class March:
         return {
             "cpu_s": self._cpu_s,
             "error_cpu_s": 0.0,  # told when the run has ended
-            "predicted_cpu_s": self._predicted_cpu_s,
+            "predicted_cpu_s": self._expected.cpu_s,
             "wall_s": self._wall_s,
             "steps": int(numbers[STEPS]),
             "rejected_steps": int(numbers[REJECTED]),
@@ -258,4 +268,6 @@ class March:
             simulated_ms_per_hour=1e3 * 3600.0 * rate,
             left_s=(end - t) / rate if rate > 0 else math.inf,
             for_error=until is not None,
+            cpu_s=self._cpu_s,
+            over_plan=self._cpu_s / max(self._expected.step_s * float(np.interp(t, *self._course)), 1e-9),
         )

@@ -21,13 +21,16 @@ from frbcli.runs.header import header
 from frbcli.runs.interrupt import held_back
 from frbcli.runs.march import March, Progress
 from frbcli.runs.restored import WrongCheckpoint
-from frbcli.scene.plan import make_plan
+from frbcli.scene.cost import ExpectedCost, expected_cost
+from frbcli.scene.limits import require_affordable
+from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.segments import Stretch, make_stretches
 from frbcli.scene.system import run_down_profile, run_up_profile
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
+PROFILES = {"runup": run_up_profile, "rundown": run_down_profile}
 STATUS, STARVED = {FINISHED: "finished", CONTACT: "contact"}, "starved"
 
 Observer = Callable[[Progress], None]
@@ -40,30 +43,37 @@ def runup(
 
     A run that has ended there before is replaced. resume: go on with an interrupted run of the same case in `output`;
     force: replace also an interrupted run, which is refused else. observe: called some times a second.
-    Raises InputError for a case that cannot be modelled, an output that cannot be written, or an interrupted run in its
-    place. Any end for a physical or numerical reason is the status of the run: "finished", "contact", "starved",
-    "not-converged"; Ctrl-C ends it as "interrupted".
+    Raises InputError for a case that cannot be modelled or afforded, an output that cannot be written, or an
+    interrupted run in its place. Any end for a physical or numerical reason is the status of the run: "finished",
+    "contact", "starved", "not-converged"; Ctrl-C ends it as "interrupted".
     """
-    return _run("runup", case, run_up_profile(case), output, resume, observe, force)
+    return _run("runup", case, output, resume, observe, force)
 
 
 def rundown(
     case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None, force: bool = False
 ) -> Run:
     """Run up, hold, and run down again (section 7.2.2); otherwise as runup."""
-    return _run("rundown", case, run_down_profile(case), output, resume, observe, force)
+    return _run("rundown", case, output, resume, observe, force)
+
+
+def run_cost(command: str, case: Case) -> ExpectedCost:
+    """What a "runup" or "rundown" of a case is expected to cost. Raises InputError for a case that cannot be modelled
+    or afforded."""
+    return _planned(command, case)[2]
+
+
+def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost]:
+    plan, profile = make_plan(case), PROFILES[command](case)
+    cost = expected_cost(case, plan, profile)
+    require_affordable(case, plan, cost)
+    return plan, profile, cost
 
 
 def _run(
-    command: str,
-    case: Case,
-    profile: SpeedProfile,
-    output: str | Path,
-    resume: bool,
-    observe: Observer | None,
-    force: bool,
+    command: str, case: Case, output: str | Path, resume: bool, observe: Observer | None, force: bool
 ) -> Run:
-    plan = make_plan(case)
+    plan, profile, _ = _planned(command, case)
     check_output(Path(output))
     if resume and force:
         raise _refuse(Path(output), "--force", "begins anew, and --resume goes on.", "Give one of them.")

@@ -1,11 +1,12 @@
-"""What a run will cost, told from its plan before it starts: time steps, film solves, CPU time.
+"""What a run will cost, told from its plan before it starts: time steps, film solves, CPU time, memory.
 
-    CPU time = steps x stages x iterations x films x time of a film solve
+    CPU time of the loop = steps x (stages x iterations x films x time of a film solve + a large rotor's own share)
 
-Steps follow from the revolutions of the run. Iterations and times of a film solve, the rotor's share included, were
-measured on the shipped cases on one machine and stand in one table here; docs/accuracy.md says which, and holds
-predicted beside real cost. No machine is timed before a run: on a busy one such a probe is wrong by more than the
-machines of today differ.
+Steps follow from the revolutions of the run, and from the tolerance where that asks for more. Iterations and times of a
+film solve, the share of a small rotor included, were measured on the shipped cases on one machine and stand in one
+table here; docs/accuracy.md says which, and holds predicted beside real cost. What is to do before and after the loop
+is in preparation.py. No machine is timed before a run: on a busy one such a probe is wrong by more than the machines of
+today differ.
 """
 
 from __future__ import annotations
@@ -14,18 +15,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.rectangles.chain import MODES as CHAIN_MODES
 from frbcli.film.rectangles.table import Mesh
-from frbcli.rotor.excitation import SpeedProfile
+from frbcli.rotor.excitation import Array, SpeedProfile
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.plan import Plan
+from frbcli.scene.preparation import after_s, along_factor, before_s, memory_B, rotor_size, shaft_mass
 from frbcli.scene.published import PUBLISHED
 from frbcli.scene.tabulated import SOLUTIONS
 
 STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
+ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step that its error goes with
 # By form of the film. SOLVE_us: of a solve; ITERATIONS: solves of a stage; CROWDED: steps over the fewest allowed, as a
 # film whose whirl is hard takes more.
 SOLVE_us = {CLOSED_FORM: 0.5, CLIPPED: 14.0, TABLE: 0.5, FIELDS: 14.0, CHAINS: 20.0, CELLS: 36.0, SOLUTIONS: 0.8,
@@ -40,27 +45,45 @@ CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.
 ELASTIC = 1.7
 FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
-CELL_COUNT, CELL_POWER = 288, 1.4  # 48 x 6
+CELLS_AROUND, CELLS_ALONG = 48, 6
+PUBLISHED_COUNT, PUBLISHED_POWER = 288, 1.4
 LONGEST_STEP_s = 1e-3  # of a run: a slow rotor still falls, and its shaft still vibrates
 MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
+# Of a rotor with n degrees of freedom and m coordinates of its journals beyond those of the shipped ones: ns per n^3 of
+# a step, which needs a new inverse now and then, per n^2 of a stage, and per m^3 of an iteration.
+SMALL_ROTOR, INVERSE_ns, PRODUCTS_ns, JOURNALS_ns = 30, 3.6, 3.0, 0.4
+SMOOTH = 7.0  # radians of a motion as large as the clearance that a step with a tolerance of 1 may pass
 MICRO_STEPS = 2.0  # of a film in a macro step of a co-simulation
 TABLE_POINTS = 400  # of the speed profile
 
 
 @dataclass(frozen=True)
 class ExpectedCost:
-    """steps, film_solves: of the whole run; cpu_s: of its time loop, on the reference machine."""
+    """steps, film_solves: of the whole run; cpu_s: of its time loop; before_s: of tables, reduction of the shaft and
+    the first state; after_s: of the error that is told at the end; memory_B: bytes that the process will take. CPU
+    times are those of the reference machine."""
 
     steps: int
     film_solves: int
     cpu_s: float
+    before_s: float
+    after_s: float
+    memory_B: float
+
+    @property
+    def total_s(self) -> float:
+        """CPU time of all of it."""
+        return self.before_s + self.cpu_s + self.after_s
+
+    @property
+    def step_s(self) -> float:
+        """CPU time of one step."""
+        return self.cpu_s / max(self.steps, 1)
 
 
 def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost:
     """What a run along a speed profile will cost."""
-    steps = _steps(case, plan, profile)
-    if case.contact.policy == "elastic":
-        steps *= ELASTIC
+    steps = float(expected_course(case, plan, profile)[1][-1])
     films = len(film_places(case))
     iterations = RING_ITERATIONS if turning_rings(case) else ITERATIONS[plan.form]
     if plan.coupling == SEMI:
@@ -68,7 +91,18 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     solves = steps * STAGES[plan.method] * iterations * films
     if plan.coupling == APART:
         solves *= MICRO_STEPS
-    return ExpectedCost(round(steps), round(solves), 1e-6 * solves * solve_us(plan))
+    loop_s = 1e-6 * solves * solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
+    samples = profile.end / case.output.step
+    before, after = before_s(case, plan), after_s(case, plan, loop_s, samples)
+    return ExpectedCost(round(steps), round(solves), loop_s, before, after, memory_B(case, plan, samples))
+
+
+def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
+    """Time of a step in a rotor that is larger than those whose share is in the time of a film solve, ns."""
+    n, m, stages = max(rotor_size(case), SMALL_ROTOR), 2 * len(film_places(case)), STAGES[plan.method]
+    inverse, products = n**3 - SMALL_ROTOR**3, n**2 - SMALL_ROTOR**2
+    journals = max(0, m**3 - SMALL_ROTOR**3)
+    return INVERSE_ns * inverse + stages * (PRODUCTS_ns * products + iterations * JOURNALS_ns * journals)
 
 
 def longest_step(case: Case, plan: Plan) -> float:
@@ -83,11 +117,14 @@ def solve_us(plan: Plan) -> float:
     if plan.form == FIELDS:  # beside films that are cheap
         us = float(np.mean([_fields_us(mesh) if form == FIELDS else SOLVE_us[form] for form, mesh in plan.films]))
     if plan.form == CHAINS:
-        elements = plan.mesh.axial * plan.mesh.circumferential
+        elements = min(plan.mesh.axial, CHAIN_MODES) * plan.mesh.circumferential
         us *= 1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS
-    if plan.cells is not None:
-        count = plan.cells[0] * plan.cells[1]
-        us *= law_named(plan.cavitation).cost * (count / CELL_COUNT) ** CELL_POWER
+    if plan.form == PUBLISHED and plan.cells is not None:
+        us *= (plan.cells[0] * plan.cells[1] / PUBLISHED_COUNT) ** PUBLISHED_POWER
+    elif plan.cells is not None:
+        around, along = plan.cells
+        size = around / CELLS_AROUND * along_factor(along) / along_factor(CELLS_ALONG)
+        us *= law_named(plan.cavitation).cost * size
     return us
 
 
@@ -95,10 +132,38 @@ def _fields_us(mesh: Mesh) -> float:
     return SOLVE_us[FIELDS] * mesh.circumferential / FIELD_ELEMENTS
 
 
-def _steps(case: Case, plan: Plan, profile: SpeedProfile) -> float:
-    """Steps of a run: some per revolution, and some per second where the rotor is slow."""
+def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> tuple[Array, Array]:
+    """Times (k,) in s of a run and the steps (k,) until then: some per revolution, some per second where the rotor is
+    slow, and what the tolerance asks for."""
     longest = longest_step(case, plan)
     times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
     turns = np.abs(profile.speed(times)) / (2.0 * np.pi)
     rate = np.maximum(1.0 / longest, CROWDED[plan.form] * plan.steps_per_revolution * turns)
-    return float(np.trapezoid(rate, times))
+    rate = np.maximum(rate, _resolving(case, plan, 2.0 * np.pi * turns))
+    if case.contact.policy == "elastic":
+        rate *= ELASTIC
+    passed = np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(times))
+    return times, np.concatenate([[0.0], passed])
+
+
+def _resolving(case: Case, plan: Plan, omega: Array) -> Array:
+    """(n,) steps per second that the tolerance asks for at the rotor speeds omega (n,) in rad/s: the more, the further
+    the rotor moves over the clearance, which the tolerance refers to.
+
+    The local error of a motion A cos(w t) is A (w h / SMOOTH)^p of a method with an embedded solution of order p - 1.
+    """
+    rotor, order = case.rotor, ERROR_ORDERS[plan.method]
+    allowed = plan.tolerance * film_places(case)[0].geometry.clearance
+    if isinstance(rotor, TurbochargerRotor):
+        eccentric = sum(disk.unbalance for disk in case.disks) / shaft_mass(case)
+    else:
+        eccentric = rotor.unbalance / rotor.mass
+
+    def steps(w: Array | float, size: float) -> Array:
+        return np.asarray(w / SMOOTH * (size / allowed) ** (1.0 / order), dtype=np.float64)
+
+    rate = steps(omega, eccentric)
+    if isinstance(rotor, JeffcottRotor):  # it begins in the centre, and swings about where its weight takes it
+        square = rotor.shaft_stiffness / rotor.mass
+        rate = np.maximum(rate, steps(float(np.sqrt(square)), rotor.gravity / square))
+    return rate

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import Array, AxialModes, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
 from frbcli.film.rectangles.table import Mesh, ring_contraction
 
 LINES = 24  # Gauss points over the width
+MODES_AT_ONCE = 64  # solved between two looks at Ctrl-C, and held in memory
 
 
 @dataclass(frozen=True)
@@ -75,15 +77,24 @@ def section_pressure(
     bearing: RectangularBearing, mesh: Mesh, eccentricity: float, w_r: float, w_t: float
 ) -> SectionPressure:
     """Solve one section in the frame of the line of centres for the velocity (w_r, w_t) in 1/s."""
-    modes = axial_modes(axial_vertices(mesh.axial))
+    modes = _modes(mesh.axial)
     vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
-    radius_to_width = 0.5 * bearing.diameter / bearing.section_width
-    fields = unit_fields(vertices, eccentricity, radius_to_width**2 * modes.eigenvalues, modes.loads)
+    decays = (0.5 * bearing.diameter / bearing.section_width) ** 2 * modes.eigenvalues
     points, weights = np.polynomial.legendre.leggauss(LINES)
     z = 0.5 * (points + 1.0)
     supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
-    values = (w_r * fields[0] + w_t * fields[1]).T @ modes.at(z) + _scaled(bearing, supply) * z
+    values, shapes = np.zeros((2 * len(vertices), LINES)) + _scaled(bearing, supply) * z, modes.at(z)
+    for first in range(0, len(decays), MODES_AT_ONCE):
+        some = slice(first, first + MODES_AT_ONCE)
+        fields = unit_fields(vertices, eccentricity, decays[some], modes.loads[some])
+        values += (w_r * fields[0] + w_t * fields[1]).T @ shapes[some]
     return SectionPressure(vertices, z, 0.5 * weights, values)
+
+
+@functools.lru_cache(maxsize=2)
+def _modes(elements: int) -> AxialModes:
+    """Of a section with so many elements along: on fine meshes they take longer than all else, at every position."""
+    return axial_modes(axial_vertices(elements))
 
 
 def largest_pressure(

@@ -1,0 +1,156 @@
+"""What a run costs beside its time loop, and the memory that it takes: told from its plan before it starts.
+
+Before the loop films are tabulated, the shaft is reduced to some modes, and the first state is sought; after it the
+error of the forces is told on a finer mesh, and films with cells are run again on fewer of them. All numbers are CPU
+seconds of the machine that cost.py speaks of.
+"""
+
+from __future__ import annotations
+
+import math
+
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
+from frbcli.rotor.beam import ELEMENTS
+from frbcli.rotor.reduction import DENSE, MOST, RIGID
+from frbcli.scene.clearance_steps import step_times
+from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE
+from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.plan import Plan
+from frbcli.scene.published import PUBLISHED
+from frbcli.scene.tabulated import SOLUTION_MESH, SOLUTIONS
+
+FINER = 2  # elements more in each direction, on which the error of the forces is told
+SAMPLES, CELL_SAMPLES = 48, 8  # states at which that is done
+TABLE_s, TABLE_MODES = 3.2e-5, 14  # per element around and mode along; modes that the evaluation at the lines is worth
+MODES_s = 3e-9  # of the axial modes, per cube of the elements along
+DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
+SOLUTIONS_s = 0.65  # of a table of solutions on cells, on SOLUTION_MESH
+STEADY_s, STEADY_CELLS, STEADY_POWER = 0.27, 1152, 1.62  # of a steady film, a state of its own; its cells
+RESTING = 3.0  # times as much for a resting position, found by Newton's method from a film that hardly changes
+PUBLISHED_STATE_s = 3.0  # to settle
+AGAIN = 0.5  # of the loop: the run on fewer cells
+DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
+PROGRAM_B = 2.7e8  # bytes of the program, its libraries and its compiled kernels
+BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held at a time, bytes of a cell
+MATRICES = 6  # of the axial elements of the finer mesh, of a rotor, of the modes of a shaft
+SAMPLE_s, SAMPLE_B = 3.3e-7, 25.0  # to write an output time and to look at it again
+SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how many forms
+
+
+def before_s(case: Case, plan: Plan) -> float:
+    """CPU time before the first step."""
+    machines, films = 1 + len(step_times(case)), len(film_places(case))
+    found = machines * (films * _table_s(plan) + _reduction_s(case))
+    if plan.form == PUBLISHED:
+        return found + PUBLISHED_STATE_s
+    if plan.cells is not None:
+        resting = case.start.position == "resting" and case.start.displacement is None
+        found += films * (RESTING if resting else 1.0) * _steady_s(plan.cells)
+    return found
+
+
+def after_s(case: Case, plan: Plan, loop_s: float, samples: float) -> float:
+    """CPU time of what is told when a run of loop_s in its time loop has ended: events, the error. samples: written."""
+    machines, films = 1 + len(step_times(case)), len(film_places(case))
+    found = machines * _reduction_s(case) + SAMPLE_s * samples
+    if plan.form == PUBLISHED:
+        return found + 6 * PUBLISHED_STATE_s
+    if plan.cells is not None:
+        fine = plan.cells[0] * FINER, plan.cells[1] * FINER
+        return found + AGAIN * loop_s + CELL_SAMPLES * films * (_steady_s(plan.cells) + _steady_s(fine))
+    if plan.form == SOLUTIONS:  # one state in place of a table of thousands
+        return found + SAMPLES * films * 1e-3 * _table_s(plan)
+    axial, around = FINER * plan.mesh.axial, FINER * plan.mesh.circumferential
+    if plan.form == CHAINS:
+        return found + machines * MODES_s * axial**3 + SAMPLES * films * STATE_s
+    return found + MODES_s * axial**3 + SAMPLES * films * (STATE_s + DIRECT_s * axial * around)
+
+
+def memory_B(case: Case, plan: Plan, samples: float) -> float:
+    """Bytes that the process takes at most. samples: that the run writes."""
+    films, n = len(film_places(case)), rotor_size(case)
+    found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_freedoms(case)
+    found += SAMPLE_B * samples
+    signals = 2.0 * n + 2.0 * len(case.disks) + 4.0 * films
+    found += 8.0 * COPIES * SAMPLES_HELD * signals
+    if plan.cells is not None:
+        around, along = plan.cells
+        return found + films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
+    if plan.form == SOLUTIONS:
+        return found + 8.0 * BLOCKS * plan.mesh.circumferential * plan.mesh.axial**2
+    found += 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
+    rows = -math.log(1.0 - LARGEST_ECCENTRICITY) / 0.1
+    return found + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
+
+
+def along_factor(along: int) -> float:
+    """How the time of a solve on cells grows with those along the axis, which are eliminated as full blocks."""
+    return 0.37 + 0.03 * along + 0.01065 * along**2 + 3.09e-4 * float(along) ** 3
+
+
+def rotor_size(case: Case) -> int:
+    """Degrees of freedom of the rotor with its rings, as reduced."""
+    turning = len(turning_rings(case))
+    rings = len(film_places(case)) - len(case.bearings)
+    if isinstance(case.rotor, TurbochargerRotor):
+        return 2 * expected_modes(case) + 2 * rings + turning
+    return (2 if case.rotor.kind == "rigid" else 4) + 2 * rings + turning
+
+
+def expected_modes(case: Case) -> int:
+    """Modes of a plane that the rotor of a turbocharger keeps; below a cut-off as many half waves as the shaft without
+    its wheels has at that frequency."""
+    rotor = case.rotor
+    assert isinstance(rotor, TurbochargerRotor)
+    if rotor.cutoff is None:
+        return min(rotor.modes, shaft_freedoms(case))
+    omega, waves = 2.0 * math.pi * rotor.cutoff, 0.0
+    for part in case.shaft:
+        gyration = math.hypot(part.diameter, part.inner_diameter) / 4.0
+        sound = math.sqrt(part.youngs_modulus / part.density)
+        waves += part.length * math.sqrt(omega / (gyration * sound)) / math.pi
+    return int(min(RIGID + waves, MOST, shaft_freedoms(case)))
+
+
+def shaft_freedoms(case: Case) -> int:
+    """Degrees of freedom of the shaft in a plane, before its reduction; none of a rotor without sections."""
+    if not isinstance(case.rotor, TurbochargerRotor):
+        return 0
+    return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.bearings))
+
+
+def shaft_mass(case: Case) -> float:
+    """Of a turbocharger's shaft with its wheels, kg."""
+    areas = (0.25 * math.pi * (part.diameter**2 - part.inner_diameter**2) for part in case.shaft)
+    shaft = sum(area * part.length * part.density for area, part in zip(areas, case.shaft, strict=True))
+    return shaft + sum(disk.mass for disk in case.disks)
+
+
+def _reduction_s(case: Case) -> float:
+    freedoms = shaft_freedoms(case)
+    return SPARSE_s * freedoms if freedoms > DENSE else DENSE_s * (freedoms / DENSE) ** 3
+
+
+def _table_s(plan: Plan) -> float:
+    """Of one film."""
+    if plan.form == SOLUTIONS:
+        size = plan.mesh.circumferential / SOLUTION_MESH.circumferential
+        return SOLUTIONS_s * size * along_factor(_half(plan.mesh)) / along_factor(_half(SOLUTION_MESH))
+    if plan.cells is not None or plan.theory == "short":
+        return 0.0
+    modes = MODES_s * plan.mesh.axial**3
+    if plan.form == CHAINS:
+        return modes
+    assert plan.form in (TABLE, FIELDS)
+    lines = TABLE_MODES if plan.form == TABLE else 0
+    return modes + TABLE_s * plan.mesh.circumferential * (plan.mesh.axial + lines)
+
+
+def _half(mesh: Mesh) -> int:
+    return max(2, (mesh.axial + 1) // 2)
+
+
+def _steady_s(cells: tuple[int, int]) -> float:
+    return STEADY_s * math.pow(cells[0] * cells[1] / STEADY_CELLS, STEADY_POWER)
