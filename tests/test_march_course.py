@@ -121,7 +121,7 @@ def test_elastic_contact_pushes_back_and_the_march_goes_on() -> None:
     system, profile = with_short_films(jeffcott(unbalance=3e-3)), speed_profile([0.0, 1.0], [0.0, 1800.0])
     free = march(system, profile, control())
     deepest = []
-    for stiffness in (1e8, 1e10):
+    for stiffness in (1e10, 1e11):  # a softer shell than a film gives way beyond 1.5 times the clearance
         got = march(system, profile, control(stiffness=stiffness)._replace(contact_eccentricity=TOUCHES))
         assert got.status == FINISHED
         deepest.append(got.numbers[LARGEST_EPS])

@@ -18,10 +18,12 @@ from frbcli.film.published.film import PublishedFilm, published_force
 from frbcli.film.rectangles.bearing import evaluate
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
 from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.runs.control import control_of
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.plan import Plan
 from frbcli.scene.published import run_film
 from frbcli.scene.system import System, planned_film
+from frbcli.solve.contact import felt_motion
 from frbcli.solve.state import Array
 
 SAMPLES = 48  # states of a run
@@ -67,8 +69,8 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     """Errors of the film forces at sampled states, against the finite-length film on a finer mesh.
 
     times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s. For the short-bearing
-    theory this is the error of the theory itself. Films with oil of their own are compared in states in which it has
-    settled; where it does not settle, they are left out.
+    theory this is the error of the theory itself. In contact it is that of the film in the gap that is kept. Films with
+    oil of their own are compared in states in which it has settled; where it does not settle, they are left out.
     """
     if isinstance(system.films, PublishedFilm):
         forces = _published_forces(system.films, case)
@@ -76,15 +78,17 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
         forces = _cell_forces(plan, system, case)
     else:
         forces = _source_forces(plan, system) if system.solved else _closed_forces(plan, system)
-    n, found = system.rotor.size, []
+    control, n, found = control_of(case, plan), system.rotor.size, []
     most = PUBLISHED_SAMPLES if isinstance(system.films, PublishedFilm) else CELL_SAMPLES
     every = 1 if plan.cells is None else max(1, len(samples) // most)
     for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
         omegas = system.omegas(omega, v[list(system.spins)])
         for i, pick in enumerate(system.rotor.journals):
-            at, rate = pick @ q, pick @ v
-            if np.hypot(*at) >= LARGEST_ECCENTRICITY * system.clearances[i]:
+            at, rate, clearance = pick @ q, pick @ v, system.clearances[i]
+            if control.contact_stiffness > 0.0:
+                at, rate = clearance * felt_motion(control, at / clearance, rate / clearance)
+            if np.hypot(*at) >= LARGEST_ECCENTRICITY * clearance:
                 continue
             try:
                 exact, force = forces(i, at, rate, float(omegas[i]))

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
+from frbcli.solve.stage import ELASTIC_LIMIT
+from frbcli.solve.state import Array, Control
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -17,9 +20,10 @@ def touches(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-unt
 
 @njit(cache=True, error_model="numpy", inline="always")
 def shell_ahead(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
-    """Where the gap ends for Newton's method: at the shell, and in contact as far ahead as the gap was wide there."""
+    """Where the gap ends for Newton's method: at the shell, and in contact as far ahead as the gap was wide there, but
+    no further than a shell gives way."""
     if contact_stiffness > 0.0:
-        return max(1.0, eccentricity + 1.0 - closes_freely_until(contact_at))
+        return min(max(1.0, eccentricity + 1.0 - closes_freely_until(contact_at)), ELASTIC_LIMIT)
     return 1.0
 
 
@@ -47,3 +51,9 @@ def push_back(d_x, d_y, clearance, contact_at, contact_stiffness):  # type: igno
         along + (k - along) * n_y * n_y,
         (k - along) * n_x * n_y,
     )
+
+
+def felt_motion(control: Control, d: Array, v: Array) -> Array:
+    """(2, 2) displacement and velocity that a film feels of those of its journal, d and v (2,), over the clearance."""
+    felt = feel(d[0], d[1], v[0], v[1], control.contact_eccentricity, control.contact_stiffness)
+    return np.array(felt[:4]).reshape(2, 2)

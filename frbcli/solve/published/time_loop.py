@@ -15,7 +15,7 @@ import numpy as np
 from frbcli.film.grid import Array
 from frbcli.film.published.film import PublishedFilm
 from frbcli.rotor.excitation import rotation
-from frbcli.solve.contact import feel
+from frbcli.solve.contact import felt_motion
 from frbcli.solve.published.state import FilmStep, book_step, mean_fraction
 from frbcli.solve.published.step import Parts, make_parts, pressures, solve_stages
 from frbcli.solve.state import RUNNING, STEP_DONE, STUCK, Control, RotorData, State
@@ -101,8 +101,8 @@ def _accept(
         state.numbers, scratch.stage_v, parts.control.output_step, t, step, t_new, state.q, q_new, out_q, out_v, written
     )
     place = scratch.pick @ np.column_stack([state.q, q_new, scratch.stage_v[:, last]]) / parts.clearance
-    place[:, 1:] = _felt(parts.control, place[:, 1], place[:, 2])
-    place[:, 0] = _felt(parts.control, place[:, 0], np.zeros(2))[:, 0]
+    place[:, 1:] = felt_motion(parts.control, place[:, 1], place[:, 2]).T
+    place[:, 0] = felt_motion(parts.control, place[:, 0], np.zeros(2))[0]
     omega = float(parts.rotor.turning[0, 0, 0] * speed)
     end = FilmStep(scratch.w, pressures(parts), scratch.thetas[last], scratch.rates[last])
     book_step(parts.film, state, end, place, omega, step)
@@ -110,9 +110,3 @@ def _accept(
     keep_past(scratch.past, state.past)
     state.numbers[STEP_DONE] = step
     return int(written)
-
-
-def _felt(control: Control, d: Array, v: Array) -> Array:
-    """(2, 2) displacement and velocity that the film feels of the journal's, over the clearance."""
-    felt = feel(d[0], d[1], v[0], v[1], control.contact_eccentricity, control.contact_stiffness)
-    return np.array(felt[:4]).reshape(2, 2).T
