@@ -46,7 +46,7 @@ def test_waterfall_is_put_beside_its_run(run_file: Path, capsys: pytest.CaptureF
     picture = run_file.with_name("run-waterfall.png")
     assert picture.read_bytes().startswith(PNG)
     said = capsys.readouterr()
-    assert said.out == f"waterfall: {picture}\n"
+    assert said.out.startswith(f"waterfall: {picture}\nwindow ")
     assert said.err == ""
 
 

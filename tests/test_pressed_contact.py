@@ -29,7 +29,7 @@ from frbcli.runs.march import March
 from frbcli.scene.plan import make_plan
 from frbcli.scene.segments import Stretch
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.cell_films import EMPTY, UNSETTLED, cell_numbers, move_cells
+from frbcli.solve.cell_films import EMPTY, LAW, UNSETTLED, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
 from frbcli.solve.films import WET, make_work
 from frbcli.solve.journal_newton import forces
@@ -279,7 +279,7 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
         if grid[UNSETTLED] == 0.0:
             return iteration, force, states[FRACTION]
         if leaps:
-            grid[EMPTY] = -math.inf
+            grid[LAW + EMPTY] = -math.inf
         move_cells(work.w[0], work.fields[0], grid, 0.0, 0.0, g, np.zeros(0))
     return iteration + 1, force, states[FRACTION]
 

@@ -17,14 +17,14 @@ from typing import Any
 
 import pytest
 
-from frbcli.analysis import accuracy as ladder
+from frbcli.bearing_tests import kinematic
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
-from frbcli.solve import kinematic
+from frbcli.studies import accuracy as ladder
 from frbcli.studies.compare import compare
 from frbcli.studies.sweep.sweep import Workers, sweep
 from frbcli.studies.verify import verify
