@@ -232,7 +232,8 @@ def test_an_interrupted_verification_is_no_second_run(
 def process(code: str, *words: str, **options: Any) -> subprocess.Popen[str]:
     """frb in a process of its own, in which some code is run first."""
     environment = os.environ | {"PYTHONPATH": str(ROOT)} | options.pop("variables", {})
-    whole = [sys.executable, "-c", f"{code}\nfrom frbcli.cli.process import main; main()", *words]
+    heard = "import signal; signal.signal(signal.SIGHUP, signal.SIG_DFL)"  # under nohup it is ignored
+    whole = [sys.executable, "-c", f"{heard}\n{code}\nfrom frbcli.cli.process import main; main()", *words]
     return subprocess.Popen(
         whole, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
     )
@@ -255,7 +256,7 @@ March.compile = second_is_slow
         assert one.stdout is not None
         assert one.stdout.readline() == "compiling\n"
         one.send_signal(signal.SIGTERM)
-        out, err = one.communicate()
+        out, err = one.communicate(timeout=120.0)
     assert one.returncode == 130
     assert "half-sommerfeld short" in out
     assert "Not all models were run: interrupted" in out
@@ -268,7 +269,7 @@ def test_ctrl_c_leaves_the_hard_cases_that_are_done() -> None:
         assert one.stderr is not None
         assert one.stderr.readline().startswith("1/2  ")
         os.killpg(one.pid, signal.SIGINT)  # as a terminal does: the process beside it hears it, too
-        out, err = one.communicate()
+        out, err = one.communicate(timeout=120.0)
     assert one.returncode == 130
     found = json.loads(out)
     assert (found["status"], len(found["hard"])) == ("interrupted", 1)
@@ -294,7 +295,7 @@ def test_an_interruption_while_kernels_compile_is_quiet(number: signal.Signals, 
         assert one.stdout.readline() == "compiling\n"
         time.sleep(after_s)
         one.send_signal(number)
-        out, err = one.communicate()
+        out, err = one.communicate(timeout=120.0)
     assert (one.returncode, out, err.strip()) == (130, "", "interrupted")
 
 
@@ -309,7 +310,7 @@ def test_an_interruption_while_modules_are_imported_is_quiet(after_s: float) -> 
         assert [one.stdout.readline() for _ in range(2)] == ["begun\n", "listening\n"]
         time.sleep(after_s)
         one.send_signal(signal.SIGINT)
-        _, err = one.communicate()
+        _, err = one.communicate(timeout=120.0)
     assert one.returncode == 130
     assert "Traceback" not in err
     assert "Exception" not in err
@@ -354,7 +355,7 @@ def test_a_disk_that_becomes_full_leaves_the_last_checkpoint() -> None:
     runup(load_case("jeffcott", SETTINGS), "run.h5")  # has its kernels compiled, whose files may not be written then
     size = Path("run.h5").stat().st_size
     with process(hurry, "runup", *QUICK, "-o", "run.h5", preexec_fn=full_at(int(0.9 * size))) as one:
-        out, err = one.communicate()
+        out, err = one.communicate(timeout=120.0)
     assert (one.returncode, out) == (2, "")
     assert "cannot be written: File too large. Make room, and go on with --resume" in err
     assert "Traceback" not in err
@@ -383,7 +384,7 @@ def test_a_table_on_a_full_disk_is_not_left_in_part() -> None:
     runup(load_case("jeffcott", SETTINGS), "run.h5")
     for words in (["export", "run.h5"], ["export", "run.h5", "--format", "mat"]):
         with process("", *words, preexec_fn=full_at(20_000)) as one:
-            out, err = one.communicate()
+            out, err = one.communicate(timeout=120.0)
         assert (one.returncode, out) == (2, "")
         assert "cannot be written" in err
         assert os.listdir() == ["run.h5"]
@@ -392,7 +393,7 @@ def test_a_table_on_a_full_disk_is_not_left_in_part() -> None:
 @pytest.mark.parametrize("backend", ["nonsense", "gtk4agg"])
 def test_a_window_system_is_nobody_s_business(backend: str) -> None:
     with process("", "runup", *QUICK, "-o", "run.h5", variables={"MPLBACKEND": backend}) as one:
-        _, err = one.communicate()
+        _, err = one.communicate(timeout=120.0)
     assert (one.returncode, err) == (0, "")
     assert Path("run-summary.png").is_file()
 
