@@ -77,9 +77,10 @@ def forces(system: System, q: Array, v: Array, speed_up: float, omega: float, an
     total = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
     total = total + rotor.unbalance_cos * (speed_up * math.cos(angle) - omega**2 * math.sin(angle))
     total = total + rotor.unbalance_sin * (speed_up * math.sin(angle) + omega**2 * math.cos(angle))
-    for pick, count, film, c in zip(rotor.journals, rotor.multiplicity, system.films, system.clearances, strict=True):
+    bearings = zip(rotor.journals, rotor.multiplicity, system.films, system.clearances, strict=True)
+    for selection, count, film, c in bearings:
         if film.force_scale > 0.0:
-            total = total + count * pick.T @ evaluate(film, c, pick @ q, pick @ v, omega).force
+            total = total + count * selection.T @ evaluate(film, c, selection @ q, selection @ v, omega).force
     return np.asarray(total)
 
 

@@ -100,10 +100,10 @@ def naive_cpu_per_simulated_second(system: System, run: Run, slope: float) -> fl
         omega, angle = slope * t, 0.5 * slope * t * t
         along = slope * math.cos(angle) - omega**2 * math.sin(angle)
         across = slope * math.sin(angle) + omega**2 * math.cos(angle)
-        pick = rotor.journals[0]
-        force = film.force(pick @ q / bearing.clearance, pick @ v / bearing.clearance, omega)
+        selection = rotor.journals[0]
+        force = film.force(selection @ q / bearing.clearance, selection @ v / bearing.clearance, omega)
         load = rotor.static_load + along * rotor.unbalance_cos + across * rotor.unbalance_sin
-        load = load + 2.0 * pick.T @ force - rotor.damping @ v - rotor.stiffness @ q
+        load = load + 2.0 * selection.T @ force - rotor.damping @ v - rotor.stiffness @ q
         return np.concatenate([v, inverse @ load])
 
     cpu = 0.0

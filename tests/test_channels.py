@@ -75,8 +75,8 @@ def begin(films, work, wet, flows, weights, g):  # type: ignore[no-untyped-def]
     begin_stage(films, work, wet, flows, weights, 1, g, g, 0.0, 1.0)
 
 
-def mouth_pressures(system: System, state: State) -> tuple[float, float]:
-    """Gauge pressures in Pa at the first mouths of the inner and of the outer film."""
+def feed_hole_pressures(system: System, state: State) -> tuple[float, float]:
+    """Gauge pressures in Pa at the first feed holes of the inner and of the outer film."""
     means = []
     for film, w in zip(system.volumes, state.wet[W], strict=True):
         pressure = film.law.cells(w, film.scales).pressure * film.section.pressure_scale
@@ -93,10 +93,10 @@ def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> N
     case = ringed(*AT_END[: len(supply)], *TWO_PHASE, *SHORT)
     system = make_system(case, make_plan(case))
     first, last = run(case, system)
-    mouths = system.films.mouths  # type: ignore[union-attr]
+    feed_holes = system.films.feed_holes  # type: ignore[union-attr]
     sizes = [film.section.copies * film.section.radius * film.section.width * film.section.clearance
              for film in system.volumes]  # fmt: skip
-    assert mouths[0, FLOW_SCALE] == sizes[0]
+    assert feed_holes[0, FLOW_SCALE] == sizes[0]
     brought = np.array(sizes) * last.flows[PASSED, :, CHANNELS_NET]
     if supply:
         assert brought[0] > 0.0
@@ -113,11 +113,12 @@ def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> N
 # -------------------------------------------------------------------------------------------------------- networks
 
 
-def _fed(film: VolumeFilm, mouths: float, groove: float) -> float:
-    """Oil in m^3/s that six mouths of a gauge pressure feed into a film beside a groove of another, at rest."""
+def _fed(film: VolumeFilm, feed_holes: float, groove: float) -> float:
+    """Oil in m^3/s that six feed holes of a gauge pressure feed into a film beside a groove of another, at rest."""
     section, grid, scale = film.section, film.grid, film.section.pressure_scale
     there = VolumeFilm(
-        replace(section, far_pressure=groove), replace(grid, fixed_pressure=np.where(grid.fixed, mouths / scale, 0.0)),
+        replace(section, far_pressure=groove),
+        replace(grid, fixed_pressure=np.where(grid.fixed, feed_holes / scale, 0.0)),
         film.law, film.scales.reference,
     )  # fmt: skip
     flow = there.steady(Motion((0.0, 0.0), (0.0, 0.0), 0.0)).flows.supply
@@ -130,7 +131,7 @@ def test_films_at_rest_are_a_network(resistance: float) -> None:
 
     What the films let pass follows from plain ones with given pressures, one at a time.
     """
-    case = ringed(*STILL, *AT_END, "speed.duration=1e-3 s", "accuracy.mesh=[5,36]")  # as many cells under all mouths
+    case = ringed(*STILL, *AT_END, "speed.duration=1e-3 s", "accuracy.mesh=[5,36]")  # as many cells under all holes
     system = system_of(case, lambda channel: replace(channel, resistance=resistance))
     inner, outer = system.volumes
     supplied = 1e5
@@ -142,7 +143,7 @@ def test_films_at_rest_are_a_network(resistance: float) -> None:
 
     p_o = float(brentq(left, 0.0, supplied, xtol=1e-6 * supplied))
     p_i = p_o * through / leak
-    found = mouth_pressures(system, run(case, system)[1])
+    found = feed_hole_pressures(system, run(case, system)[1])
     assert found == pytest.approx((p_i, p_o), rel=2e-4, abs=1e-4 * supplied)
     assert 0.3 * supplied < p_o < 0.6 * supplied
 
@@ -152,7 +153,7 @@ def test_resistance_of_a_bore() -> None:
     assert channel_resistance(2.5e-3, 7.5e-3, 12e-3) == pytest.approx(9.387e7, rel=1e-4)
     (first, *_) = coupled_channels(ringed(*AT_END), make_system(ringed(*AT_END), make_plan(ringed(*AT_END))).volumes)
     assert first.resistance == channel_resistance(2.5e-3, 7.5e-3, 12e-3)
-    assert first.thrown == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2))
+    assert first.centrifugal == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2))
 
 
 def test_a_channel_without_resistance_has_one_pressure_less_what_is_thrown_outwards() -> None:
@@ -167,7 +168,7 @@ def test_a_channel_without_resistance_has_one_pressure_less_what_is_thrown_outwa
     buffers = np.empty((100, n)), np.empty((100, n)), np.empty((100, 2))
     parts = rotor_data(system, run_up_profile(case)), system.films, METHODS[plan.method].tableau, control_of(case, plan)
     advance(*parts, state, 10**6, *buffers)
-    inner, outer = mouth_pressures(system, state)
+    inner, outer = feed_hole_pressures(system, state)
     assert outer - inner == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2) * spin**2, rel=1e-3)
 
 
@@ -219,7 +220,7 @@ def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> No
 # ------------------------------------------------------------------------------------------------------- and so on
 
 
-def test_a_groove_around_the_mouths_holds_their_pressure(tmp_path: Path) -> None:
+def test_a_groove_around_the_feed_holes_holds_their_pressure(tmp_path: Path) -> None:
     """The bore's resistance is small against the film's: what stays is the motion with given pressures."""
     few = (*SHORT, *TWO_PHASE, "bearing.centrifugal_pressure=false", *COUPLED[1:])
     given, coupled = (

@@ -19,7 +19,7 @@ from frbcli.runs.march import March
 from frbcli.runs.oil import net_flow
 from frbcli.scene.clearance_steps import case_at
 from frbcli.scene.plan import make_plan
-from frbcli.scene.segments import Stretch, make_stretches
+from frbcli.scene.segments import Segment, make_segments
 from frbcli.scene.system import make_system, run_up_profile
 from frbcli.solve.films import OIL
 from frbcli.solve.state import FINISHED, RUNNING, State
@@ -36,7 +36,7 @@ def step_to(clearance: str, time: str = "0.1 s", key: str = "bearing") -> str:
 
 def under_way(case: Case) -> March:
     plan = make_plan(case)
-    march = March(case, plan, make_stretches(case, plan), run_up_profile(case))
+    march = March(case, plan, make_segments(case, plan), run_up_profile(case))
     march.compile()
     return march
 
@@ -86,24 +86,24 @@ def test_nothing_happens_when_the_clearance_stays(tmp_path: Path) -> None:
 @pytest.mark.parametrize("clearance", ["20 um", "100 um"])
 def test_oil_stays_or_leaves_through_the_ends(model: str, clearance: str) -> None:
     case = load_case("jeffcott", [*RESTING, *CELLS, f"film.cavitation={model}", step_to(clearance)])
-    march, stretches = under_way(case), make_stretches(case, make_plan(case))
+    march, segments = under_way(case), make_segments(case, make_plan(case))
     while march.time < 0.1:
         before = march.snapshot()
         status, _ = march.chunk()
     assert status == RUNNING
     after = march.snapshot()
-    assert own_oil(stretches[1], after) == pytest.approx(own_oil(stretches[0], before), rel=1e-12)
+    assert own_oil(segments[1], after) == pytest.approx(own_oil(segments[0], before), rel=1e-12)
     finish(march)
     end = march.snapshot()
-    assert own_oil(stretches[1], end) == pytest.approx(own_oil(stretches[0], before), rel=1e-10)
+    assert own_oil(segments[1], end) == pytest.approx(own_oil(segments[0], before), rel=1e-10)
     defect = march.error_so_far()["oil_balance_relative"]
     assert defect is not None
     assert defect < 1e-6
 
 
-def own_oil(stretch: Stretch, snapshot: dict[str, Array]) -> float:
+def own_oil(segment: Segment, snapshot: dict[str, Array]) -> float:
     """m^3 in the free cells of the only film, less what has come in since the beginning."""
-    film, state = stretch.system.volumes[0], State(*(snapshot[name] for name in State._fields))
+    film, state = segment.system.volumes[0], State(*(snapshot[name] for name in State._fields))
     inside = float((film.grid.area * state.wet[OIL, 0])[~film.grid.fixed].sum())
     return film.section.radius * film.section.width * film.section.clearance * (inside - net_flow(state, 0))
 

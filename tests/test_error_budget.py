@@ -18,7 +18,7 @@ from frbcli.runs.fewer_cells import fewer_cells, on_fewer_cells
 from frbcli.runs.film_error import FilmErrors
 from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
-from frbcli.scene.segments import make_stretches
+from frbcli.scene.segments import make_segments
 from frbcli.scene.system import make_system, run_up_profile
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
@@ -135,7 +135,7 @@ def test_between_rings_only_lengths_count() -> None:
 def test_a_run_that_does_not_begin_on_fewer_cells(monkeypatch: pytest.MonkeyPatch) -> None:
     case = load_case("rigid-two-phase")
     plan = make_plan(case)
-    run = march.March(case, plan, make_stretches(case, plan), run_up_profile(case))
+    run = march.March(case, plan, make_segments(case, plan), run_up_profile(case))
 
     def fails(*_: object) -> object:
         raise NotConverged("no")

@@ -32,9 +32,9 @@ def near(found: np.ndarray, expected: np.ndarray, scale: float) -> bool:
 def size(kind: str, d: np.ndarray, v: np.ndarray, omega: float) -> float:
     """A force in N that round-off is measured by: that of the pressures before they cancel."""
     bearing, eccentricity = KINDS[kind][0], float(np.linalg.norm(d))
-    pull = bearing.force_scale * (float(np.linalg.norm(v)) + abs(omega)) / (1 - eccentricity) ** 2.5
+    centrifugal_pressure = bearing.force_scale * (float(np.linalg.norm(v)) + abs(omega)) / (1 - eccentricity) ** 2.5
     supply = bearing.diameter * bearing.width * ((bearing.supply_pressure or AMBIENT) - AMBIENT)
-    return max(float(np.linalg.norm(force(kind, d, v, omega))), 1e-3 * pull, supply)
+    return max(float(np.linalg.norm(force(kind, d, v, omega))), 1e-3 * centrifugal_pressure, supply)
 
 
 @every_kind

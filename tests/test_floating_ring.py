@@ -22,7 +22,7 @@ from frbcli.linear.ring_speed import concentric_ratios
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.films import channel_pulls
+from frbcli.scene.films import centrifugal_pressures
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
 from frbcli.studies.compare import compare
@@ -139,8 +139,8 @@ def _integral(rate: Array) -> Array:
 def _motion(run: Run, system: System) -> tuple[Array, Array]:
     """(samples, n) displacements and velocities, without the two samples at each end."""
     q = np.zeros((len(run), system.rotor.size))
-    for name, pick in system.rotor.points:
-        for axis, row in zip("xy", pick, strict=True):
+    for name, selection in system.rotor.points:
+        for axis, row in zip("xy", selection, strict=True):
             q[:, np.argmax(row)] = run[f"{name}_{axis}_m"]
     return q[2:-2], _derivative(q)
 
@@ -149,8 +149,9 @@ def _film_forces(run: Run, system: System, q: Array, v: Array) -> Array:
     """(samples, films, 2) forces of the films, computed again from the motion."""
     omega, ring = 2 * math.pi * run["speed_Hz"][2:-2], 2 * math.pi * run["ring_speed_Hz"][2:-2]
     return np.array([
-        [system.film_force(i, pick @ q_k, pick @ v_k, total).force
-         for i, (pick, total) in enumerate(zip(system.rotor.journals, system.omegas(o, np.array([r])), strict=True))]
+        [system.film_force(i, selection @ q_k, selection @ v_k, total).force
+         for i, (selection, total) in enumerate(
+             zip(system.rotor.journals, system.omegas(o, np.array([r])), strict=True))]
         for q_k, v_k, o, r in zip(q, v, omega, ring, strict=True)
     ])  # fmt: skip
 
@@ -202,12 +203,12 @@ def test_energy_is_what_load_unbalance_films_and_damping_have_done(
     rotor, time = system.rotor, run["time_s"][2:-2]
     omega, rate = 2 * math.pi * run["speed_Hz"][2:-2], 2 * math.pi * 400.0
     angle = 2 * math.pi * (80.0 * time + 200.0 * time**2)
-    pull = (
+    centrifugal_pressure = (
         np.outer(rate * np.cos(angle) - omega**2 * np.sin(angle), rotor.unbalance_cos)
         + np.outer(rate * np.sin(angle) + omega**2 * np.cos(angle), rotor.unbalance_sin)
     )  # fmt: skip
     films = np.einsum("f,fki,sfk->si", rotor.multiplicity, rotor.journals, forces)
-    power = np.einsum("si,si->s", v, rotor.static_load + pull + films - v @ rotor.damping.T)
+    power = np.einsum("si,si->s", v, rotor.static_load + centrifugal_pressure + films - v @ rotor.damping.T)
     energy = 0.5 * np.einsum("si,ij,sj->s", v, rotor.mass, v) + 0.5 * np.einsum("si,ij,sj->s", q, rotor.stiffness, q)
     swing = np.ptp(energy)
     assert swing > 1e-3
@@ -269,14 +270,14 @@ def test_a_ring_without_mass_runs(tmp_path: Path) -> None:
 
 def test_channels_throw_oil_outwards_unless_told_not_to() -> None:
     """Half of rho / 2 (R_o^2 - R_i^2) omega_F^2 is missing at the inner end of a channel, (4.27) to (4.29)."""
-    thrown, level = (ringed("film.cavitation=half-sommerfeld", f"bearing.centrifugal_pressure={word}")
+    centrifugal, level = (ringed("film.cavitation=half-sommerfeld", f"bearing.centrifugal_pressure={word}")
                      for word in ("true", "false"))  # fmt: skip
-    system = system_of(thrown)
-    inner, outer = channel_pulls(thrown, system.volumes)
+    system = system_of(centrifugal)
+    inner, outer = centrifugal_pressures(centrifugal, system.volumes)
     assert inner * system.volumes[0].section.pressure_scale == pytest.approx(830 / 4 * (20e-3**2 - 12.5e-3**2))
     assert outer == 0.0
-    assert channel_pulls(level, system.volumes) == (0.0, 0.0)
-    assert channel_pulls(ringed('bearing.ring.spin="blocked"'), system.volumes) == (0.0, 0.0)
+    assert centrifugal_pressures(level, system.volumes) == (0.0, 0.0)
+    assert centrifugal_pressures(ringed('bearing.ring.spin="blocked"'), system.volumes) == (0.0, 0.0)
 
 
 # --------------------------------------------------------------------------------------- a cavitation model per film

@@ -233,10 +233,10 @@ def test_modal_rotor_in_two_films_follows_radau_while_its_speed_changes() -> Non
     def slopes(t: float, y: Array) -> Array:
         omega = profile.speeds[0] + speed_up * t
         by_q, by_v = -rotor.stiffness, -rotor.damping - omega * rotor.gyroscopic
-        for pick, count in zip(rotor.journals, rotor.multiplicity, strict=True):
-            film = evaluate(SHORT_FILM, BEARING.clearance, pick @ y[:60], pick @ y[60:], omega)
-            by_q = by_q + count * pick.T @ film.by_displacement @ pick
-            by_v = by_v + count * pick.T @ film.by_velocity @ pick
+        for selection, count in zip(rotor.journals, rotor.multiplicity, strict=True):
+            film = evaluate(SHORT_FILM, BEARING.clearance, selection @ y[:60], selection @ y[60:], omega)
+            by_q = by_q + count * selection.T @ film.by_displacement @ selection
+            by_v = by_v + count * selection.T @ film.by_velocity @ selection
         return np.block([[np.zeros((60, 60)), np.eye(60)], [by_q, by_v]])
 
     reference = solve_ivp(rates, (0.0, end), np.zeros(120), "Radau", got.times, jac=slopes, rtol=1e-9, atol=1e-14)
@@ -254,9 +254,9 @@ def side_by_side(rotors: list[LinearRotor]) -> LinearRotor:
     before = np.concatenate([[0], np.cumsum(sizes)])
     maps = []
     for rotor, first in zip(rotors, before, strict=False):
-        pick = np.zeros((2, sum(sizes)))
-        pick[:, first : first + rotor.size] = rotor.journals[0]
-        maps.append(pick)
+        selection = np.zeros((2, sum(sizes)))
+        selection[:, first : first + rotor.size] = rotor.journals[0]
+        maps.append(selection)
     return LinearRotor(
         mass=block_diag(*[rotor.mass for rotor in rotors]),
         damping=block_diag(*[rotor.damping for rotor in rotors]),
@@ -267,7 +267,7 @@ def side_by_side(rotors: list[LinearRotor]) -> LinearRotor:
         unbalance_sin=np.concatenate([rotor.unbalance_sin for rotor in rotors]),
         journals=np.stack(maps),
         multiplicity=np.concatenate([rotor.multiplicity for rotor in rotors]),
-        points=tuple((f"journal_{number}", pick) for number, pick in enumerate(maps)),
+        points=tuple((f"journal_{number}", selection) for number, selection in enumerate(maps)),
     )
 
 

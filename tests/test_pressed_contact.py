@@ -27,7 +27,7 @@ from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.runs.march import March
 from frbcli.scene.plan import make_plan
-from frbcli.scene.segments import Stretch
+from frbcli.scene.segments import Segment
 from frbcli.scene.system import System, make_system, run_up_profile
 from frbcli.solve.cell_films import EMPTY, LAW, UNSETTLED, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
@@ -350,7 +350,7 @@ def test_a_whirl_in_the_shell_goes_on(touches: float) -> None:
     speed = ["speed.from=260 Hz", "speed.to=270 Hz", "speed.duration=0.3 s"]
     case = load_case(BASE, ["bearing.supply.pressure=4 bar", f"contact.eccentricity={touches}", *speed])
     plan, system, profile = make_plan(case), cells_of(), run_up_profile(case)
-    march = March(case, plan, [Stretch(0.0, case, system)], profile)
+    march = March(case, plan, [Segment(0.0, case, system)], profile)
     status, largest = RUNNING, 0.0
     while status == RUNNING:
         status, signals = march.chunk()

@@ -219,7 +219,8 @@ def test_elastic_rotor_on_three_bearings_is_in_equilibrium() -> None:
     omega = 2 * math.pi * 40.0
     q = resting_position(system_of(rotor, one.bearings * 3, one.films * 3), omega)
     forces = [
-        pick.T @ evaluate(one.films[0], one.clearances[0], pick @ q, np.zeros(2), omega).force for pick in journals
+        selection.T @ evaluate(one.films[0], one.clearances[0], selection @ q, np.zeros(2), omega).force
+        for selection in journals
     ]
     np.testing.assert_allclose(rotor.stiffness @ q, load + sum(forces), atol=1e-6)
     assert np.linalg.norm(journals @ q, axis=1).max() < one.clearances[0]

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from frbcli.analysis import signals
-from frbcli.analysis.peaks import stretches
+from frbcli.analysis.peaks import intervals_above
 from frbcli.analysis.resonance import FLOOR, beside, critical_step, resonant, vibrations_beside
 from frbcli.analysis.revolutions import STEPS, Revolutions, Tracked, track
 from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, points
@@ -142,11 +142,11 @@ def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Itera
     middle = WHIRL_REVOLUTIONS * STEPS // 2
     settled = turns.settled - middle
     sustained = round(SUSTAINED_REVOLUTIONS * STEPS)
-    for first, last in stretches(amplitude, WHIRL_BEGINS, WHIRL_ENDS, sustained):
+    for first, last in intervals_above(amplitude, WHIRL_BEGINS, WHIRL_ENDS, sustained):
         lasts = last == len(amplitude)
         if last - max(first, settled) < sustained and not (lasts and run.status == "contact"):
             continue
-        # A stretch that the start of the run leads into began with the run.
+        # An interval that the start of the run leads into began with the run.
         yield _whirl_event("onset", run, name, turns, first + middle)
         if not lasts:
             yield _whirl_event("offset", run, name, turns, last + middle)

@@ -1,4 +1,4 @@
-"""Peaks of a curve, how far each stands out of it, and stretches in which it is high."""
+"""Peaks of a curve, how far each stands out of it, and intervals in which it is high."""
 
 from __future__ import annotations
 
@@ -71,10 +71,10 @@ def _foot(side: Values, height: float) -> float:
     return float(side[:end].min(initial=height))
 
 
-def stretches(amplitude: Values, begins: float, ends: float, pause: int) -> Iterator[tuple[int, int]]:
-    """First and one past the last sample of each stretch above `begins`, where dips shorter than `pause` do not count.
+def intervals_above(amplitude: Values, begins: float, ends: float, pause: int) -> Iterator[tuple[int, int]]:
+    """First and one past the last sample of each interval above `begins`, where dips shorter than `pause` do not count.
 
-    A stretch must fall below `ends` to be over, and counts to where it last was above `begins`.
+    An interval must fall below `ends` to be over, and counts to where it last was above `begins`.
     """
     above = np.flatnonzero(amplitude >= begins)
     if len(above) == 0:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.analysis.peaks import prominent_peaks, stretches
+from frbcli.analysis.peaks import intervals_above, prominent_peaks
 from frbcli.analysis.revolutions import STEPS, Revolutions, Tracked
 from frbcli.analysis.signals import Motion, Values
 
@@ -128,7 +128,7 @@ def vibrations_beside(
     apart = np.where(np.abs(order - 1.0) >= BESIDE, amplitude, 0.0)
     settled, until = turns.settled, max(0, int(np.searchsorted(turns.time_s, before_s)) - 2 * half)
     sustained = round(SUSTAINED_REVOLUTIONS * STEPS)
-    for first, last in stretches(apart[settled:until], BEGINS, ENDS, sustained):
+    for first, last in intervals_above(apart[settled:until], BEGINS, ENDS, sustained):
         if last - first < sustained:
             continue
         seen = slice(settled + first, settled + last)

@@ -44,6 +44,6 @@ class LinearRotor:
 
 def planar(degrees: int, x: int, y: int) -> Array:
     """(2, degrees) map that picks the degrees of freedom x and y."""
-    pick = np.zeros((2, degrees))
-    pick[0, x] = pick[1, y] = 1.0
-    return pick
+    selection = np.zeros((2, degrees))
+    selection[0, x] = selection[1, y] = 1.0
+    return selection

@@ -48,7 +48,7 @@ class FewerCells:
         if system.ring_count:  # nothing is said of the directions of films between rings
             runs = samples[:, :n], other[:, :n]
             eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
-        points = [_largest(apart[:, :n], pick, system.clearances[0]) for _, pick in rotor.points]
+        points = [_largest(apart[:, :n], selection, system.clearances[0]) for _, selection in rotor.points]
         spins = np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0)
         top = max(float(np.abs(samples[:, 2 * n]).max(initial=0.0)), 1e-300)
         oil = np.abs(apart[:, 2 * n + 1 :][:, list(system.remembering)]).max(initial=0.0)
@@ -58,10 +58,10 @@ class FewerCells:
         return CellErrors(*(share * off for off in found))
 
 
-def _largest(apart: Array, pick: Array, room: float) -> float:
-    return float(np.hypot(*(apart @ pick.T).T).max(initial=0.0)) / room
+def _largest(apart: Array, selection: Array, room: float) -> float:
+    return float(np.hypot(*(apart @ selection.T).T).max(initial=0.0)) / room
 
 
-def _parted(one: Array, other: Array, pick: Array, room: float) -> float:
-    lengths = (np.hypot(*(q @ pick.T).T) for q in (one, other))
+def _parted(one: Array, other: Array, selection: Array, room: float) -> float:
+    lengths = (np.hypot(*(q @ selection.T).T) for q in (one, other))
     return float(np.abs(np.subtract(*lengths)).max(initial=0.0)) / room

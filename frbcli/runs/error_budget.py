@@ -18,7 +18,7 @@ from frbcli.runs.film_error import film_force_errors
 from frbcli.runs.oil import oil_defect
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.plan import Plan
-from frbcli.scene.segments import Stretch
+from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
 from frbcli.scene.turbocharger import all_modes, journals, kept_modes
 from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array, State
@@ -78,9 +78,9 @@ def error_budget(
     }
 
 
-def budget_of_stretches(
+def budget_of_segments(
     known: Mapping[str, float | None],
-    stretches: Sequence[Stretch],
+    segments: Sequence[Segment],
     plan: Plan,
     until: float,
     steps: tuple[float, float],
@@ -88,14 +88,14 @@ def budget_of_stretches(
     samples: Array,
     fewer: FewerCells | None = None,
 ) -> dict[str, float | None]:
-    """The largest of each part over the stretches that a run has passed, and of what is known of it beside; otherwise
+    """The largest of each part over the segments that a run has passed, and of what is known of it beside; otherwise
     as error_budget."""
-    begins, budgets = [stretch.start for stretch in stretches], [known]
-    for stretch, first, last in zip(stretches, begins, [*begins[1:], math.inf], strict=True):
+    begins, budgets = [segment.start for segment in segments], [known]
+    for segment, first, last in zip(segments, begins, [*begins[1:], math.inf], strict=True):
         there = (times >= first) & (times < last)
         less = None if fewer is None else fewer.at(there)
         budgets.append(
-            error_budget(stretch.case, plan, stretch.system, until, steps, times[there], samples[there], less)
+            error_budget(segment.case, plan, segment.system, until, steps, times[there], samples[there], less)
         )
     keys = {key: None for budget in budgets for key in budget}
     values = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
@@ -111,7 +111,7 @@ def summed(errors: Array, share: float) -> tuple[float, float]:
 
 def _reach(system: System, samples: Array, parts: Iterable[tuple[Array, float]]) -> float:
     """Largest displacement over the clearance of some parts in the samples (m, 2 n + 1)."""
-    places = (samples[:, : system.rotor.size] @ pick.T / clearance for pick, clearance in parts)
+    places = (samples[:, : system.rotor.size] @ selection.T / clearance for selection, clearance in parts)
     return max((float(np.hypot(*at.T).max(initial=0.0)) for at in places), default=0.0)
 
 
@@ -155,7 +155,8 @@ def _springs(case: Case, system: System, sample: Array) -> Array:
     q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
     omegas = system.omegas(omega, v[list(system.spins)])
     forces = (
-        system.film_force(i, pick @ q, pick @ v, float(omegas[i])) for i, pick in enumerate(system.rotor.journals)
+        system.film_force(i, selection @ q, selection @ v, float(omegas[i]))
+        for i, selection in enumerate(system.rotor.journals)
     )
     single = (-0.5 * float(np.trace(force.by_displacement)) for force in forces)
     return np.array([
@@ -170,4 +171,4 @@ def _journals(system: System) -> Iterable[tuple[Array, float]]:
 
 def _points(system: System) -> Iterable[tuple[Array, float]]:
     """Disks and all else that moves; displacements count over the first film's clearance."""
-    return ((pick, system.clearances[0]) for _, pick in system.rotor.points)
+    return ((selection, system.clearances[0]) for _, selection in system.rotor.points)

@@ -84,8 +84,8 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
         omegas = system.omegas(omega, v[list(system.spins)])
-        for i, pick in enumerate(system.rotor.journals):
-            at, rate, clearance = pick @ q, pick @ v, system.clearances[i]
+        for i, selection in enumerate(system.rotor.journals):
+            at, rate, clearance = selection @ q, selection @ v, system.clearances[i]
             if control.contact_stiffness > 0.0:
                 at, rate = clearance * felt_motion(control, at / clearance, rate / clearance)
             if np.hypot(*at) >= LARGEST_ECCENTRICITY * clearance:

@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
-from frbcli.scene.segments import Stretch
+from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
@@ -27,11 +27,11 @@ def ring_names(system: System) -> list[str]:
 
 
 def header(
-    command: str, case: Case, stretches: Sequence[Stretch], critical_speeds: Sequence[float] | None = None
+    command: str, case: Case, segments: Sequence[Segment], critical_speeds: Sequence[float] | None = None
 ) -> Header:
     """The head of the file of a run. Its clearances, which amplitudes refer to, are the first ones; critical_speeds: of
     the linearised machine in Hz, ascending, None if they are not known."""
-    system = stretches[0].system
+    system = segments[0].system
     lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
     eccentricities = [named("eccentricity", name) for name in system.names]
     units = {"time_s": "s", "speed_Hz": "Hz", **dict.fromkeys(eccentricities, ""), **dict.fromkeys(lengths, "m")}
@@ -48,7 +48,7 @@ def header(
         | {package: _version(package) for package in PACKAGES},
         references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
-        | {f"{CLEARANCE_STEP}_{number}_s": stretch.start for number, stretch in enumerate(stretches[1:], start=1)}
+        | {f"{CLEARANCE_STEP}_{number}_s": segment.start for number, segment in enumerate(segments[1:], start=1)}
         | ({} if critical_speeds is None else {CRITICAL_SPEEDS: float(len(critical_speeds))})
         | {f"{CRITICAL_SPEED}_{number}_Hz": speed for number, speed in enumerate(critical_speeds or (), start=1)},
     )

@@ -18,7 +18,7 @@ from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.control import control_of
 from frbcli.runs.cosimulation import in_turn, micro_cost
-from frbcli.runs.error_budget import budget_of_stretches, quick_budget, summed
+from frbcli.runs.error_budget import budget_of_segments, quick_budget, summed
 from frbcli.runs.film_error import sample_count
 from frbcli.runs.header import named, ring_names
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
@@ -27,7 +27,7 @@ from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.cost import expected_cost, expected_course
 from frbcli.scene.plan import Plan
 from frbcli.scene.remedies import advised
-from frbcli.scene.segments import Stretch, make_stretches
+from frbcli.scene.segments import Segment, make_segments
 from frbcli.scene.system import System
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.published.time_loop import advance_published
@@ -75,13 +75,13 @@ class Progress:
 class March:
     """A run under way: the constant parts, the state, the clock.
 
-    Its machine may change on the way (scene/segments.py): all stretches are there from the beginning, one is current.
+    Its machine may change on the way (scene/segments.py): all segments are there from the beginning, one is current.
     """
 
-    def __init__(self, case: Case, plan: Plan, stretches: Sequence[Stretch], profile: SpeedProfile) -> None:
+    def __init__(self, case: Case, plan: Plan, segments: Sequence[Segment], profile: SpeedProfile) -> None:
         self._case, self._plan = case, plan
-        self._stretches = [stretch for stretch in stretches if stretch.start < profile.end]
-        self._profile = profile.with_stops(stretch.start for stretch in self._stretches)
+        self._segments = [segment for segment in segments if segment.start < profile.end]
+        self._profile = profile.with_stops(segment.start for segment in self._segments)
         self._take_up(0)
         system = self._system
         self._control = control_of(case, plan)
@@ -107,13 +107,13 @@ class March:
         self._most_steps = max(FEWEST_STEPS, RUNAWAY * self._expected.steps)
 
     def _take_up(self, number: int) -> None:
-        """Make a stretch the current one; the time loop sees the profile up to its end."""
-        self._current, self._system = number, self._stretches[number].system
-        ends = [stretch.start for stretch in self._stretches[number + 1 :]]
+        """Make a segment the current one; the time loop sees the profile up to its end."""
+        self._current, self._system = number, self._segments[number].system
+        ends = [segment.start for segment in self._segments[number + 1 :]]
         self._rotor = rotor_data(self._system, self._profile.until(ends[0] if ends else self._profile.end))
 
     def _change(self) -> int:
-        """At the end of a stretch: the machine and the state of the next one. Returns the status of the run."""
+        """At the end of a segment: the machine and the state of the next one. Returns the status of the run."""
         before = self._system
         self._take_up(self._current + 1)
         if largest_eccentricity(self._system, self._state) >= self._control.contact_eccentricity:
@@ -176,7 +176,7 @@ class March:
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept]])
         self._samples = np.concatenate([self._samples, fresh])
         signals = self._signals(times, speeds, self._q[:rows], self._v[:rows])
-        if status == FINISHED and self._current + 1 < len(self._stretches):
+        if status == FINISHED and self._current + 1 < len(self._segments):
             status = self._change()
         if status == RUNNING and self._state.numbers[STEPS] > self._most_steps:
             status = STUCK
@@ -185,11 +185,11 @@ class March:
     def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
         system = self._system
-        for name, pick, clearance in zip(system.names, system.rotor.journals, system.clearances, strict=True):
-            journal = q @ pick.T
+        for name, selection, clearance in zip(system.names, system.rotor.journals, system.clearances, strict=True):
+            journal = q @ selection.T
             signals[named("eccentricity", name)] = np.hypot(journal[:, 0], journal[:, 1]) / clearance
-        for name, pick in system.rotor.points:
-            point = q @ pick.T
+        for name, selection in system.rotor.points:
+            point = q @ selection.T
             signals[f"{name}_x_m"], signals[f"{name}_y_m"] = point[:, 0], point[:, 1]
         for i, name in enumerate(system.names):
             if system.remembering[i]:
@@ -210,7 +210,7 @@ class March:
         samples = array(checkpoint, "film_samples", (rows, self._samples.shape[1]))
         clock = array(checkpoint, "clock", (2,))
         self._state, self._samples = state, samples
-        self._take_up(sum(stretch.start <= self.time for stretch in self._stretches[1:]))
+        self._take_up(sum(segment.start <= self.time for segment in self._segments[1:]))
         self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def check_samples(self, run: Run) -> None:
@@ -242,15 +242,15 @@ class March:
 
     def again(self, plan: Plan) -> March:
         """The same run from its beginning, by another plan. Raises NotConverged if it does not begin."""
-        return March(self._case, plan, make_stretches(self._case, plan), self._profile)
+        return March(self._case, plan, make_segments(self._case, plan), self._profile)
 
     def error(self, until: float, fewer: FewerCells | None = None) -> dict[str, float | None]:
-        """The error of the run, point by point until a time in s: the largest of its stretches. fewer: the same run on
+        """The error of the run, point by point until a time in s: the largest of its segments. fewer: the same run on
         fewer cells."""
         steps = summed(self._state.errors, until / self._profile.end)
         times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
-        passed = self._stretches[: self._current + 1]
-        return budget_of_stretches(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
+        passed = self._segments[: self._current + 1]
+        return budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
 
     def progress(self, until: float | None = None) -> Progress:
         """For people who wait. until: s, of a run that is made again to tell the error of another one."""

@@ -24,7 +24,7 @@ from frbcli.runs.restored import WrongCheckpoint
 from frbcli.scene.cost import ExpectedCost, expected_cost
 from frbcli.scene.limits import require_affordable
 from frbcli.scene.plan import Plan, make_plan
-from frbcli.scene.segments import Stretch, make_stretches
+from frbcli.scene.segments import Segment, make_segments
 from frbcli.scene.system import run_down_profile, run_up_profile
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
@@ -83,14 +83,14 @@ def _run(
     earlier = earlier_run(command, case, Path(output)) if resume else None
     if earlier is not None and earlier.status != "interrupted":
         return earlier
-    stretches = make_stretches(case, plan)
-    march = March(case, plan, stretches, profile)
-    head = header(command, case, stretches)
+    segments = make_segments(case, plan)
+    march = March(case, plan, segments, profile)
+    head = header(command, case, segments)
     if earlier is not None and earlier.checkpoint is not None:
         _restore(march, earlier, head)
         writer = RunWriter.resume(output)
     else:
-        writer = RunWriter(output, header(command, case, stretches, _critical_speeds(stretches)))
+        writer = RunWriter(output, header(command, case, segments, _critical_speeds(segments)))
     march.compile()
     return _go(march, writer, observe)
 
@@ -168,9 +168,9 @@ def _interrupted(march: March, writer: RunWriter) -> Run:
     return writer.so_far(events=events)
 
 
-def _critical_speeds(stretches: Sequence[Stretch]) -> tuple[float, ...] | None:
-    """Of the linearised machine in all stretches of a run, in Hz; None if those of one are not known."""
-    found = [linear_critical_speeds(stretch.case) for stretch in stretches]
+def _critical_speeds(segments: Sequence[Segment]) -> tuple[float, ...] | None:
+    """Of the linearised machine in all segments of a run, in Hz; None if those of one are not known."""
+    found = [linear_critical_speeds(segment.case) for segment in segments]
     known = [speeds for speeds in found if speeds is not None]
     return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(found) else None
 

@@ -105,8 +105,8 @@ def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tupl
     m, k = system.volumes[0].grid.shape
     wet = np.zeros((WET, len(system.volumes), m, k))
     omegas = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
-    for i, (film, pick) in enumerate(zip(system.volumes, system.rotor.journals, strict=True)):
-        at = pick @ q / system.clearances[i]
+    for i, (film, selection) in enumerate(zip(system.volumes, system.rotor.journals, strict=True)):
+        at = selection @ q / system.clearances[i]
         motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(omegas[i]))
         w = film.full()
         if np.any(at != 0.0) and omegas[i] != 0.0:
@@ -120,9 +120,9 @@ def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tupl
 def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
     """(films, 2) N: forces of the films that have settled where the rotor is, none of those that starve."""
     forces, omegas = np.zeros((len(system.names), 2)), system.omegas(omega, v[list(system.spins)])
-    for i, pick in enumerate(system.rotor.journals):
+    for i, selection in enumerate(system.rotor.journals):
         with contextlib.suppress(NotConverged):
-            forces[i] = system.film_force(i, pick @ q, pick @ v, float(omegas[i])).force
+            forces[i] = system.film_force(i, selection @ q, selection @ v, float(omegas[i])).force
     return forces
 
 
@@ -138,6 +138,6 @@ def accelerations(
     forces = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
     forces = forces + (alpha * cosine - omega**2 * sine) * rotor.unbalance_cos
     forces = forces + (alpha * sine + omega**2 * cosine) * rotor.unbalance_sin
-    for pick, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
-        forces = forces + count * pick.T @ force
+    for selection, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
+        forces = forces + count * selection.T @ force
     return np.asarray(np.linalg.solve(rotor.mass, forces), dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The channels of floating rings: what their mouths are held at, or how they couple the two films of a ring."""
+"""The channels of floating rings: what their feed holes are held at, or how they couple the two films of a ring."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from frbcli.case.bearing import Bores, CircumferentialGroove, FloatingRingBearing, RingFilm
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.film.cells.channels import Channel, Mouth, channel_resistance
+from frbcli.film.cells.channels import Channel, FeedHole, channel_resistance
 from frbcli.film.cells.plain.film import VolumeFilm
 
 MIDDLE = 0.5
@@ -24,7 +24,7 @@ def opens_to_groove(bearing: FloatingRingBearing) -> bool:
     return bearing.outer.supply.kind == "circumferential-groove" and _groove_position(bearing.outer) == MIDDLE
 
 
-def mouths_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
+def feed_holes_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
     """The bores in the ring as the outer film sees them, None if it does not: they are not coupled, or in a groove."""
     supply = bearing.inner.supply
     if not coupled(bearing) or opens_to_groove(bearing) or not isinstance(supply, Bores):
@@ -33,7 +33,7 @@ def mouths_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
     return supply.model_copy(update={"axial_position": MIDDLE + offset})
 
 
-def pull(case: Case, bearing: FloatingRingBearing) -> float:
+def centrifugal_pressure(case: Case, bearing: FloatingRingBearing) -> float:
     """By what the pressure rises outwards in a channel with the square of the ring's speed, (4.27), Pa s^2."""
     if not bearing.centrifugal_pressure:
         return 0.0
@@ -50,7 +50,7 @@ def resistance(case: Case, bearing: FloatingRingBearing) -> float:
 
 
 def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel, ...]:
-    """The coupled channels of all rings. volumes: of all films in their order, with the mouths as the last holes."""
+    """The coupled channels of all rings. volumes: of all films in their order, the feed holes as their last holes."""
     channels: list[Channel] = []
     film = 0
     for bearing in case.bearings:
@@ -64,11 +64,11 @@ def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel
             for index in range(supply.count):
                 channels.append(
                     Channel(
-                        inner=Mouth(film, inner[index]),
-                        outer=None if opens_to_groove(bearing) else Mouth(film + 1, outer[index]),
+                        inner=FeedHole(film, inner[index]),
+                        outer=None if opens_to_groove(bearing) else FeedHole(film + 1, outer[index]),
                         resistance=resistance(case, bearing),
                         groove_pressure=getattr(bearing.outer.supply, "pressure", 0.0) - case.oil.ambient_pressure,
-                        thrown=pull(case, bearing),
+                        centrifugal=centrifugal_pressure(case, bearing),
                     )
                 )
         film += 2

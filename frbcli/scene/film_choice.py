@@ -187,6 +187,6 @@ def _cells(case: Case) -> tuple[int, int]:
 
 
 def _cell_error(case: Case, cells: tuple[int, int]) -> float:
-    sections = [film_section(case, place.geometry, place.mouths) for place in film_places(case)]
+    sections = [film_section(case, place.geometry, place.feed_holes) for place in film_places(case)]
     hard = any(section.holes or starves(section) for section in sections)
     return float((OPENING_ERROR if hard else CELL_ERROR) * (DEFAULT_CELLS[0] / cells[0]) ** CELL_ORDER)

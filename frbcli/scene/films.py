@@ -19,7 +19,7 @@ from frbcli.film.gap import Section, ends_at_ambient, graded_ring
 from frbcli.film.grid import Array
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.rectangles.table import Mesh
-from frbcli.scene.channels import coupled, mouths_in_outer_film, pull
+from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film
 from frbcli.scene.section import film_section
 
 ROTOR, HOUSING = -1, -2  # what a film lies against, if it is not a ring
@@ -29,7 +29,7 @@ PUMPED = 0.3  # share of the pressure that the largest speed could build up: a g
 @dataclass(frozen=True)
 class FilmPlace:
     """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING,
-    which a blocked ring counts as; the body that its openings turn with; the name that results carry; the mouths of
+    which a blocked ring counts as; the body that its openings turn with; the name that results carry; the feed holes of
     coupled channels that it has beside its own supply."""
 
     geometry: FilmGeometry
@@ -37,7 +37,7 @@ class FilmPlace:
     outside: int
     grid_body: int
     name: str
-    mouths: Bores | None = None
+    feed_holes: Bores | None = None
 
 
 def film_places(case: Case) -> tuple[FilmPlace, ...]:
@@ -51,9 +51,9 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
             inner, outer = next(names), next(names)
             between = ring if bearing.ring.spin == "free" else HOUSING
             places.append(FilmPlace(bearing.inner, ROTOR, between, _opening_body(bearing.inner, ROTOR, between), inner))
-            mouths = mouths_in_outer_film(bearing)
-            body = _opening_body(bearing.outer, between, HOUSING) if mouths is None else between
-            places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer, mouths))
+            feed_holes = feed_holes_in_outer_film(bearing)
+            body = _opening_body(bearing.outer, between, HOUSING) if feed_holes is None else between
+            places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer, feed_holes))
             ring += between == ring
     return tuple(places)
 
@@ -103,23 +103,24 @@ def make_law(case: Case, cavitation: str, section: Section) -> Law:
     return law_named(cavitation).scaled(case.film.given(cavitation), oil)
 
 
-def channel_pulls(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:
+def centrifugal_pressures(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:
     """By what the pressure given in each film's channels falls with the square of its ring's speed, (4.27), scaled.
 
     Half of the difference between the two ends of a channel acts on the inner film (4.29); the pressure at the outer
     end is that of the groove which they open to.
     """
-    pulls, ringed = [], turning_rings(case)
+    centrifugal, ringed = [], turning_rings(case)
     for place, film in zip(film_places(case), volumes, strict=True):
         has_channels = place.outside >= 0 and place.grid_body == place.outside and not coupled(ringed[place.outside])
-        pulls.append(0.5 * pull(case, ringed[place.outside]) / film.section.pressure_scale if has_channels else 0.0)
-    return tuple(pulls)
+        pressure = centrifugal_pressure(case, ringed[place.outside]) if has_channels else 0.0
+        centrifugal.append(0.5 * pressure / film.section.pressure_scale)
+    return tuple(centrifugal)
 
 
 def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int]) -> VolumeFilm:
     """A film on volumes for a run, equal cells (around, along)."""
     geometry, cavitation = place.geometry, case.cavitation(place.geometry)
-    section = film_section(case, geometry, place.mouths)
+    section = film_section(case, geometry, place.feed_holes)
     law_class = law_named(cavitation)
     # A pressure that is never below that of the air lets oil out only, as into a bath. The flow of (4.37) at no
     # pressure, which the law would have to make up, keeps Newton's method from converging.

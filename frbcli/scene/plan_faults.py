@@ -44,7 +44,7 @@ def plan_faults(case: Case) -> list[Fault]:
         if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):
             missing("bearing.supply.axial_position", f"{supply.axial_position:g}", ("0.5, 0 and 1",))
             continue
-        section = film_section(case, place.geometry, place.mouths)
+        section = film_section(case, place.geometry, place.feed_holes)
         if not law_named(case.cavitation(place.geometry)).keeps_oil:  # a film that makes its oil cannot run dry
             section = ends_at_ambient(section)
         for found in section_faults(section):

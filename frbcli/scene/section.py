@@ -12,10 +12,10 @@ from frbcli.film.rectangles.bearing import RectangularBearing
 TWO_PI = 2.0 * math.pi
 
 
-def film_section(case: Case, bearing: FilmGeometry, mouths: Bores | None = None) -> Section:
+def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = None) -> Section:
     """The part of the film that has to be solved: half of it where it is symmetric about the middle.
 
-    mouths: of the channels of a ring, which the film has beside its own supply; they are the last of its holes.
+    feed_holes: of the channels of a ring, which the film has beside its own supply; they are the last of its holes.
     """
     supply, ends, width = bearing.supply, bearing.ends, bearing.width
     radius, ambient = 0.5 * bearing.diameter, case.oil.ambient_pressure
@@ -35,11 +35,11 @@ def film_section(case: Case, bearing: FilmGeometry, mouths: Bores | None = None)
         if supply.axial_position != 0.5:
             copies, far = 1, ends
         holes = _bores(supply, bearing, ambient)
-    if mouths is not None:
-        if far == "symmetry" and mouths.axial_position != 0.5:
+    if feed_holes is not None:
+        if far == "symmetry" and feed_holes.axial_position != 0.5:
             copies, far = 1, ends
         mirrored = far == "groove" and getattr(supply, "axial_position", 1.0) < 0.5  # the groove lies at z = 1
-        holes += _bores(mouths, bearing, ambient, mirrored)
+        holes += _bores(feed_holes, bearing, ambient, mirrored)
     return Section(
         radius=radius,
         width=width / copies,

@@ -1,4 +1,4 @@
-"""The machine of a run: a system for each stretch of time in which its clearances stay as they are."""
+"""The machine of a run: a system for each segment of time in which its clearances stay as they are."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from frbcli.scene.system import System, make_system
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Segment:
     """A machine from the time `start` in s on. case: with the clearances that it has then."""
 
     start: float
@@ -19,10 +19,10 @@ class Stretch:
     system: System
 
 
-def make_stretches(case: Case, plan: Plan) -> tuple[Stretch, ...]:
-    """The machine of a case in all stretches of a run, the first from its beginning; films are tabulated here."""
+def make_segments(case: Case, plan: Plan) -> tuple[Segment, ...]:
+    """The machine of a case in all segments of a run, the first from its beginning; films are tabulated here."""
     found = []
     for start in (0.0, *step_times(case)):
         then = case_at(case, start)
-        found.append(Stretch(start, then, make_system(then, plan)))
+        found.append(Segment(start, then, make_system(then, plan)))
     return tuple(found)

@@ -62,7 +62,7 @@ def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
     found = []
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film, cavitation = place.geometry, case.cavitation(place.geometry)
-        section = film_section(case, film, place.mouths)
+        section = film_section(case, film, place.feed_holes)
         if is_unfed(section, cavitation):
             keeps = law_named(cavitation).keeps_oil and not is_published(case)
             cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)

@@ -12,7 +12,7 @@ from frbcli.case.bearing import AxialGrooves, FilmGeometry, SingleFilmBearing
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
 from frbcli.film.cells.channels import with_channels
-from frbcli.film.cells.data import AREA, MOUTH, REMEMBERS, UNKNOWN, VolumeFilms, volume_films
+from frbcli.film.cells.data import AREA, FEED_HOLE, REMEMBERS, UNKNOWN, VolumeFilms, volume_films
 from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.gap import AxialGroove
@@ -28,7 +28,15 @@ from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.ring import with_rings, with_spins
 from frbcli.scene.channels import coupled_channels
-from frbcli.scene.films import channel_pulls, film_places, rings, source_film, turning, turning_rings, volume_film
+from frbcli.scene.films import (
+    centrifugal_pressures,
+    film_places,
+    rings,
+    source_film,
+    turning,
+    turning_rings,
+    volume_film,
+)
 from frbcli.scene.plan import Plan
 from frbcli.scene.published import PUBLISHED, run_film
 from frbcli.scene.tabulated import SOLUTIONS
@@ -87,7 +95,7 @@ class System:
         if not isinstance(self.films, VolumeFilms):
             return np.ones(len(self.names))
         cells = self.films.cells
-        film = (cells[:, UNKNOWN] != 0.0) & (cells[:, MOUTH] == 0.0)
+        film = (cells[:, UNKNOWN] != 0.0) & (cells[:, FEED_HOLE] == 0.0)
         return np.asarray((cells[:, AREA] * film).sum(axis=(1, 2)) / (2.0 * math.pi))
 
     def omegas(self, omega: float, ring_speeds: Array) -> Array:
@@ -125,7 +133,7 @@ def make_system(case: Case, plan: Plan) -> System:
         return replace(system, films=run_film(case, plan.cells))
     if plan.cells is not None:
         volumes = tuple(volume_film(case, place, plan.cells) for place in places)
-        data = volume_films(volumes, channel_pulls(case, volumes))
+        data = volume_films(volumes, centrifugal_pressures(case, volumes))
         data = with_channels(data, volumes, coupled_channels(case, volumes))
         factor = case.film.cavitation_factor
         return replace(system, films=data, volumes=volumes, cavitation_factor=factor)

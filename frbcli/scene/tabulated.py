@@ -27,7 +27,7 @@ def table_obstacle(case: Case) -> str:
     if film.grid != "fixed":
         return f"a {film.grid} grid is one of cells"
     for place in film_places(case):
-        if place.mouths is not None or not is_plain(place.geometry):
+        if place.feed_holes is not None or not is_plain(place.geometry):
             return TURNING
         if place.geometry.ends == "free-to-air":
             return "what leaves at free ends is no part of the table"

@@ -17,10 +17,10 @@ from frbcli.film.cells.block_cyclic import solve_ring
 from frbcli.film.cells.channel_flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
     AREA,
+    CENTRIFUGAL,
     COS,
+    FEED_HOLE,
     GAP,
-    MOUTH,
-    PULL,
     REMEMBERS,
     SIN,
     UNKNOWN,
@@ -112,7 +112,7 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     remembers = numbers[REMEMBERS] != 0.0
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         set_law(numbers, grid, d_x, d_y, v_x, v_y, omega)
-    drop, rate = numbers[PULL] * spin * spin, 1.0 / g if remembers else 0.0
+    drop, rate = numbers[CENTRIFUGAL] * spin * spin, 1.0 / g if remembers else 0.0
     cell_states(numbers, cells, law_of(grid), drop, w, states)
     balances(
         numbers, ring, width, cells, states, x, y, omega - 2.0 * spin, rate, past, g, v_f, v_g, spin, stencil, fields,
@@ -196,7 +196,7 @@ def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
     area, oil = 0.0, 0.0
     for i in range(m):
         for j in range(k):
-            if cells[UNKNOWN, i, j] != 0.0 and cells[MOUTH, i, j] == 0.0:
+            if cells[UNKNOWN, i, j] != 0.0 and cells[FEED_HOLE, i, j] == 0.0:
                 area += cells[AREA, i, j]
                 oil += cells[AREA, i, j] * states[FRACTION, i, j]
     return oil / area
@@ -212,7 +212,7 @@ def sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-d
     for i in range(m):
         h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
         for j in range(k):
-            if cells[UNKNOWN, i, j] != 0.0 and cells[MOUTH, i, j] == 0.0:
+            if cells[UNKNOWN, i, j] != 0.0 and cells[FEED_HOLE, i, j] == 0.0:
                 whole += cells[AREA, i, j] / h
                 weighed += cells[AREA, i, j] * states[FRACTION, i, j] / h
     if factor == LOCAL_FACTOR:

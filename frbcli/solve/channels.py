@@ -15,9 +15,9 @@ from numba import njit
 from frbcli.film.cells.balances import BY_ITSELF, SIDES
 from frbcli.film.cells.channel_flow import (
     channel_pressures,
+    feed_hole_pressure,
     follow_means,
     mean_changes,
-    mouth_pressure,
     push_of_channel,
 )
 from frbcli.film.cells.data import FILM, SLOT
@@ -42,19 +42,19 @@ def set_laws(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-unt
 
 @njit(cache=True, error_model="numpy")
 def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
-    """channel (films, m, k) <- the channels' pressures over the cells of their mouths, by the films as they are."""
-    count = films.mouths.shape[0]
+    """channel (films, m, k) <- the channels' pressures over the cells of their feed holes, by the films as they are."""
+    count = films.feed_holes.shape[0]
     means = np.empty(count)
     for q in range(count):
-        f = int(films.mouths[q, FILM])
-        means[q] = mouth_pressure(
-            films.numbers[f], films.cells[f], law_of(grids[:, f]), w[f], films.mouths[q], films.mouth_cells[q]
+        f = int(films.feed_holes[q, FILM])
+        means[q] = feed_hole_pressure(
+            films.numbers[f], films.cells[f], law_of(grids[:, f]), w[f], films.feed_holes[q], films.feed_hole_cells[q]
         )
-    channel_pressures(films.channels, films.mouths, grids[GRID_SPEED], means)
+    channel_pressures(films.channels, films.feed_holes, grids[GRID_SPEED], means)
     for q in range(count):
-        f = int(films.mouths[q, FILM])
-        for n in range(films.mouth_cells.shape[1]):
-            i, j = films.mouth_cells[q, n, 0], films.mouth_cells[q, n, 1]
+        f = int(films.feed_holes[q, FILM])
+        for n in range(films.feed_hole_cells.shape[1]):
+            i, j = films.feed_hole_cells[q, n, 0], films.feed_hole_cells[q, n, 1]
             if i >= 0:
                 channel[f, i, j] = means[q]
 
@@ -64,13 +64,13 @@ def join(  # type: ignore[no-untyped-def]
     films, grids, states, fields, clearances, follows_x, follows_y, force, cross, answers, changes
 ):
     """Let the solved films feel each other: their forces, and cross (2 films, 2 films), N s / m, what the channels make
-    of the derivatives by the journals' velocities. answers (mouths, 1 + 2 films) <- the changes of the channels'
+    of the derivatives by the journals' velocities. answers (feed_holes, 1 + 2 films) <- the changes of the channels'
     pressures, by themselves and per journal velocity in m/s; changes (films, slots) <- the former."""
-    count, journals = films.mouths.shape[0], cross.shape[0]
+    count, journals = films.feed_holes.shape[0], cross.shape[0]
     matrix, own = np.zeros((count, count)), np.empty(SIDES + changes.shape[1])
     for q in range(count):
-        f = int(films.mouths[q, FILM])
-        mean_changes(films.cells[f], states[f], fields[f], films.mouths[q], films.mouth_cells[q], own)
+        f = int(films.feed_holes[q, FILM])
+        mean_changes(films.cells[f], states[f], fields[f], films.feed_holes[q], films.feed_hole_cells[q], own)
         for column in range(1 + journals):
             answers[q, column] = 0.0
         answers[q, 0] = own[BY_ITSELF]
@@ -79,10 +79,10 @@ def join(  # type: ignore[no-untyped-def]
         answers[q, 1 + 2 * f] = follows_x[2 * f] * x + follows_x[2 * f + 1] * y
         answers[q, 2 + 2 * f] = follows_y[2 * f] * x + follows_y[2 * f + 1] * y
         for other in range(count):
-            if int(films.mouths[other, FILM]) == f:
-                matrix[q, other] = own[SIDES + int(films.mouths[other, SLOT])]
-    follow_means(films.channels, films.mouths, matrix)
-    follow_means(films.channels, films.mouths, answers)
+            if int(films.feed_holes[other, FILM]) == f:
+                matrix[q, other] = own[SIDES + int(films.feed_holes[other, SLOT])]
+    follow_means(films.channels, films.feed_holes, matrix)
+    follow_means(films.channels, films.feed_holes, answers)
     for q in range(count):
         for other in range(count):
             matrix[q, other] = -matrix[q, other]
@@ -92,7 +92,7 @@ def join(  # type: ignore[no-untyped-def]
         for j in range(journals):
             cross[i, j] = 0.0
     for q in range(count):
-        f, slot = int(films.mouths[q, FILM]), int(films.mouths[q, SLOT])
+        f, slot = int(films.feed_holes[q, FILM]), int(films.feed_holes[q, SLOT])
         changes[f, slot] = answers[q, 0]
         x, y = push_of_channel(films.numbers[f], films.ring[f], films.width[f], states[f], fields[f], slot)
         c, s = math.cos(grids[GRID_TURN, f]), math.sin(grids[GRID_TURN, f])
@@ -107,8 +107,8 @@ def join(  # type: ignore[no-untyped-def]
 @njit(cache=True, error_model="numpy")
 def follow_journals(films, answers, correction, share, changes):  # type: ignore[no-untyped-def]
     """changes (films, slots) <- of the channels' pressures with a share of a correction of the journals' velocities."""
-    for q in range(films.mouths.shape[0]):
+    for q in range(films.feed_holes.shape[0]):
         total = answers[q, 0]
         for j in range(correction.shape[0]):
             total += share * answers[q, 1 + j] * correction[j]
-        changes[int(films.mouths[q, FILM]), int(films.mouths[q, SLOT])] = total
+        changes[int(films.feed_holes[q, FILM]), int(films.feed_holes[q, SLOT])] = total

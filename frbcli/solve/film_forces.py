@@ -137,7 +137,7 @@ def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # typ
         return lambda films, work, x_0, u, omega, clearances, g, iteration: None
 
     def volumes(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
-        if films.mouths.shape[0] > 0:
+        if films.feed_holes.shape[0] > 0:
             if iteration == 0:
                 set_laws(films, work.grids, x_0, u, omega, clearances, g)
             set_pressures(films, work.grids, work.w, work.channel)
@@ -151,7 +151,7 @@ def _join_films(films, work, clearances, force, follows_x, follows_y):  # type: 
         return lambda films, work, clearances, force, follows_x, follows_y: None
 
     def volumes(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
-        if films.mouths.shape[0] > 0:
+        if films.feed_holes.shape[0] > 0:
             join(
                 films, work.grids, work.states, work.fields, clearances, follows_x, follows_y, force, work.cross,
                 work.answers, work.changes,
@@ -166,7 +166,7 @@ def _follow_channels(films, work, correction, share):  # type: ignore[no-untyped
         return lambda films, work, correction, share: None
 
     def volumes(films, work, correction, share):  # type: ignore[no-untyped-def]
-        if films.mouths.shape[0] > 0:
+        if films.feed_holes.shape[0] > 0:
             follow_journals(films, work.answers, correction, share, work.changes)
 
     return volumes

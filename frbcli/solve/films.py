@@ -32,9 +32,9 @@ PASSED, NOW = range(2)
 class Work(NamedTuple):
     """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k,
     k + SIDES + S); w, past (F, m, k) of the stage; stage_oil (stages, F, m, k) rates of the stages; stage_flows
-    (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4). Of coupled channels
-    with Q mouths, S of a film at most: channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F), see
-    channels.py; all but changes without rows if there are none."""
+    (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4). Of coupled channels with Q feed holes, S of one film at most:
+    channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F), see channels.py; all but changes without
+    rows if there are none."""
 
     states: Array
     stencil: Array
@@ -70,9 +70,9 @@ def make_work(films: Any, wet: Array, stages: int) -> Work | NoCells:
     if not isinstance(films, VolumeFilms):
         return NoCells(np.zeros((stages, 0, 0, 0)), np.zeros((GRIDS, 0)), np.zeros((0, 0)))
     _, count, m, k = wet.shape
-    mouths = films.mouths.shape[0]
-    slots = 1 + int(films.mouths[:, SLOT].max()) if mouths else 0
-    coupled = count if mouths else 0
+    feed_holes = films.feed_holes.shape[0]
+    slots = 1 + int(films.feed_holes[:, SLOT].max()) if feed_holes else 0
+    coupled = count if feed_holes else 0
     return Work(
         np.zeros((count, STATES, m, k)),
         np.zeros((ENTRIES, m, k)),
@@ -85,7 +85,7 @@ def make_work(films: Any, wet: Array, stages: int) -> Work | NoCells:
         np.zeros((GRIDS, count)),
         np.zeros((count, 4)),
         np.zeros((coupled, m, k)),
-        np.zeros((mouths, 1 + 2 * coupled)),
+        np.zeros((feed_holes, 1 + 2 * coupled)),
         np.zeros((count, slots)),
         np.zeros((2 * coupled, 2 * coupled)),
     )

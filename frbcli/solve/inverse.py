@@ -23,13 +23,13 @@ def outdated(numbers, g, speed, gyroscopic):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
+def prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
     """Make the inverse E for this g and speed, keep its products, and book in the numbers for what they are.
 
     products (3, n, n), loads (3, n): of E with the matrices and loads in the order of E_...; spread (n, m): with the
     forces on the journals; compliance (m, m): S of stage.py.
     """
-    n, m = rotor.mass.shape[0], pick.shape[0]
+    n, m = rotor.mass.shape[0], selection.shape[0]
     numbers[INVERSE_G], numbers[INVERSE_SPEED] = g, speed
     # One elimination for all right-hand sides: the three matrices, the three loads, the journals.
     dynamic, right = np.empty((n, n)), np.empty((n, 3 * n + 3 + m))
@@ -45,7 +45,7 @@ def prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance)
         right[i, 3 * n + 1] = rotor.unbalance_cos[i]
         right[i, 3 * n + 2] = rotor.unbalance_sin[i]
         for k in range(m):
-            right[i, 3 * n + 3 + k] = pick[k, i] * rotor.multiplicity[k // 2]
+            right[i, 3 * n + 3 + k] = selection[k, i] * rotor.multiplicity[k // 2]
     solve_dense(dynamic, right)
     for i in range(n):
         for j in range(n):
@@ -60,5 +60,5 @@ def prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance)
         for j in range(m):
             total = 0.0
             for i in range(n):
-                total += pick[k, i] * spread[i, j]
+                total += selection[k, i] * spread[i, j]
             compliance[k, j] = g * total

@@ -43,15 +43,15 @@ SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what 
 
 
 @njit(cache=True, error_model="numpy")
-def _tell(pick, spins, clearances, q, v, motion):  # type: ignore[no-untyped-def]
+def _tell(selection, spins, clearances, q, v, motion):  # type: ignore[no-untyped-def]
     """motion <- what the films are told of the rotor: journals' displacements and velocities, then angles and speeds of
     the rings. Returns the largest eccentricity."""
-    m, rings, largest = pick.shape[0], spins.shape[0], 0.0
+    m, rings, largest = selection.shape[0], spins.shape[0], 0.0
     for k in range(m):
         place, rate = 0.0, 0.0
         for i in range(q.shape[0]):
-            place += pick[k, i] * q[i]
-            rate += pick[k, i] * v[i]
+            place += selection[k, i] * q[i]
+            rate += selection[k, i] * v[i]
         motion[k], motion[m + k] = place, rate
     for r in range(rings):
         motion[2 * m + r], motion[2 * m + rings + r] = q[spins[r]], v[spins[r]]
@@ -61,13 +61,13 @@ def _tell(pick, spins, clearances, q, v, motion):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True, error_model="numpy")
-def _responses(rotor, pick):  # type: ignore[no-untyped-def]
+def _responses(rotor, selection):  # type: ignore[no-untyped-def]
     """(n, m + rings) what forces on the journals and torques on the rings do to the accelerations."""
-    m, n = pick.shape
+    m, n = selection.shape
     inertia, responses = rotor.mass.copy(), np.zeros((n, m + rotor.spins.shape[0]))
     for k in range(m):
         for i in range(n):
-            responses[i, k] = pick[k, i] * rotor.multiplicity[k // 2]
+            responses[i, k] = selection[k, i] * rotor.multiplicity[k // 2]
     for r in range(rotor.spins.shape[0]):
         responses[rotor.spins[r], m + r] = 1.0
     solve_dense(inertia, responses)
@@ -154,8 +154,8 @@ def _advance(  # type: ignore[no-untyped-def]
     tolerance, contact_at, stiffness = control.tolerance, control.contact_eccentricity, control.contact_stiffness
     n, m, stages, rings = q.shape[0], 2 * clearances.shape[0], moments.shape[0], spins.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
-    responses, given, lagrange, q_new = _responses(rotor, pick), np.zeros(m + rings), np.zeros(3), np.zeros(n)
+    selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
+    responses, given, lagrange, q_new = _responses(rotor, selection), np.zeros(m + rings), np.zeros(3), np.zeros(n)
     three, motions = np.zeros(3), np.zeros((3, 2 * m + 2 * rings))
     bodies, turned, torque = np.zeros(1 + rings), np.zeros(1 + rings), np.zeros(rings)
     unused_at, unused = np.zeros((STAGE_ROWS, n)), np.zeros((n, 1))
@@ -171,13 +171,13 @@ def _advance(  # type: ignore[no-untyped-def]
             t_s = t + moments[s] * step
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
             if outdated(numbers, g, speed, gyroscopic):
-                prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance)
-            start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle,
-                        gyroscopic, at, film)
+                prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
+            start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed,
+                        angle, gyroscopic, at, film)
             _extrapolate(past, t_s, lagrange, given, film)
             lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
-                accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a)
+                accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
             for r in range(rings):
                 i = spins[r]
                 stage_a[i, s] = given[m + r] / rotor.mass[i, i]
@@ -192,7 +192,7 @@ def _advance(  # type: ignore[no-untyped-def]
         displace(weights[stages - 1], stage_v, step, q, q_new)
         _recall(past, three, motions)
         three[2] = t_new
-        largest = _tell(pick, spins, clearances, q_new, stage_v[:, stages - 1], motions[2])
+        largest = _tell(selection, spins, clearances, q_new, stage_v[:, stages - 1], motions[2])
         if not largest < limit:  # the films cannot be asked there any more
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
         if not films_follow(

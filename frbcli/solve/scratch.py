@@ -15,10 +15,10 @@ from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
 
 
 class Scratch(NamedTuple):
-    """pick (m, n): the journals' displacements from the rotor's; products, loads, spread, compliance: see prepare of
-    inverse.py; at (STAGE_ROWS, n), film (JOURNAL_ROWS, m): rows of stage.py; stage_v, stage_a (n, stages)."""
+    """selection (m, n): the journals' displacements from the rotor's; products, loads, spread, compliance: see prepare
+    of inverse.py; at (STAGE_ROWS, n), film (JOURNAL_ROWS, m): rows of stage.py; stage_v, stage_a (n, stages)."""
 
-    pick: Array
+    selection: Array
     products: Array
     loads: Array
     spread: Array
@@ -44,5 +44,5 @@ def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
         np.zeros((n, stages)),
     )
     if numbers[INVERSE_G] > 0.0:
-        prepare(rotor, scratch.pick, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:5])
+        prepare(rotor, scratch.selection, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:5])
     return scratch

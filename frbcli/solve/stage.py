@@ -52,7 +52,8 @@ def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy", inline="always")
 def start_stage(  # type: ignore[no-untyped-def]
-    weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle, gyroscopic, at, film
+    weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed, angle, gyroscopic,
+    at, film,
 ):
     """Fill V, Q, FREE of `at` and U_0, X_0 of `film`: what stage s knows before its films do."""
     n = q.shape[0]
@@ -75,11 +76,11 @@ def start_stage(  # type: ignore[no-untyped-def]
             for j in range(n):
                 total -= speed * products[E_GYROSCOPIC, i, j] * at[V, j]
         at[FREE, i] = total
-    for k in range(pick.shape[0]):
+    for k in range(selection.shape[0]):
         place, rate = 0.0, 0.0
         for i in range(n):
-            place += pick[k, i] * at[Q, i]
-            rate += pick[k, i] * (at[V, i] + g * at[FREE, i])
+            place += selection[k, i] * at[Q, i]
+            rate += selection[k, i] * (at[V, i] + g * at[FREE, i])
         film[X_0, k], film[U_0, k] = place, rate
 
 
@@ -92,7 +93,7 @@ def begin_lag(numbers, g, speed, at):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
+def guess(points, three, s, selection, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
     """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
 
     points: (p, 1 + m) times and journals' velocities of this step and the one before; three: (s, 3) which of them carry
@@ -100,25 +101,25 @@ def guess(points, three, s, pick, q, clearances, g, t, limit, film):  # type: ig
     """
     i_a, i_b, i_c = three[s, 0], three[s, 1], three[s, 2]
     weight_a, weight_b, weight_c = lagrange(points[i_a, 0], points[i_b, 0], points[i_c, 0], t)
-    for i in range(pick.shape[0]):
+    for i in range(selection.shape[0]):
         film[U, i] = weight_a * points[i_a, 1 + i] + weight_b * points[i_b, 1 + i] + weight_c * points[i_c, 1 + i]
     for f in range(clearances.shape[0]):
         x, y = 2 * f, 2 * f + 1
         if norm(film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]) > 0.999 * limit * clearances[f]:
             here_x, here_y = 0.0, 0.0
             for i in range(q.shape[0]):
-                here_x += pick[x, i] * q[i]
-                here_y += pick[y, i] * q[i]
+                here_x += selection[x, i] * q[i]
+                here_y += selection[y, i] * q[i]
             film[U, x], film[U, y] = (here_x - film[X_0, x]) / g, (here_y - film[X_0, y]) / g
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a):  # type: ignore[no-untyped-def]
+def accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a):  # type: ignore[no-untyped-def]
     """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
 
     lag: g times the difference between the stage's speed and that of the inverse, for the rest of the gyroscopic term.
     """
-    n, m = at.shape[1], pick.shape[0]
+    n, m = at.shape[1], selection.shape[0]
     row = FREE if lag == 0.0 else LATE
     for i in range(n):
         total = at[row, i]
@@ -135,5 +136,5 @@ def accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a):  
         for k in range(m):
             rate = 0.0
             for i in range(n):
-                rate += pick[k, i] * (at[V, i] + g * at[LATE, i])
+                rate += selection[k, i] * (at[V, i] + g * at[LATE, i])
             film[U_0, k] = rate

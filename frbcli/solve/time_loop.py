@@ -55,13 +55,13 @@ class Own(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def _largest_eccentricity(clearances, pick, q):  # type: ignore[no-untyped-def]
+def _largest_eccentricity(clearances, selection, q):  # type: ignore[no-untyped-def]
     largest = 0.0
     for f in range(clearances.shape[0]):
         x, y = 0.0, 0.0
         for i in range(q.shape[0]):
-            x += pick[2 * f, i] * q[i]
-            y += pick[2 * f + 1, i] * q[i]
+            x += selection[2 * f, i] * q[i]
+            y += selection[2 * f + 1, i] * q[i]
         largest = max(largest, norm(x, y) / clearances[f])
     return largest
 
@@ -105,7 +105,7 @@ def _advance(  # type: ignore[no-untyped-def]
         control.tolerance, control.contact_eccentricity, control.contact_stiffness)
     m, stages = 2 * clearances.shape[0], moments.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
-    pick, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
+    selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
     newton, past, q_new, bodies, angles_now, torque = own
     has_cells = wet.shape[1] > 0
     written, done = 0, 0
@@ -121,10 +121,10 @@ def _advance(  # type: ignore[no-untyped-def]
             t_s = t + moments[s] * step
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
             if outdated(numbers, g, speed, gyroscopic):
-                prepare(rotor, pick, numbers, g, speed, products, loads, spread, compliance)
-            start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, pick, acceleration, speed, angle,
-                        gyroscopic, at, film)
-            guess(past, three, s, pick, q, clearances, g, t_s, limit, film)
+                prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
+            start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed,
+                        angle, gyroscopic, at, film)
+            guess(past, three, s, selection, q, clearances, g, t_s, limit, film)
             guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles_now)
             set_speeds(turning, bodies, angles_now, film, grids)
             begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
@@ -143,7 +143,7 @@ def _advance(  # type: ignore[no-untyped-def]
                 if has_cells:  # a film with cells has kinks: no guess at what is left, but the balances themselves
                     left = math.inf if unsettled > 0 else moved
                 if share == 1.0:
-                    accelerate(s, g, lag, products, spread, pick, at, film, stage_v, stage_a)
+                    accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
                     if spins.shape[0] > 0:
                         turned = spin_up(films, work, rotor, s, g, clearances, contact_at, contact_stiffness, at, film,
                                          bodies, angles_now, torque, stage_v, stage_a)
@@ -174,7 +174,7 @@ def _advance(  # type: ignore[no-untyped-def]
         move_on(q, v, a, q_new, stage_v, stage_a)
         keep_past(past, past_now)
         done += 1
-        largest = _largest_eccentricity(clearances, pick, q)
+        largest = _largest_eccentricity(clearances, selection, q)
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance, largest)
         if status != RUNNING:
             return status, written

@@ -1,11 +1,11 @@
 """What channels between two films bring to them, and what pressures they take, compiled; see channels.py for the model.
 
-The flow from the outer to the inner end of a channel follows from the mean pressures of the cells at its mouths,
+The flow from the outer to the inner end of a channel follows from the mean pressures of the cells at its feed holes,
 
     Q = (p_o - p_i - Delta p) / (R + 1 / k_i + 1 / k_o),    Delta p by (4.27),
 
-with Hagen and Poiseuille's resistance R and the conductances k of the cells of a mouth to the channel. It is taken from
-one film and given to the other one, so that no oil is lost however far the films are from balance.
+with Hagen and Poiseuille's resistance R and the conductances k of the cells of a feed hole to the channel. It is taken
+from one film and given to the other one, so that no oil is lost however far the films are from balance.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from frbcli.film.cells.balances import CHANNELS_NET, SIDES
 from frbcli.film.cells.block_cyclic import CENTRE
 from frbcli.film.cells.data import (
     CAVITY,
+    CHANNEL_CENTRIFUGAL,
     CLIPS,
     CONDUCTANCE,
     EXCHANGE,
+    FEED_HOLE,
     FILM,
     FLOW_SCALE,
     FORCE_SCALE,
     GROOVE_PRESSURE,
     INNER,
-    MOUTH,
     OUTER,
     PRESSURE_SCALE,
     PUSH_X,
     PUSH_Y,
     RESISTANCE,
-    THROWN,
 )
 from frbcli.film.cells.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 
@@ -57,74 +57,77 @@ def ask_of_channels(cells, right):  # type: ignore[no-untyped-def]
         for j in range(k):
             for layer in range(k + SIDES, layers):
                 right[i, j, layer] = 0.0
-            if cells[MOUTH, i, j] != 0.0:
-                right[i, j, k + SIDES - 1 + int(cells[MOUTH, i, j])] = cells[EXCHANGE, i, j]
+            if cells[FEED_HOLE, i, j] != 0.0:
+                right[i, j, k + SIDES - 1 + int(cells[FEED_HOLE, i, j])] = cells[EXCHANGE, i, j]
 
 
 @njit(cache=True, error_model="numpy")
-def mouth_pressure(numbers, cells, law, w, mouth, places):  # type: ignore[no-untyped-def]
-    """Mean pressure of the cells of a mouth, by their conductances."""
+def feed_hole_pressure(numbers, cells, law, w, feed_hole, places):  # type: ignore[no-untyped-def]
+    """Mean pressure of the cells of a feed hole, by their conductances."""
     total = 0.0
     for n in range(places.shape[0]):
         i, j = places[n, 0], places[n, 1]
         if i >= 0:
             total += cells[EXCHANGE, i, j] * pressure_of(numbers, law, w[i, j])
-    return total / mouth[CONDUCTANCE]
+    return total / feed_hole[CONDUCTANCE]
 
 
 @njit(cache=True, error_model="numpy")
-def _entry(mouth):  # type: ignore[no-untyped-def]
-    """Resistance between the cells of a mouth and the channel, Pa s / m^3."""
-    return mouth[PRESSURE_SCALE] / (mouth[FLOW_SCALE] * mouth[CONDUCTANCE])
+def _entry(feed_hole):  # type: ignore[no-untyped-def]
+    """Resistance between the cells of a feed hole and the channel, Pa s / m^3."""
+    return feed_hole[PRESSURE_SCALE] / (feed_hole[FLOW_SCALE] * feed_hole[CONDUCTANCE])
 
 
 @njit(cache=True, error_model="numpy")
-def channel_pressures(channels, mouths, spins, means):  # type: ignore[no-untyped-def]
-    """means (mouths,) of the pressures at the mouths <- the pressures of the channels' ends, in the units of their
-    films. spins: (films,) speeds of their grids."""
+def channel_pressures(channels, feed_holes, spins, means):  # type: ignore[no-untyped-def]
+    """means (feed_holes,) of the pressures at the feed holes <- the pressures of the channels' ends, in the units of
+    their films. spins: (films,) speeds of their grids."""
     for c in range(channels.shape[0]):
         inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
-        scale, entry = mouths[inner, PRESSURE_SCALE], _entry(mouths[inner])
-        spin = spins[int(mouths[inner, FILM])]
-        fall, resistance = -scale * means[inner] - channels[c, THROWN] * spin * spin, channels[c, RESISTANCE] + entry
+        scale, entry = feed_holes[inner, PRESSURE_SCALE], _entry(feed_holes[inner])
+        spin = spins[int(feed_holes[inner, FILM])]
+        fall = -scale * means[inner] - channels[c, CHANNEL_CENTRIFUGAL] * spin * spin
+        resistance = channels[c, RESISTANCE] + entry
         if outer >= 0:
-            fall += mouths[outer, PRESSURE_SCALE] * means[outer]
-            resistance += _entry(mouths[outer])
+            fall += feed_holes[outer, PRESSURE_SCALE] * means[outer]
+            resistance += _entry(feed_holes[outer])
         else:
             fall += channels[c, GROOVE_PRESSURE]
         flow = fall / resistance
         means[inner] += flow * entry / scale
         if outer >= 0:
-            means[outer] -= flow * _entry(mouths[outer]) / mouths[outer, PRESSURE_SCALE]
+            means[outer] -= flow * _entry(feed_holes[outer]) / feed_holes[outer, PRESSURE_SCALE]
 
 
 @njit(cache=True, error_model="numpy")
-def follow_means(channels, mouths, matrix):  # type: ignore[no-untyped-def]
-    """matrix (mouths, n) of changes of the means at the mouths <- those at the channels' ends, as channel_pressures."""
+def follow_means(channels, feed_holes, matrix):  # type: ignore[no-untyped-def]
+    """matrix (feed_holes, n) of changes of the means at the feed holes <- those at the channels' ends, as
+    channel_pressures."""
     for c in range(channels.shape[0]):
         inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
-        scale, entry = mouths[inner, PRESSURE_SCALE], _entry(mouths[inner])
+        scale, entry = feed_holes[inner, PRESSURE_SCALE], _entry(feed_holes[inner])
         resistance = channels[c, RESISTANCE] + entry
         if outer >= 0:
-            resistance += _entry(mouths[outer])
+            resistance += _entry(feed_holes[outer])
         for n in range(matrix.shape[1]):
             flow = -scale * matrix[inner, n] / resistance
             if outer >= 0:
-                flow += mouths[outer, PRESSURE_SCALE] * matrix[outer, n] / resistance
-                matrix[outer, n] -= flow * _entry(mouths[outer]) / mouths[outer, PRESSURE_SCALE]
+                flow += feed_holes[outer, PRESSURE_SCALE] * matrix[outer, n] / resistance
+                matrix[outer, n] -= flow * _entry(feed_holes[outer]) / feed_holes[outer, PRESSURE_SCALE]
             matrix[inner, n] += flow * entry / scale
 
 
 @njit(cache=True, error_model="numpy")
-def mean_changes(cells, states, fields, mouth, places, changes):  # type: ignore[no-untyped-def]
-    """changes (SIDES + slots,) <- those of the mean pressure of a mouth with the layers of fields, see film_newton."""
+def mean_changes(cells, states, fields, feed_hole, places, changes):  # type: ignore[no-untyped-def]
+    """changes (SIDES + slots,) <- those of the mean pressure of a feed hole with the layers of fields, see
+    film_newton."""
     k = fields.shape[1]
     for layer in range(changes.shape[0]):
         changes[layer] = 0.0
     for n in range(places.shape[0]):
         i, j = places[n, 0], places[n, 1]
         if i >= 0:
-            share = cells[EXCHANGE, i, j] * states[PRESSURE_SLOPE, i, j] / mouth[CONDUCTANCE]
+            share = cells[EXCHANGE, i, j] * states[PRESSURE_SLOPE, i, j] / feed_hole[CONDUCTANCE]
             for layer in range(changes.shape[0]):
                 changes[layer] += share * fields[i, j, k + layer]
 

@@ -1,8 +1,8 @@
 """Channels that couple two films hydraulically: where they open, what flows through them, as arrays for the kernels.
 
-A mouth lies over some cells of a film, whose oil and pressure follow the law of that film like those of all others.
-Each cell of a mouth exchanges oil with the channel over a conductance that is large against that of the gap, so that
-they have one pressure as long as they are full; a mouth in a cavity takes what comes at the pressure of the cavity.
+A feed hole lies over some cells of a film, whose oil and pressure follow the law of that film like those of all others.
+Each cell of a feed hole exchanges oil with the channel over a conductance that is large against that of the gap, so
+that they have one pressure as long as they are full; a feed hole in a cavity takes what comes at the cavity's pressure.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.film.cells.data import (
+    CHANNEL_CENTRIFUGAL,
     CHANNEL_NUMBERS,
     CONDUCTANCE,
     EXCHANGE,
+    FEED_HOLE,
+    FEED_HOLE_NUMBERS,
     FILM,
     FLOW_SCALE,
     GROOVE_PRESSURE,
     INNER,
-    MOUTH,
-    MOUTH_NUMBERS,
     OUTER,
     PRESSURE_SCALE,
     RESISTANCE,
     SLOT,
-    THROWN,
     UNKNOWN,
     VolumeFilms,
 )
@@ -37,12 +37,12 @@ from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.gap import Hole
 from frbcli.film.grid import Array
 
-IN_GROOVE = -1.0  # in place of a mouth
-OPENNESS = 1e5  # of a mouth over its gap, centred: the conductances between channel and film, and along the film
+IN_GROOVE = -1.0  # in place of a feed hole
+OPENNESS = 1e5  # of a feed hole over its gap, centred: the conductances between channel and film, and along the film
 
 
 @dataclass(frozen=True)
-class Mouth:
+class FeedHole:
     """Where a channel opens: the number of the film, and a hole of its section."""
 
     film: int
@@ -51,14 +51,14 @@ class Mouth:
 
 @dataclass(frozen=True)
 class Channel:
-    """A bore between two films. inner, outer: its mouths, the outer one None where it opens to a groove of a gauge
-    pressure in Pa; resistance in Pa s / m^3; thrown: in Pa s^2, see CHANNEL_NUMBERS."""
+    """A bore between two films. inner, outer: its feed holes, the outer one None where it opens to a groove of a gauge
+    pressure in Pa; resistance in Pa s / m^3; centrifugal: in Pa s^2, see CHANNEL_NUMBERS."""
 
-    inner: Mouth
-    outer: Mouth | None
+    inner: FeedHole
+    outer: FeedHole | None
     resistance: float
     groove_pressure: float
-    thrown: float
+    centrifugal: float
 
 
 def channel_resistance(diameter: float, length: float, viscosity: float) -> float:
@@ -67,7 +67,7 @@ def channel_resistance(diameter: float, length: float, viscosity: float) -> floa
 
 
 def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequence[Channel]) -> VolumeFilms:
-    """The films with channels between them; the cells of their mouths, given in `films`, become unknown.
+    """The films with channels between them; the cells of their feed holes, given in `films`, become unknown.
 
     A bore that is too small for the mesh has no cells: its channel is closed.
     """
@@ -75,43 +75,43 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
     if not channels:
         return data
     cells = data.cells.copy()
-    rows, mouths, places = np.zeros((len(channels), CHANNEL_NUMBERS)), [], []
+    rows, feed_holes, places = np.zeros((len(channels), CHANNEL_NUMBERS)), [], []
     slots = dict.fromkeys(range(len(films)), 0)
 
-    def opened(mouth: Mouth) -> int:
-        film, size = films[mouth.film], cells[mouth.film]
-        inside = _cells(film, mouth)
-        slot = slots[mouth.film]
-        slots[mouth.film] += 1
+    def opened(feed_hole: FeedHole) -> int:
+        film, size = films[feed_hole.film], cells[feed_hole.film]
+        inside = _cells(film, feed_hole)
+        slot = slots[feed_hole.film]
+        slots[feed_hole.film] += 1
         size[UNKNOWN][inside], size[EXCHANGE][inside] = 1.0, _conductances(film)[inside]
-        size[MOUTH][inside] = 1.0 + slot
-        numbers = np.zeros(MOUTH_NUMBERS)
-        numbers[FILM], numbers[SLOT] = mouth.film, slot
+        size[FEED_HOLE][inside] = 1.0 + slot
+        numbers = np.zeros(FEED_HOLE_NUMBERS)
+        numbers[FILM], numbers[SLOT] = feed_hole.film, slot
         section = film.section
         numbers[FLOW_SCALE] = section.copies * section.radius * section.width * section.clearance
         numbers[PRESSURE_SCALE], numbers[CONDUCTANCE] = section.pressure_scale, size[EXCHANGE][inside].sum()
-        mouths.append(numbers)
+        feed_holes.append(numbers)
         places.append(np.argwhere(inside))
-        return len(mouths) - 1
+        return len(feed_holes) - 1
 
     for row, channel in zip(rows, channels, strict=True):
         row[INNER] = opened(channel.inner)
         row[OUTER] = IN_GROOVE if channel.outer is None else opened(channel.outer)
         row[RESISTANCE], row[GROOVE_PRESSURE] = channel.resistance, channel.groove_pressure
-        row[THROWN] = channel.thrown
+        row[CHANNEL_CENTRIFUGAL] = channel.centrifugal
     filled = np.full((len(places), max(map(len, places)), 2), -1, dtype=np.int64)
     for place, own in zip(filled, places, strict=True):
         place[: len(own)] = own
-    return data._replace(cells=cells, channels=rows, mouths=np.array(mouths), mouth_cells=filled)
+    return data._replace(cells=cells, channels=rows, feed_holes=np.array(feed_holes), feed_hole_cells=filled)
 
 
-def _cells(film: VolumeFilm, mouth: Mouth) -> NDArray[np.bool_]:
-    """(m, k) those under a mouth."""
-    return hole_opening(film.section, mouth.hole, film.grid.phi, film.grid.z).inside
+def _cells(film: VolumeFilm, feed_hole: FeedHole) -> NDArray[np.bool_]:
+    """(m, k) those under a feed hole."""
+    return hole_opening(film.section, feed_hole.hole, film.grid.phi, film.grid.z).inside
 
 
-def _is_open(films: Sequence[VolumeFilm], mouth: Mouth | None) -> bool:
-    return mouth is None or bool(_cells(films[mouth.film], mouth).any())
+def _is_open(films: Sequence[VolumeFilm], feed_hole: FeedHole | None) -> bool:
+    return feed_hole is None or bool(_cells(films[feed_hole.film], feed_hole).any())
 
 
 def _conductances(film: VolumeFilm) -> Array:

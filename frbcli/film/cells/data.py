@@ -19,8 +19,8 @@ from frbcli.film.grid import Array
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
-# Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; PULL: by which the given pressures fall with
-# the square of the grid's speed, in s; from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
+# Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; CENTRIFUGAL: by which given pressures fall
+# with the square of the grid's speed, in s; from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
@@ -38,7 +38,7 @@ CLOSED, GIVEN, FREE = range(3)
     FAR_RISE,
     FAR_BEND,
     FORCE_SCALE,
-    PULL,
+    CENTRIFUGAL,
     PARAMETERS,
 ) = range(18)
 SCALES_END = AMBIENT + 1  # REFERENCE, CAVITY and AMBIENT stand beside each other, as Scales has them
@@ -47,38 +47,38 @@ FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
 # length of the cell; what a unit of pressure on it pushes the journal by.
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
 # Layers of cells: area; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where
-# the pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that mouth in
+# the pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that hole in
 # its film, 0: none.
-AREA, AROUND, ALONG, GIVEN_PRESSURE, UNKNOWN, EXCHANGE, MOUTH, CELL_LAYERS = range(8)
-# Numbers of a mouth: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s, and a
-# pressure of 1 in Pa; the sum of its cells' conductances.
-FILM, SLOT, FLOW_SCALE, PRESSURE_SCALE, CONDUCTANCE, MOUTH_NUMBERS = range(6)
-# Numbers of a channel: its mouths in the inner and in the outer film, the latter -1 in a groove; its resistance in
+AREA, AROUND, ALONG, GIVEN_PRESSURE, UNKNOWN, EXCHANGE, FEED_HOLE, CELL_LAYERS = range(8)
+# Numbers of a feed hole: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s,
+# and a pressure of 1 in Pa; the sum of its cells' conductances.
+FILM, SLOT, FLOW_SCALE, PRESSURE_SCALE, CONDUCTANCE, FEED_HOLE_NUMBERS = range(6)
+# Numbers of a channel: its feed holes in the inner and in the outer film, the latter -1 in a groove; its resistance in
 # Pa s / m^3; gauge pressure of the groove in Pa; by what the pressure rises from the inner to the outer end with the
 # square of the ring's speed, in Pa s^2 (4.27).
-INNER, OUTER, RESISTANCE, GROOVE_PRESSURE, THROWN, CHANNEL_NUMBERS = range(6)
+INNER, OUTER, RESISTANCE, GROOVE_PRESSURE, CHANNEL_CENTRIFUGAL, CHANNEL_NUMBERS = range(6)
 
 
 class VolumeFilms(NamedTuple):
     """Films of equal numbers of cells m x k. numbers: (films, FILM_NUMBERS); ring: (films, RING_ROWS, m); width:
     (films, 2, k) cells along the axis and weights of the integral; cells: (films, CELL_LAYERS, m, k). Of coupled
-    channels: channels (channels, CHANNEL_NUMBERS), mouths (mouths, MOUTH_NUMBERS) and their cells, mouth_cells (mouths,
-    n, 2), filled up with -1."""
+    channels: channels (channels, CHANNEL_NUMBERS), feed_holes (holes, FEED_HOLE_NUMBERS) and their cells,
+    feed_hole_cells (holes, n, 2), filled up with -1."""
 
     numbers: Array
     ring: Array
     width: Array
     cells: Array
     channels: Array
-    mouths: Array
-    mouth_cells: NDArray[np.int64]
+    feed_holes: Array
+    feed_hole_cells: NDArray[np.int64]
 
 
 def volume_films(
     films: Sequence[VolumeFilm],
-    pulls: Sequence[float] = (),
+    centrifugal: Sequence[float] = (),
 ) -> VolumeFilms:
-    """The films as arrays; all have grids of the same shape. pulls: in s."""
+    """The films as arrays; all have grids of the same shape. centrifugal: in s."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
@@ -86,12 +86,12 @@ def volume_films(
         np.zeros((len(films), 2, k)),
         np.zeros((len(films), CELL_LAYERS, m, k)),
         np.zeros((0, CHANNEL_NUMBERS)),
-        np.zeros((0, MOUTH_NUMBERS)),
+        np.zeros((0, FEED_HOLE_NUMBERS)),
         np.zeros((0, 0, 2), dtype=np.int64),
     )
     for index, film in enumerate(films):
         _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
-        data.numbers[index, PULL] = pulls[index] if pulls else 0.0
+        data.numbers[index, CENTRIFUGAL] = centrifugal[index] if centrifugal else 0.0
     return data
 
 

@@ -8,7 +8,7 @@ from numba import njit
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import balances
 from frbcli.film.cells.block_cyclic import CENTRE, solve_ring
-from frbcli.film.cells.data import AREA, CAVITY, CLIPS, COS, FORCE_SCALE, GAP, PULL, PUSH_X, PUSH_Y, SIN, UNKNOWN
+from frbcli.film.cells.data import AREA, CAVITY, CENTRIFUGAL, CLIPS, COS, FORCE_SCALE, GAP, PUSH_X, PUSH_Y, SIN, UNKNOWN
 from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 
 
@@ -92,7 +92,7 @@ def film_newton(  # type: ignore[no-untyped-def]
     """
     law = np.empty(LAW_NUMBERS)
     follow_law(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin, law)
-    cell_states(numbers, cells, law, numbers[PULL] * spin * spin, w, states)
+    cell_states(numbers, cells, law, numbers[CENTRIFUGAL] * spin * spin, w, states)
     balances(
         numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
     )

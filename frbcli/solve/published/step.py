@@ -27,7 +27,7 @@ class Scratch(NamedTuple):
     """What the stages of a step share, see scratch.py; past as in time_loop.py; thetas, rates (stages, e, 9): oil
     fraction and rate; w (nodes,) unknowns of the film."""
 
-    pick: Array
+    selection: Array
     products: Array
     loads: Array
     spread: Array
@@ -102,15 +102,15 @@ def _stage(parts: Parts, state: State, piece: int, t: float, step: float, s: int
     """Solve stage s; the film's unknowns are guessed in scratch.w. Returns whether it converged."""
     rotor, scratch, numbers = parts.rotor, parts.scratch, state.numbers
     weights, g = parts.tableau.stage, parts.tableau.stage[1, 1] * step
-    at, film, pick = scratch.at, scratch.film, scratch.pick
+    at, film, selection = scratch.at, scratch.film, scratch.selection
     t_s = t + parts.tableau.times[s] * step
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
     if outdated(numbers, g, 0.0, False):
-        prepare(rotor, pick, numbers, g, 0.0, scratch.products, scratch.loads, scratch.spread, scratch.compliance)
+        prepare(rotor, selection, numbers, g, 0.0, scratch.products, scratch.loads, scratch.spread, scratch.compliance)
     start_stage(weights, s, step, g, state.q, state.v, scratch.stage_v, scratch.stage_a, scratch.products,
-                scratch.loads, pick, acceleration, speed, angle, False, at, film)  # fmt: skip
-    guess(scratch.past, parts.tableau.guess, s, pick, state.q, rotor.clearances, g, t_s, parts.limit, film)
+                scratch.loads, selection, acceleration, speed, angle, False, at, film)  # fmt: skip
+    guess(scratch.past, parts.tableau.guess, s, selection, state.q, rotor.clearances, g, t_s, parts.limit, film)
     film[OMEGA] = rotor.turning[0, 0, 0] * speed
     past = (fraction + step * np.tensordot(weights[s, :s], scratch.rates[:s], axes=1)) / g
     control = parts.control
@@ -120,7 +120,7 @@ def _stage(parts: Parts, state: State, piece: int, t: float, step: float, s: int
     numbers[SOLVES] += cost
     if not solved:
         return False
-    accelerate(s, g, 0.0, scratch.products, scratch.spread, pick, at, film, scratch.stage_v, scratch.stage_a)
+    accelerate(s, g, 0.0, scratch.products, scratch.spread, selection, at, film, scratch.stage_v, scratch.stage_a)
     scratch.thetas[s] = parts.film.fraction(pressures(parts))
     scratch.rates[s] = scratch.thetas[s] / g - past
     scratch.past[HISTORY + s - 1] = t_s, film[U, 0], film[U, 1]

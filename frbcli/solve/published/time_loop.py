@@ -74,7 +74,7 @@ def advance_published(
         written = _accept(parts, state, t, step, t_new, speed, out_q, out_v, written)
         out_oil[before:written] = mean_fraction(parts.film, scratch.thetas[-1])
         done += 1
-        largest = float(np.hypot(*(scratch.pick @ state.q))) / parts.clearance
+        largest = float(np.hypot(*(scratch.selection @ state.q))) / parts.clearance
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * control.tolerance, largest)
         if status != RUNNING:
             return status, written
@@ -100,7 +100,7 @@ def _accept(
     written = write_outputs(
         state.numbers, scratch.stage_v, parts.control.output_step, t, step, t_new, state.q, q_new, out_q, out_v, written
     )
-    place = scratch.pick @ np.column_stack([state.q, q_new, scratch.stage_v[:, last]]) / parts.clearance
+    place = scratch.selection @ np.column_stack([state.q, q_new, scratch.stage_v[:, last]]) / parts.clearance
     place[:, 1:] = felt_motion(parts.control, place[:, 1], place[:, 2]).T
     place[:, 0] = felt_motion(parts.control, place[:, 0], np.zeros(2))[0]
     omega = float(parts.rotor.turning[0, 0, 0] * speed)

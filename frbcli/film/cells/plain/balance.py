@@ -168,12 +168,12 @@ class Balance:
         fluxes, near, far = self.fluxes(state.pressure, state.fraction)
         kept = storage.factor * state.fraction
         residual = fluxes.net_outflow() + area * (kept - storage.past - state.source)
-        pull = self._pull(state, near, far)
-        size = pull + fluxes.turnover() + area * (np.abs(kept) + np.abs(storage.past) + state.source)
+        exchange = self._exchange(state, near, far)
+        size = exchange + fluxes.turnover() + area * (np.abs(kept) + np.abs(storage.past) + state.source)
         stencil = self._stencil(state, storage, near, far)
         return np.where(fixed, 0.0, residual), size, stencil
 
-    def _pull(self, state: CellState, near: EndFlow, far: EndFlow) -> Array:
+    def _exchange(self, state: CellState, near: EndFlow, far: EndFlow) -> Array:
         """Size of the terms whose differences are the pressure-driven flows: their round-off is the residual's."""
         c = self.conductances
         total = c.around + np.roll(c.around, 1, axis=0)
