@@ -62,7 +62,6 @@ def test_killed_at_random_times_it_resumes_to_equal_results(
 ) -> None:
     # The error that a run states is read at each look at the clock: all have to look at the same steps.
     monkeypatch.setattr(march, "BUDGET", machine.budget)
-    monkeypatch.setattr(march, "CELL_BUDGET", machine.budget)
     case = load_case(machine.base, machine.settings)
     runup(case, tmp_path / "first.h5")  # compiled or loaded, then it is quick
     begun = time.monotonic()

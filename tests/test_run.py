@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import signal
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import asdict
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -186,6 +188,38 @@ def test_an_interrupted_run_has_its_events_and_the_error_of_its_quiet_time(tmp_p
     written = read_run(broken)
     assert (written.events, written.error, written.status) == (run.events, run.error, "interrupted")
     assert_same(runup(case, broken, resume=True), whole)
+
+
+@pytest.mark.usefixtures("small_chunks")
+def test_an_interrupted_run_does_not_wait_for_an_error_that_takes_long(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who interrupts wants an end: an error that takes longer than WAIT_s is left for the end of the run."""
+    monkeypatch.setattr(run_module, "WAIT_s", 0.0)
+    broken = runup(short_case(), tmp_path / "run.h5", observe=interrupt_after(2))
+    assert broken.status == "interrupted"
+    assert broken.error["film_force_relative"] is None
+    assert "eccentricity" not in broken.error
+    whole = runup(short_case(), tmp_path / "run.h5", resume=True)
+    assert whole.error["eccentricity"] > 0.0
+
+
+def test_steps_that_take_longer_than_planned_are_interrupted_as_soon(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The clock is looked at so often that nobody waits, whatever a step costs."""
+    slow, looks = 0.002, list[float]()
+
+    def advance_slowly(*arguments: Any) -> tuple[int, int]:
+        time.sleep(slow * arguments[5])  # the budget of steps
+        return real(*arguments)
+
+    real = march.advance
+    monkeypatch.setattr(march, "advance", advance_slowly)
+    runup(short_case(), tmp_path / "run.h5", observe=lambda _: looks.append(time.monotonic()))
+    waits = np.diff(looks)
+    assert len(waits) > 10
+    assert waits.max() < 5 * march.CHUNK_s
 
 
 @pytest.mark.usefixtures("small_chunks")

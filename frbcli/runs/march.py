@@ -26,6 +26,7 @@ from frbcli.runs.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.cost import expected_cost, expected_course
 from frbcli.scene.plan import Plan
+from frbcli.scene.preparation import film_error_s
 from frbcli.scene.remedies import advised
 from frbcli.scene.segments import Segment, make_segments
 from frbcli.scene.system import System
@@ -48,8 +49,10 @@ from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
-BUDGET, CELL_BUDGET = 500, 50  # steps between two looks at the clock: some milliseconds
-CHUNK_s = 0.2  # at most, of steps that take long
+# Steps between two looks at the clock: from the first ones on so many as take CHUNK_s, as measured, since nobody can
+# interrupt them.
+FIRST_BUDGET, BUDGET, GROWTH = 4, 500, 8.0
+CHUNK_s = 0.1
 # A run whose steps are this many times as many as its plan expected goes nowhere, and would for ever.
 RUNAWAY, FEWEST_STEPS = 100, 2_000_000
 
@@ -102,8 +105,7 @@ class March:
         self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
         self._expected, self._course = expected_cost(case, plan, profile), expected_course(case, plan, profile)
         self._cpu_s = self._wall_s = 0.0
-        most = BUDGET if plan.cells is None else CELL_BUDGET
-        self._budget = max(1, min(most, int(CHUNK_s / max(self._expected.step_s, 1e-9))))
+        self._budget = FIRST_BUDGET
         self._most_steps = max(FEWEST_STEPS, RUNAWAY * self._expected.steps)
 
     def _take_up(self, number: int) -> None:
@@ -167,8 +169,10 @@ class March:
             self._v,
             self._oil,
         )
+        spent = time.perf_counter() - wall
         self._cpu_s += time.process_time() - cpu
-        self._wall_s += time.perf_counter() - wall
+        self._wall_s += spent
+        self._budget = max(1, min(BUDGET, int(self._budget * min(GROWTH, CHUNK_s / max(spent, 1e-9)))))
         first = int(self._state.numbers[OUTPUTS]) - rows
         times = (first + np.arange(rows)) * self._control.output_step
         speeds = self._profile.speed(times)
@@ -251,6 +255,11 @@ class March:
         times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
         passed = self._segments[: self._current + 1]
         return budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
+
+    @property
+    def film_error_s(self) -> float:
+        """Expected CPU time of the error of the film forces."""
+        return film_error_s(self._case, self._plan)
 
     def progress(self, until: float | None = None) -> Progress:
         """For people who wait. until: s, of a run that is made again to tell the error of another one."""

@@ -30,6 +30,7 @@ from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
+WAIT_s = 10.0  # CPU time for the error of a run that was interrupted
 PROFILES = {"runup": run_up_profile, "rundown": run_down_profile}
 STATUS, STARVED = {FINISHED: "finished", CONTACT: "contact"}, "starved"
 
@@ -159,11 +160,13 @@ def _restore(march: March, earlier: Run, head: Header) -> None:
 
 
 def _interrupted(march: March, writer: RunWriter) -> Run:
-    """The run so far, with its events and its error until the first whirl, as far as that needs no other run."""
+    """The run so far, with its events and its error until the first whirl, as far as that needs no other run and no
+    wait: who interrupts wants an end, and the run may go on."""
     from frbcli.analysis.events import find_events
 
     events = [asdict(event) for event in find_events(writer.so_far())]
-    error = march.error(quiet_until(events, march.time))
+    at_once = march.film_error_s <= WAIT_s
+    error = march.error(quiet_until(events, march.time)) if at_once else march.error_so_far()
     writer.checkpoint(march.snapshot(), march.cost(), error, march.time, events)
     return writer.so_far(events=events)
 

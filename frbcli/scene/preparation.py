@@ -53,19 +53,25 @@ def before_s(case: Case, plan: Plan) -> float:
 
 def after_s(case: Case, plan: Plan, loop_s: float, samples: float) -> float:
     """CPU time of what is told when a run of loop_s in its time loop has ended: events, the error. samples: written."""
-    machines, films = 1 + len(step_times(case)), len(film_places(case))
-    found = machines * _reduction_s(case) + SAMPLE_s * samples
+    again = AGAIN * loop_s if plan.cells is not None and plan.form != PUBLISHED else 0.0
+    told = SAMPLE_s * samples + (1 + len(step_times(case))) * _reduction_s(case)
+    return told + again + film_error_s(case, plan)
+
+
+def film_error_s(case: Case, plan: Plan) -> float:
+    """CPU time of the error of the film forces, at sampled states."""
+    films = len(film_places(case))
     if plan.form == PUBLISHED:
-        return found + 6 * PUBLISHED_STATE_s
+        return 6 * PUBLISHED_STATE_s
     if plan.cells is not None:
         fine = plan.cells[0] * FINER, plan.cells[1] * FINER
-        return found + AGAIN * loop_s + CELL_SAMPLES * films * (_steady_s(plan.cells) + _steady_s(fine))
+        return CELL_SAMPLES * films * (_steady_s(plan.cells) + _steady_s(fine))
     if plan.form == SOLUTIONS:  # one state in place of a table of thousands
-        return found + SAMPLES * films * 1e-3 * _table_s(plan)
+        return SAMPLES * films * 1e-3 * _table_s(plan)
     axial, around = FINER * plan.mesh.axial, FINER * plan.mesh.circumferential
     if plan.form == CHAINS:
-        return found + machines * MODES_s * axial**3 + SAMPLES * films * STATE_s
-    return found + MODES_s * axial**3 + SAMPLES * films * (STATE_s + DIRECT_s * axial * around)
+        return (1 + len(step_times(case))) * MODES_s * axial**3 + SAMPLES * films * STATE_s
+    return MODES_s * axial**3 + SAMPLES * films * (STATE_s + DIRECT_s * axial * around)
 
 
 def memory_B(case: Case, plan: Plan, samples: float) -> float:
