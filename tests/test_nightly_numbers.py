@@ -52,6 +52,7 @@ MEMORY_MB, WITHIN = 1000.0, 3.0
 START_s = 5.0  # CPU time of a process that does next to nothing, on a busy machine
 PATIENCE_s, MANNERS_s = 60.0, 15.0  # until a run is interrupted, and for it to end then
 CHECKED_s = 20.0  # CPU time to refuse or plan a case
+SLOW = re.compile("takes [^;]* s of CPU time, [^;]*")
 WARNINGS = ("This takes about", "Warning: this run takes")
 
 
@@ -177,7 +178,7 @@ def troubles(running: Running, code: int, used: resource.struct_rusage) -> Itera
 
 def reports(seeds: Iterable[int], at_once: int) -> Iterator[str]:
     """What is wrong with the trials of these seeds, one text each, of those where something is."""
-    waiting, now = deque(seeds), list[Running]()
+    waiting, now, again = deque(seeds), list[Running](), set[int]()
     while waiting or now:
         if waiting and len(now) < at_once:
             seed = waiting.popleft()
@@ -193,7 +194,10 @@ def reports(seeds: Iterable[int], at_once: int) -> Iterator[str]:
                 found = "; ".join(troubles(running, os.waitstatus_to_exitcode(status), used))
                 running.folder.cleanup()
                 now.remove(running)
-                if found:
+                if SLOW.fullmatch(found) and running.seed not in again:  # it may have compiled a kernel, once for all
+                    again.add(running.seed)
+                    waiting.append(running.seed)
+                elif found:
                     yield f"seed {running.seed}, {trial(running.seed)}: {found}"
                 continue
             waited = time.monotonic() - running.begun

@@ -13,6 +13,7 @@ from frbcli.case.load import load_case, load_case_text
 from frbcli.case.shipped import shipped_names
 from frbcli.cli.main import run as frb
 from frbcli.errors import Fault, InputError
+from frbcli.runs.run import run_cost
 from frbcli.scene.operating import operating_points
 
 
@@ -34,6 +35,8 @@ def faults_of(name: str, *settings: str) -> dict[str, Fault]:
         ("jeffcott", ["speed.from=-18 kHz"], ["bearing.clearance", "speed.from"]),
         ("jeffcott", ["bearing.clearance=0.9 um"], ["bearing.clearance"]),
         ("jeffcott", ["bearing.clearance=1 um"], []),
+        ("jeffcott", ["bearing.clearance=1.24 mm"], []),
+        ("jeffcott", ["bearing.clearance=1.26 mm"], ["bearing.clearance"]),  # a tenth of the radius is 1.25 mm
         ("jeffcott", ["bearing.clearance_steps=[{time='1 s', clearance='35 nm'}]"],
          ["bearing.clearance_steps.0.clearance"]),
         ("jeffcott", ["bearing.diameter=25"], ["bearing.clearance", "speed.to"]),  # mm were meant
@@ -143,3 +146,19 @@ def test_no_hard_case_has_a_number_without_a_unit() -> None:
     for hard in hard_cases():
         if hard.end != "input-error":
             assert [value.key for value in values(hard.case()) if value.bare] == []
+
+
+# --- what no machine can be ---
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "key", "problem"),
+    [
+        ("floating-ring", "bearing.ring.inertia=0", "bearing.ring.inertia", "greater than 0"),
+        ("axial-groove-two-phase", "bearing.supply.count=24", "bearing", "its openings leave no land"),  # 24 x 15 deg
+    ],
+)
+def test_what_leaves_nothing_to_compute_is_refused(name: str, setting: str, key: str, problem: str) -> None:
+    with pytest.raises(InputError, match=problem) as caught:
+        run_cost("runup", load_case(name, [setting]))
+    assert caught.value.faults[0].key == key

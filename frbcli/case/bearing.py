@@ -21,13 +21,13 @@ from frbcli.case.quantities import (
     Expansion,
     Fraction,
     Identifier,
-    Inertia,
     Length,
     Mass,
     OpeningAngle,
     Position,
     Preload,
     Pressure,
+    RingInertia,
     RiseTime,
     Temperature,
     Viscosity,
@@ -178,7 +178,7 @@ class Ring(Model):
     """The floating ring itself."""
 
     mass: Mass
-    inertia: Inertia = Field(description="about the axis of rotation")
+    inertia: RingInertia = Field(description="about the axis of rotation")
     spin: Literal["free", "blocked"] = Field(
         default="free", description="whether the films turn the ring; a blocked one floats without turning"
     )

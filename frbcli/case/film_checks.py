@@ -14,8 +14,7 @@ from frbcli.case.schema import ATMOSPHERE, Vogel
 from frbcli.case.tables import Breach, number, table, tables
 from frbcli.units import NUMBER, display
 
-# A film is thin, the Reynolds equation its limit for clearance/radius -> 0.
-THICKEST_FILM = 0.05
+THICKEST_MACHINED = 0.1  # clearance of a lobe over the radius
 VISCOSITY_RANGE = (1e-6, 1e4)
 
 
@@ -24,7 +23,7 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     oil = table(data, "oil")
     diameter, width = number(film, "diameter", "m"), number(film, "width", "m")
     clearance = warm_clearance(film, diameter)
-    if diameter and clearance is not None and not 0 < clearance < THICKEST_FILM * diameter / 2:
+    if diameter and clearance is not None and not 0 < clearance < diameter / 2:
         yield _too_thick((*path, "clearance"), clearance, diameter)
     elif diameter and clearance is not None:
         yield from _lobes((*path, "lobes"), table(film, "lobes"), clearance, diameter)
@@ -47,7 +46,7 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
 
 
 def _too_thick(path: Path, clearance: float, diameter: float) -> Breach:
-    problem = f"is {display(clearance, 'm')}, no thin film at a diameter of {display(diameter, 'm')}."
+    problem = f"is {display(clearance, 'm')}, no film at a diameter of {display(diameter, 'm')}."
     return Breach(path, problem, "It is the radial gap, about a thousandth of the radius.")
 
 
@@ -59,7 +58,7 @@ def _clearance_steps(
         yield Breach((*path, "clearance_steps"), "has no effect on kinematic tests.", "Remove it.")
     for place, step in steps:
         time, clearance = number(step, "time", "s"), number(step, "clearance", "m")
-        if diameter and clearance is not None and clearance >= THICKEST_FILM * diameter / 2:
+        if diameter and clearance is not None and clearance >= diameter / 2:
             yield _too_thick((*path, *place, "clearance"), clearance, diameter)
         elif diameter and clearance is not None:
             yield from _lobes((*path, "lobes"), table(film, "lobes"), clearance, diameter)
@@ -74,7 +73,7 @@ def _lobes(path: Path, lobes: Mapping[str, Any], clearance: float, diameter: flo
     if preload is None or not 0 <= preload < 1:
         return
     machined = clearance / (1.0 - preload)
-    if machined >= THICKEST_FILM * diameter / 2:
+    if machined >= THICKEST_MACHINED * diameter / 2:
         problem = f"makes a machined clearance of {display(machined, 'm')}, no thin film."
         yield Breach((*path, "preload"), problem, "It is 1 - c_b / c_p, with the assembled clearance c_b.")
 

@@ -17,6 +17,7 @@ from frbcli.units import SPEED, display, readable
 FASTEST_SURFACE = 500.0  # m/s; steel shafts do not bear more
 LARGEST_GROWTH = 0.5  # of the clearance; growth by turning is left out of the films
 THINNEST_FILM = 1e-6  # m; surfaces are as rough as that
+THICKEST_FILM = 0.1  # of the radius; the Reynolds equation is the limit of a thin film
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,8 @@ def _doubts(data: Mapping[str, Any]) -> Iterator[_Doubt]:
 
 def _film(path: Path, film: Mapping[str, Any], growth: float, top: _Speed | None) -> Iterator[_Doubt]:
     """growth: what turning adds to the clearance, in m."""
-    clearances = [((*path, "clearance"), warm_clearance(film, _size(film, "diameter", "m")))]
+    diameter = _size(film, "diameter", "m")
+    clearances = [((*path, "clearance"), warm_clearance(film, diameter))]
     clearances += [((*path, *at, "clearance"), _size(step, "clearance", "m"))
                    for at, step in tables(film, "clearance_steps")]  # fmt: skip
     for where, clearance in clearances:
@@ -86,6 +88,9 @@ def _film(path: Path, film: Mapping[str, Any], growth: float, top: _Speed | None
             continue
         if clearance < THINNEST_FILM:
             problem = f"is {display(clearance, 'm')}, below {display(THINNEST_FILM, 'm')}"
+            yield _Doubt(where, "clearance", problem, "m")
+        if diameter and clearance > THICKEST_FILM * diameter / 2:
+            problem = f"is {display(clearance, 'm')}, above a tenth of the radius: no thin film"
             yield _Doubt(where, "clearance", problem, "m")
         if top is not None and abs(growth) > LARGEST_GROWTH * clearance:
             problem = f"changes by {growth / clearance:+.0%} as shafts and rings grow at {display(top.value, SPEED)}"

@@ -205,7 +205,8 @@ class Case(Model):
     confirm: tuple[Confirmation, ...] = Field(
         default=(),
         description="what is meant although no usual rotor has it, and refused if not confirmed: the surface of a "
-        "journal faster than 500 m/s, a clearance that changes by more than half as turning parts grow, one below 1 um",
+        "journal faster than 500 m/s, a clearance that changes by more than half as turning parts grow, one below 1 um "
+        "or above a tenth of the radius",
     )
     given_rotor: Rotor | None = Field(
         default=None, alias="rotor", description="must be given, but for a case with [motion]"

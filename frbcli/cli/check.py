@@ -104,7 +104,7 @@ def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, .
     return (
         Decision("expected error", f"{error.eccentricity:.1g}", parts),
         Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),
-        Decision("beside it", clock(cost.before_s + cost.after_s), beside),
+        Decision("before, after", clock(cost.before_s + cost.after_s), beside),
         Decision("memory", memory(cost.memory_B), "of the whole process, at most"),
     )
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from frbcli.film.gap import Hole, Section, smallest_gap
 
 TURN = 2.0 * math.pi
+MOST_OPENED = 1.0 - 1e-6  # of a section by its openings: beyond, no film is left
 
 
 class SectionFault(NamedTuple):
@@ -87,7 +88,15 @@ def _inlet_faults(section: Section) -> list[SectionFault]:
             faults.append(SectionFault(f"{where} is wider than the whole turn", "Make it smaller."))
         if beyond := _reach(section, hole):
             faults.append(SectionFault(f"{where} {beyond}", "Move it or make it smaller."))
+    if not faults and _opened(section) > MOST_OPENED:
+        faults.append(SectionFault("its openings leave no land", "Take fewer of them, or smaller ones."))
     return faults
+
+
+def _opened(section: Section) -> float:
+    """The share of the section that grooves and holes take, a round hole as the rectangle around it."""
+    grooves = sum(groove.opening for groove in section.grooves) / TURN
+    return grooves + sum(4.0 * hole.half_angle * hole.half_width for hole in section.holes) / (TURN * section.width)
 
 
 def _reach(section: Section, hole: Hole) -> str:
