@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.compiling import compiling_told
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import exit_code, live_lines, progress_line
@@ -71,7 +72,7 @@ def command(
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
     if picture:
         check_picture(target)
-    with live_lines(terminal) as show:
+    with live_lines(terminal) as show, compiling_told(terminal, case, show):
         watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
         found = compare(case, cavitation, theory, test, keep, watch, coupling)
     _report(found, bool(coupling), terminal)

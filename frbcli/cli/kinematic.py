@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal
+from frbcli.cli.compiling import compiling_told
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import INTERRUPTED, NotConverged
@@ -59,7 +60,8 @@ def run_test(
     if picture:
         check_picture(target)
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
-    found = tests[test](case, cavitation)
+    with compiling_told(terminal, case):
+        found = tests[test](case, cavitation)
     report(found, terminal)
     results = [result_document(result) for result in found.results]
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}

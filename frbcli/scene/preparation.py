@@ -15,7 +15,7 @@ from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
 from frbcli.rotor.beam import ELEMENTS
 from frbcli.rotor.reduction import DENSE, MOST, RIGID
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE
+from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE, needs_cells
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.plan import Plan
 from frbcli.scene.published import PUBLISHED
@@ -32,11 +32,17 @@ RESTING = 3.0  # times as much for a resting position, found by Newton's method 
 PUBLISHED_STATE_s = 3.0  # to settle
 AGAIN = 0.5  # of the loop: the run on fewer cells
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
+COMPILE_s, COMPILE_CELLS_s = 35.0, 80.0
 PROGRAM_B = 2.7e8  # bytes of the program, its libraries and its compiled kernels
 BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held at a time, bytes of a cell
 MATRICES = 6  # of the axial elements of the finer mesh, of a rotor, of the modes of a shaft
 SAMPLE_s, SAMPLE_B = 3.3e-7, 25.0  # to write an output time and to look at it again
 SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how many forms
+
+
+def compile_s(case: Case) -> float:
+    """CPU time at the very first start, for kernels that the cache then has: of films with cells, or of any other."""
+    return COMPILE_CELLS_s if needs_cells(case) else COMPILE_s
 
 
 def before_s(case: Case, plan: Plan) -> float:

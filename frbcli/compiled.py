@@ -1,0 +1,55 @@
+"""The compiler of the kernels: numba's, with a cache on disk that follows all sources that a kernel is made of.
+
+numba keys its cache by the file of the function alone. A kernel holds the machine code of those that it calls as well,
+so that one of another file could change and not be seen.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Set
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from numba import njit
+
+_PACKAGE = Path(__file__).parent
+_IMPORTS = re.compile(r"^from frbcli\.([\w.]+) import", re.MULTILINE)
+
+
+def compiled(inline: bool = False, fastmath: Set[str] = frozenset()) -> Callable[[Callable[..., Any]], Any]:
+    """Decorates a function that is compiled, once for each set of types, and kept on disk; numbers that are not finite
+    follow IEEE 754 and raise nothing.
+
+    inline: put into the functions that call it before they are compiled; fastmath: LLVM's flags, e.g. {"contract"}.
+    """
+
+    def decorated(function: Callable[..., Any]) -> Any:
+        kernel: Any = njit(
+            cache=True, error_model="numpy", inline="always" if inline else "never", fastmath=set(fastmath) or False
+        )(function)
+        # What the index of the cache is compared with when it is read; numba has no public way to it.
+        kernel._cache._cache_file._source_stamp = sources_digest(Path(function.__code__.co_filename))
+        return kernel
+
+    return decorated
+
+
+def sources_digest(file: Path) -> str:
+    """Of the contents of a file of this package and of all that it imports from it, directly or not."""
+    found, waiting = set[Path](), [file]
+    while waiting:
+        found.add(one := waiting.pop())
+        waiting += [other for other in _source(one)[1] if other not in found]
+    return hashlib.sha256("".join(_source(one)[0] for one in sorted(found)).encode()).hexdigest()
+
+
+@cache
+def _source(file: Path) -> tuple[str, tuple[Path, ...]]:
+    """(digest of a file, the files of this package that it imports)."""
+    text = file.read_text(encoding="utf-8")
+    places = (_PACKAGE.joinpath(*name.split(".")) for name in _IMPORTS.findall(text))
+    imported = (place / "__init__.py" if place.is_dir() else place.with_suffix(".py") for place in places)
+    return hashlib.sha256(text.encode()).hexdigest(), tuple(path for path in imported if path.exists())

@@ -1,0 +1,103 @@
+"""Kernels are compiled once and kept, follow all their sources, and who waits for them is told."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from frbcli.case.load import load_case
+from frbcli.cli.common import Terminal
+from frbcli.cli.compiling import compiling_told
+
+KERNEL = """
+from frbcli.compiled import compiled
+from frbcli.film.inner import inner
+
+@compiled()
+def outer(x):
+    return inner(x)
+"""
+INNER = """
+from frbcli.compiled import compiled
+
+@compiled()
+def inner(x):
+    return x + {added}
+"""
+ASK = "from frbcli.film.outer import outer; print(outer(1.0), sum(outer.stats.cache_hits.values()))"
+
+
+def package(folder: Path) -> Path:
+    """A package of the program's name with its compiler of kernels and two kernels in two files."""
+    from frbcli import compiled
+
+    room = folder / "frbcli" / "film"
+    room.mkdir(parents=True)
+    for place in (room.parent, room):
+        (place / "__init__.py").touch()
+    (room.parent / "compiled.py").write_text(Path(str(compiled.__file__)).read_text())
+    (room / "outer.py").write_text(KERNEL)
+    (room / "inner.py").write_text(INNER.format(added="1.0"))
+    return room
+
+
+def answer(folder: Path) -> tuple[float, int]:
+    """(value, kernels taken from the cache) of a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder / "cache")}
+    done = subprocess.run(
+        [sys.executable, "-c", ASK], env=environment, cwd=folder, capture_output=True, text=True, check=True
+    )
+    value, hits = done.stdout.split()
+    return float(value), int(hits)
+
+
+def test_a_kernel_follows_those_it_calls_in_other_files(tmp_path: Path) -> None:
+    """The cache of numba alone would go on with the old machine code of the inner one."""
+    room = package(tmp_path)
+    assert answer(tmp_path) == (2.0, 0)
+    assert answer(tmp_path) == (2.0, 1)
+    (room / "inner.py").write_text(INNER.format(added="2.0"))
+    assert answer(tmp_path) == (3.0, 0)
+    (room / "unrelated.py").write_text("")
+    assert answer(tmp_path) == (3.0, 1)
+
+
+def test_every_kernel_of_the_package_is_compiled_so() -> None:
+    """A bare njit would be back to a cache that does not see what changed."""
+    import frbcli
+
+    folder = Path(frbcli.__file__).parent
+    bare = [
+        file.relative_to(folder).as_posix()
+        for file in folder.rglob("*.py")
+        if re.search(r"\bn?jit\(.*cache", file.read_text(encoding="utf-8")) and file.name != "compiled.py"
+    ]
+    assert bare == []
+
+
+def test_the_first_start_is_told_and_the_next_is_not(capsys: pytest.CaptureFixture[str]) -> None:
+    from numba import njit
+
+    def fresh(x: float) -> float:
+        return x * 3.0
+
+    kernel = njit(fresh)
+    for told in (True, False):
+        with compiling_told(Terminal(), load_case("jeffcott")):
+            assert kernel(2.0) == 6.0
+        assert ("Compiling the kernels, once: about 35 s of CPU time." in capsys.readouterr().err) is told
+
+
+def test_what_moves_on_the_screen_counts_the_kernels() -> None:
+    from numba import njit
+
+    shown = list[str]()
+    with compiling_told(Terminal(), load_case("jeffcott-two-phase"), shown.append):
+        njit(lambda x: x + 1.0)(1.0)
+    assert shown[0] == "Compiling the kernels, once: about 80 s of CPU time."
+    assert re.fullmatch(r"Compiling the kernels, once: 1 functions in \d+ s of about 80\.", shown[1])
