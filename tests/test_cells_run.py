@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flows import net_flow
 from numpy.typing import NDArray
 
 import frbcli
@@ -16,7 +17,7 @@ from frbcli.errors import InputError
 from frbcli.film.cells.states import whirl_share
 from frbcli.results.store import read_run
 from frbcli.runs.march import Progress, control_of
-from frbcli.runs.oil import net_flow, oil_defect
+from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flows import net_flow
 from numpy.typing import NDArray
 
 import frbcli
@@ -16,7 +17,6 @@ from frbcli.errors import InputError
 from frbcli.linear.resting import resting_position
 from frbcli.rotor.excitation import speed_profile
 from frbcli.runs.march import March
-from frbcli.runs.oil import net_flow
 from frbcli.scene.clearance_steps import case_at
 from frbcli.scene.plan import make_plan
 from frbcli.scene.segments import Segment, make_segments

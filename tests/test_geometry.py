@@ -30,12 +30,9 @@ from frbcli.film.gap import AxialGroove, Hole, Lobes, Section, gap_height, grade
 from frbcli.film.operating import (
     BRASS,
     STEEL,
-    field_strain,
-    relative_gap,
     reynolds_number,
     ring_rotation_strains,
     shaft_rotation_strain,
-    thermal_strain,
 )
 from frbcli.scene.operating import operating_points
 
@@ -341,17 +338,10 @@ def test_strains_of_table_a2() -> None:
     engine = ring_rotation_strains(BRASS, 0.4 * ENGINE, 12.5e-3, 20e-3)
     assert car == pytest.approx((0.492e-3, 0.271e-3), abs=printed)
     assert engine == pytest.approx((0.584e-3, 0.314e-3), abs=printed)
-    assert thermal_strain(STEEL.expansion, 80.0) == pytest.approx(0.944e-3, abs=printed)
-    assert thermal_strain(BRASS.expansion, 70.0) == pytest.approx(1.295e-3, abs=printed)
-    # The printed one of the inner surface, 1.450e-3, does not follow: in plane stress both surfaces have the same.
-    for inner, outer in ((3.5e-3, 5.5e-3), (12.5e-3, 20e-3)):
-        assert field_strain(BRASS.expansion, inner, outer, 80.0, 60.0) == pytest.approx(1.281e-3, abs=printed)
 
 
-def test_solid_ring_is_a_shaft_and_relative_gap_has_its_signs() -> None:
+def test_solid_ring_is_a_shaft() -> None:
     assert ring_rotation_strains(STEEL, 1e3, 0.0, 0.02)[1] == pytest.approx(shaft_rotation_strain(STEEL, 1e3, 0.02))
-    assert relative_gap(35e-6, 12.5e-3, 0.0, 0.0) == pytest.approx(2.8e-3)
-    assert relative_gap(35e-6, 12.5e-3, 1e-3, 3e-4) == pytest.approx(3.5e-3)
 
 
 # --- what the case says ----------------------------------------------------------------------------------------------
@@ -439,6 +429,6 @@ def test_check_shows_gap_and_reynolds_number(capsys: pytest.CaptureFixture[str])
             "journal_temperature='100 degC', shell_expansion='1.17e-5 1/K', "
             "journal_expansion='1.18e-5 1/K'}")  # fmt: skip
     point = operating_points(load_case("bearing", [f"bearing.clearance={warm}"]))[0]
-    psi = relative_gap(35e-6, 12.5e-3, thermal_strain(1.17e-5, 50.0), thermal_strain(1.18e-5, 80.0))
+    psi = 35e-6 / 12.5e-3 + 1.17e-5 * 50.0 - 1.18e-5 * 80.0  # (4.21), (4.22)
     assert point.clearance == pytest.approx(12.5e-3 * psi, rel=1e-9)
     assert point.warming == pytest.approx(point.clearance - 35e-6, rel=1e-9)

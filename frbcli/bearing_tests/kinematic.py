@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frbcli.bearing_tests.history import History, film_course
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
@@ -26,7 +25,6 @@ from frbcli.scene.remedies import advised, film_advice
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 OK, NOT_CONVERGED = "ok", "not-converged"
 FEWEST_TIMES = 8
 

@@ -12,9 +12,7 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TextIO, TypeVar
-
-Answer = TypeVar("Answer")
+from typing import TextIO
 
 DESCRIPTORS = {0: os.O_WRONLY, 1: os.O_RDONLY, 2: os.O_RDONLY}  # the wrong way round: to use them fails
 LOST = 1  # exit code of a command whose stdout or stderr takes no more

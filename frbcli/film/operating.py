@@ -31,25 +31,6 @@ def reynolds_number(density: float, omega: float, radius: float, clearance: floa
     return density * abs(omega) * radius * clearance / viscosity
 
 
-def relative_gap(cold: float, radius: float, outer_strain: float, inner_strain: float) -> float:
-    """psi (4.21) of a film with the cold radial clearance at a radius, both in m, between two strained surfaces."""
-    return cold / radius + outer_strain - inner_strain
-
-
-def thermal_strain(expansion: float, warming: float) -> float:
-    """Of a part that is equally warm, the second term of (4.22)."""
-    return expansion * warming
-
-
-def field_strain(expansion: float, inner: float, outer: float, inner_warming: float, outer_warming: float) -> float:
-    """Of both surfaces of a hollow cylinder whose temperature is linear between its radii inner and outer in m.
-
-    In plane stress each of them grows as the mean temperature over the cross-section says.
-    """
-    share = (2.0 * outer + inner) / (3.0 * (outer + inner))
-    return expansion * (inner_warming + share * (outer_warming - inner_warming))
-
-
 def shaft_rotation_strain(solid: Solid, omega: float, radius: float) -> float:
     """Of the surface of a solid shaft with a radius in m that turns with omega in rad/s."""
     return 0.25 * solid.density * (omega * radius) ** 2 * (1.0 - solid.poisson) / solid.modulus

@@ -5,12 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from frbcli.linear.stability import Stability, StabilityPoint, Threshold
 from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
-
-Values = NDArray[np.float64]
 
 ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode
 DOT, SMALL_DOT = 15.0, 6.0  # pt^2

@@ -9,12 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from frbcli.plot.style import BLUE, LEVEL_MAP, VERMILION, new_figure, styled
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint
-
-Values = NDArray[np.float64]
 
 KINDS = {"runup": ("onset", "onset of the whirl"), "stability": ("threshold", "threshold of stability")}
 MOST_TICKS = 12

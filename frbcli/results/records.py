@@ -12,11 +12,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frbcli.results.signals import Signal, pieces
-
-Values = NDArray[np.float64]
 
 COMMANDS = ("runup", "rundown")
 STATUSES = ("finished", "contact", "starved", "not-converged", "interrupted")

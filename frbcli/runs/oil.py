@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.film.cells.balances import CHANNELS_NET, ENDS_NET, INFLOW, OUTFLOW, SUPPLY_NET
+from frbcli.film.cells.balances import INFLOW, OUTFLOW
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.published.film import PublishedFilm
@@ -50,12 +50,6 @@ def displacement(system: System, state: State, film: int) -> tuple[float, float]
 def grid_angle(system: System, state: State, film: int, angle: float) -> float:
     """By which a film's grid has turned, rad; angle: of the rotor, rad."""
     return float(system.turning[film, GRID] @ np.concatenate([[angle], state.q[list(system.spins)]]))
-
-
-def net_flow(state: State, film: int) -> float:
-    """Oil that came in through openings, ends and coupled channels less what left, in units of R b C."""
-    passed = state.flows[PASSED, film]
-    return float(passed[SUPPLY_NET] - passed[ENDS_NET] + passed[CHANNELS_NET])
 
 
 def oil_passed(system: System, state: State) -> dict[str, float]:
