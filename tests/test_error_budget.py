@@ -140,7 +140,7 @@ def test_a_run_that_does_not_begin_on_fewer_cells(monkeypatch: pytest.MonkeyPatc
     def fails(*_: object) -> object:
         raise NotConverged("no")
 
-    monkeypatch.setattr(march, "make_stretches", fails)
+    monkeypatch.setattr(march, "make_segments", fails)
     assert on_fewer_cells(run, 1.0) is None
 
 

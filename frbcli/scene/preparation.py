@@ -14,6 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
 from frbcli.rotor.beam import ELEMENTS
 from frbcli.rotor.reduction import DENSE, MOST, RIGID
+from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE
 from frbcli.scene.films import film_places, turning_rings
@@ -60,6 +61,8 @@ def after_s(case: Case, plan: Plan, loop_s: float, samples: float) -> float:
     if plan.cells is not None:
         fine = plan.cells[0] * FINER, plan.cells[1] * FINER
         return found + AGAIN * loop_s + CELL_SAMPLES * films * (_steady_s(plan.cells) + _steady_s(fine))
+    if plan.form == GIVEN:
+        return found
     if plan.form == SOLUTIONS:  # one state in place of a table of thousands
         return found + SAMPLES * films * 1e-3 * _table_s(plan)
     axial, around = FINER * plan.mesh.axial, FINER * plan.mesh.circumferential
@@ -138,7 +141,7 @@ def _table_s(plan: Plan) -> float:
     if plan.form == SOLUTIONS:
         size = plan.mesh.circumferential / SOLUTION_MESH.circumferential
         return SOLUTIONS_s * size * along_factor(_half(plan.mesh)) / along_factor(_half(SOLUTION_MESH))
-    if plan.cells is not None or plan.theory == "short":
+    if plan.cells is not None or plan.theory == "short" or plan.form == GIVEN:
         return 0.0
     modes = MODES_s * plan.mesh.axial**3
     if plan.form == CHAINS:
