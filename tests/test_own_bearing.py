@@ -371,6 +371,14 @@ def test_a_ring_between_bearing_models_must_be_blocked() -> None:
     assert len(make_system(case, frbcli.make_plan(case)).films) == 2
 
 
+def test_a_case_that_was_read_before_its_model_is_told_to_be_read_again() -> None:
+    case = frbcli.load_case("rigid", ["film.theory=damper"])
+    with_more = (*CHOSEN.keys, frbcli.BearingKey("gain", 1.0))
+    frbcli.add_bearing(BearingModel("damper", "damper", chosen, keys=with_more))
+    with pytest.raises(InputError, match="the case was read before that was added"):
+        frbcli.make_plan(case)
+
+
 # --- models that are none ---
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
@@ -84,16 +85,22 @@ def _check_keys(model: BearingModel) -> None:
 
 
 def values_of(model: BearingModel, film: Any) -> tuple[float, ...]:
-    """The values of the keys of a model in a FilmModel; a choice as its number from 0, NaN for what is not given."""
+    """The values of the keys of a model in a FilmModel; a choice as its number from 0, NaN for what is not given.
+    Raises InputError for a FilmModel that was made before the model was added."""
     if not model.keys:
         return ()
-    given = getattr(film, attribute(model))
-    found = []
-    for key in model.keys:
-        value = getattr(given, key.name)
-        number = key.choices.index(value) if key.choices and value is not None else value
-        found.append(float("nan") if number is None else float(number))
-    return tuple(found)
+    try:
+        given = getattr(film, attribute(model))
+        return tuple(_number(key, getattr(given, key.name)) for key in model.keys)
+    except (AttributeError, ValueError):
+        problem = "has not the keys of the bearing model: the case was read before that was added."
+        raise InputError("case", (Fault(f"film.{model.name}", "", None, problem, "Read the case again."),)) from None
+
+
+def _number(key: Key, value: float | str | None) -> float:
+    if value is None:
+        return math.nan
+    return float(key.choices.index(str(value)) if key.choices else value)
 
 
 def __getattr__(name: str) -> Any:

@@ -84,7 +84,8 @@ def draw_test(found: KinematicTest, target: Path, terminal: Terminal) -> None:
 
     if all(result.loads is None for result in found.results):
         return
-    if found.test == "rotation" and all(result.field is None for result in found.results):  # of a bearing model
+    if found.test == "rotation" and all(result.field is None for result in found.results):
+        terminal.remark("No picture: a bearing model tells no pressures.")
         return
     draw(terminal, lambda: film_figure(found) if found.test == "rotation" else history_figure(found), target)
 

@@ -13,13 +13,14 @@ from types import FunctionType
 from typing import Any
 
 import numpy as np
-from numba import cfunc, njit, typeof, types
+from numba import cfunc, typeof, types
 from numba.core.errors import NumbaError
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
 from frbcli.film.bearing_model.film import MOTION, NUMBERS
 from frbcli.film.bearing_model.model import BearingModel, wrong
+from frbcli.film.jitted import jitted
 
 # Steps of differences. A one-sided one over h leaves h F'' / 2, a central one h^2 F''' / 6, and both lose round-off / h
 # of F: the least is near the square and the cube root of the precision, 2.2e-16. Displacements count over the gap that
@@ -57,14 +58,14 @@ def _checked(model: BearingModel, name: str, function: Any, record: Any, count: 
     takes = f"{name}(d_x, d_y, v_x, v_y, omega, bearing)"
     if not callable(function):
         raise wrong(model, name, "is no function.", f"Give {takes}, compiled by numba.njit.")
-    compiled = function if hasattr(function, "py_func") else _jitted(function)
+    compiled = function if hasattr(function, "py_func") else jitted(function)
     kind_of: Any = typeof
     given = (*[types.float64] * MOTION, kind_of(record(*[0.0] * len(record._fields))))
     try:
         compiled.compile(given)
         returned = compiled.overloads[given].signature.return_type
     except (NumbaError, RuntimeError, TypeError, NotImplementedError) as error:
-        remedy = f"Write {takes} with numbers and the functions of math, or compile it by numba.njit and mend it there."
+        remedy = f"Write {takes} of numbers, with the functions of math; see what numba.njit takes."
         raise wrong(model, name, f"cannot be compiled by numba: {_reason(error)}.", remedy) from error
     base: Any = types.BaseTuple
     found: tuple[Any, ...] = tuple(returned) if isinstance(returned, base) else ()
@@ -82,17 +83,6 @@ def _reason(error: BaseException) -> str:
     places = [line for line in told if line.startswith("File ")]
     first = next((line for line in told if not line.startswith("File ")), type(error).__name__)
     return " ".join([first, *places[-1:]]).rstrip(".:")
-
-
-def _jitted(function: Any) -> Any:
-    """A plain function as numba takes it, with every plain function that it calls."""
-    if not isinstance(function, FunctionType):
-        return function
-    known = function.__globals__
-    plain = {name for name in function.__code__.co_names if isinstance(known.get(name), FunctionType)}
-    names = {**known, **{name: _jitted(known[name]) for name in plain - {function.__name__}}}
-    made = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
-    return njit(error_model="numpy")(made)
 
 
 def _by_derivatives(central, d_x, d_y, v_x, v_y, omega, given, answer):  # type: ignore[no-untyped-def]
