@@ -40,6 +40,7 @@ from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
 from frbcli.film.rectangles.bearing import RectangularBearing, evaluate, make_film
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.film.rectangles.table import Mesh
+from frbcli.plot.signals import model as described
 from frbcli.runs import march
 from frbcli.scene.system import make_system
 
@@ -281,6 +282,24 @@ def test_a_journal_rests_under_a_load_where_it_does_in_the_film_of_the_program()
     assert found.loads.force == pytest.approx((0.0, 30.0), abs=1e-3)
 
 
+def elastic(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, bearing: Any) -> Any:  # noqa: ARG001
+    return -1e6 * d_x, -1e6 * d_y
+
+
+def elastic_slopes(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, bearing: Any) -> Any:  # noqa: ARG001
+    return -1e6, 0.0, 0.0, -1e6, 0.0, 0.0, 0.0, 0.0
+
+
+def test_a_model_without_damping_is_one() -> None:
+    frbcli.add_bearing(BearingModel("elastic", "elastic", elastic, elastic_slopes))
+    case = frbcli.load_case("rigid", ["film.theory=elastic"])
+    decisions = {decision.choice: decision for decision in frbcli.make_plan(case).decisions}
+    assert "derivatives by the model" in decisions["film"].reason
+    point = frbcli.stability(case, [50.0]).points[0]
+    assert point.films[0].stiffness == pytest.approx(np.diag([1e6, 1e6]))
+    assert abs(point.oscillating[0].imag) == pytest.approx(math.sqrt(2e6 / 6.1), rel=1e-6)
+
+
 def test_derivatives_of_a_model_are_taken_as_they_are() -> None:
     told = BearingModel("told", "told", spring, spring_slopes)
     differences = BearingModel("found", "found", spring)
@@ -489,9 +508,10 @@ def test_a_run_goes_on_with_its_model_alone(tmp_path: Path, monkeypatch: pytest.
 
 def test_a_run_is_read_and_drawn_without_its_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "run.h5"
-    frbcli.runup(frbcli.load_case("rigid", RUN), path)
+    assert described(frbcli.runup(frbcli.load_case("rigid", RUN), path)) == "short, pi film"
     frbcli.remove_bearing("short-pi")
     run = frbcli.read_run(path)
+    assert described(run) == "short-pi"
     assert run.versions["bearing_model"].startswith("short-pi, added from Python, not of this program")
     for words in (["waterfall", str(path)], ["plot", str(path)], ["plot", str(path), "--what", "summary"]):
         assert frb(words) == 0

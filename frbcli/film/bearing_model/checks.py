@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import itertools
 import math
-from dataclasses import astuple, replace
+from dataclasses import astuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.bearing_model.compiled import compiled_model
+from frbcli.film.bearing_model.compiled import CENTRAL, compiled_model
 from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
 from frbcli.film.rectangles.film_force import film_force
@@ -22,6 +22,7 @@ PLACES: tuple[Pair, ...] = ((0.0, 0.0), (0.1, 2.0), (0.5, -1.2), (0.9, -0.4), (0
 MOTIONS: tuple[Pair, ...] = ((0.0, 0.0), (0.2, -0.1), (-0.3, 0.5))
 COMPARED = PLACES[1:4]  # where derivatives are held against differences, off the centre
 WRONG = 1e-2  # of the largest derivative, by which one that a model tells may be off
+NOISE = 1e-5  # of the force over the unit of a motion: what derivatives by differences cannot tell
 ROUND_OFF, TINY = 1e-13, float(np.finfo(float).tiny)  # of the largest force; of a size that is divided by
 SLOW = 60.0  # rad/s: size of the velocities of a journal that hardly turns
 
@@ -39,7 +40,7 @@ def problem_of(model: BearingModel, film: BearingModelFilm, omega: float) -> str
         if not np.all(np.isfinite(film_force(film._replace(central=1), *state))):
             what = "force" if model.derivatives is None else "force or derivative"
             return f"has no finite {what} at {_told(film, state)}"
-    return "" if model.derivatives is None else _wrong_derivatives(model, film, omega)
+    return "" if model.derivatives is None else _wrong_derivatives(film, omega)
 
 
 def fingerprint(film: BearingModelFilm, omega: float) -> str:
@@ -52,32 +53,41 @@ def fingerprint(film: BearingModelFilm, omega: float) -> str:
     return hashlib.sha256(" ".join(told).encode()).hexdigest()[:16]
 
 
-def _wrong_derivatives(model: BearingModel, film: BearingModelFilm, omega: float) -> str:
+def _wrong_derivatives(film: BearingModelFilm, omega: float) -> str:
     """At every state that is compared: a force that has a corner at one of them is not wrong."""
-    other = film._replace(address=compiled_model(replace(model, derivatives=None)).address, central=1)
     told = ""
     for place, motion in zip(COMPARED, MOTIONS, strict=True):
         state = _state(place, motion, omega)
-        given, expected = _derivatives(film, state), _derivatives(other, state)
-        off = np.abs(given - expected) / np.max(np.abs(expected), axis=1, keepdims=True)
+        units = np.array([[1.0], [max(abs(omega), SLOW)]])  # of displacements over the clearance, of their rates
+        force = float(np.hypot(*film_force(film, *state)[:2]))
+        given, expected = np.array(film_force(film, *state)[2:]).reshape(2, 4), _differences(film, state, units)
+        size = np.maximum(np.max(np.abs(expected), axis=1, keepdims=True), NOISE * force / units)
+        off = np.abs(given - expected) / np.maximum(size, TINY)
         if np.max(off) <= WRONG:
             return ""
         by, row = np.unravel_index(int(np.argmax(off)), off.shape)
-        name = f"dF_{'xxyy'[row]} / d{'dv'[by]}_{'xyxy'[row]}"
-        told = f"tells {name} = {given[by, row]:.6g} at {_told(film, state)}, where differences of its force are "
-        told += f"{expected[by, row]:.6g}"
+        name, c = f"dF_{'xxyy'[row]} / d{'dv'[by]}_{'xyxy'[row]}", film.clearance
+        told = f"tells {name} = {given[by, row] / c:.6g} at {_told(film, state)}, where differences of its force are "
+        told += f"{expected[by, row] / c:.6g}"
     return told
+
+
+def _differences(film: BearingModelFilm, state: State, units: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(2, 4) derivatives by displacement and by velocity as film_force has them, xx, xy, yx, yy, by central
+    differences. units: (2, 1) of the two."""
+    found = np.empty((2, 4))
+    for by in range(4):
+        step = np.zeros(5)
+        step[by] = CENTRAL * units[by // 2, 0] * (1.0 - math.hypot(*state[:2]) if by < 2 else 1.0)
+        above, below = (np.array(film_force(film, *(np.array(state) + side * step))[:2]) for side in (1.0, -1.0))
+        found[by // 2, by % 2 :: 2] = (above - below) / (2.0 * step[by])
+    return found
 
 
 def _state(place: Pair, motion: Pair, omega: float) -> State:
     """Arguments of film_force for one of PLACES and one of MOTIONS, whose velocities are those of a whirl."""
     (e, angle), rate = place, max(abs(omega), SLOW)
     return e * math.cos(angle), e * math.sin(angle), rate * motion[0], rate * motion[1], omega
-
-
-def _derivatives(film: BearingModelFilm, state: State) -> NDArray[np.float64]:
-    """(2, 4) by displacement in N/m and by velocity in N s/m: xx, xy, yx, yy."""
-    return np.array(film_force(film, *state)[2:]).reshape(2, 4) / film.clearance
 
 
 def _told(film: BearingModelFilm, state: State) -> str:
