@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from frbcli.compiled import compiled
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
 NUMBERS = 10  # force (x, y), its derivatives by displacement and by velocity (xx, xy, yx, yy each)
@@ -52,7 +53,7 @@ def _call_model(typingctx, address, central, d_x, d_y, v_x, v_y, omega, paramete
 call_model: Any = intrinsic(_call_model)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def model_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     """film_force of a bearing model: d over the clearance, v in 1/s, as everywhere in the loop."""
     c = film.clearance

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import cfunc, njit, types
+from numba import cfunc, types
 from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
@@ -150,4 +150,4 @@ def _for_law(law: type[Law], template: Any, signature: Any, shared: dict[str, An
     return cfunc(signature, cache=shipped, error_model="numpy")(function)
 
 
-wright_omega = njit(cache=True, error_model="numpy")(penalty.wright_omega)
+wright_omega = compiled()(penalty.wright_omega)
