@@ -18,7 +18,9 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.case.load import load_case as load_case
     from frbcli.case.load import load_case_text as load_case_text
     from frbcli.case.schema import Case as Case
+    from frbcli.case.schema import add_bearing as add_bearing
     from frbcli.case.schema import add_law as add_law
+    from frbcli.case.schema import remove_bearing as remove_bearing
     from frbcli.case.schema import remove_law as remove_law
     from frbcli.case.shipped import shipped_cases as shipped_cases
     from frbcli.errors import Fault as Fault
@@ -44,9 +46,12 @@ _PUBLIC = {  # module, or module:attribute of another name
     "InputError": "frbcli.errors",
     "NotConverged": "frbcli.errors",
     "RunFileError": "frbcli.errors",
+    "BearingKey": "frbcli.film.cavitation.law:Key",
+    "BearingModel": "frbcli.film.bearing_model.model",
     "CavitationLaw": "frbcli.film.cavitation.law:Law",
     "CavitationKey": "frbcli.film.cavitation.law:Key",
     "accuracy": "frbcli.studies.accuracy",
+    "add_bearing": "frbcli.case.schema",
     "add_law": "frbcli.case.schema",
     "case_from_dict": "frbcli.case.load",
     "compare": "frbcli.studies.compare",
@@ -57,6 +62,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "natural_modes": "frbcli.linear.modes",
     "order_track": "frbcli.analysis.order_tracking",
     "read_run": "frbcli.results.store",
+    "remove_bearing": "frbcli.case.schema",
     "remove_law": "frbcli.case.schema",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",

@@ -40,11 +40,11 @@ class History:
 
 @dataclass(frozen=True)
 class Course:
-    """What a moved film went through: its history; field and loads at the moment of the largest force, and the
-    estimated relative error of that force; cost; why it ended early, or nothing."""
+    """What a moved film went through: its history; field (None of a bearing model) and loads at the moment of the
+    largest force, and the estimated relative error of that force; cost; why it ended early, or nothing."""
 
     history: History
-    field: FilmField
+    field: FilmField | None
     loads: Loads
     force_error: float
     unknowns: int

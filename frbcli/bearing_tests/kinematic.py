@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frbcli.bearing_tests.bearing_model import model_course, model_moment
 from frbcli.bearing_tests.history import History, film_course
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
 from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan, with_model
@@ -31,12 +32,13 @@ FEWEST_TIMES = 8
 
 @dataclass(frozen=True)
 class KinematicResult:
-    """What one cavitation model says. status: "ok" | "not-converged", then problem says why.
+    """What one cavitation model says, or the bearing model, then cavitation is empty.
 
-    displacement: (2,) over the clearance; loads, field: None if there is no solution; force_error: estimated, relative
-    to the force, NaN if not known; history: None for a rotation. Of a squeeze or a whirl, displacement, loads and field
-    are those of the moment of the largest force, and so is the error; with a law that keeps oil it is the worst of the
-    largest forces of the periods.
+    status: "ok" | "not-converged", then problem says why. displacement: (2,) over the clearance; loads, field: None if
+    there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error:
+    estimated, relative to the force, NaN if not known; history: None for a rotation. Of a squeeze or a whirl,
+    displacement, loads and field are those of the moment of the largest force, and so is the error; with a law that
+    keeps oil it is the worst of the largest forces of the periods.
     """
 
     cavitation: str
@@ -52,6 +54,16 @@ class KinematicResult:
     newton_iterations: int
     plan: KinematicPlan
     problem: str = ""
+
+    @property
+    def theory(self) -> str:
+        """ "finite", or the name of a bearing model."""
+        return "finite" if self.plan.model is None else self.plan.model.name
+
+    @property
+    def name(self) -> str:
+        """Of the cavitation model or bearing model."""
+        return self.cavitation or self.theory
 
 
 @dataclass(frozen=True)
@@ -95,7 +107,8 @@ def whirl(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
 def _test(
     case: Case, cavitations: Sequence[str], test: str, solve: Callable[[Case, KinematicPlan], KinematicResult]
 ) -> KinematicTest:
-    names = dict.fromkeys(cavitations or (case.film.cavitation,))
+    own = None if case.film.bearing_model else case.film.cavitation
+    names: dict[str | None, None] = dict.fromkeys(cavitations or (own,))
     plans = [kinematic_plan(case, name, test) for name in names]
     results: list[KinematicResult] = []
     try:
@@ -128,7 +141,9 @@ def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
             velocity = (rates[0], rates[1])
         lasting = Motion(displacement, velocity, omega)
         with advised(with_model(case, plan.cavitation)):
-            if plan.published:
+            if plan.model is not None:
+                moment = model_moment(case, plan, lasting)
+            elif plan.published:
                 moment = published_moment(case, plan, lasting, start)
             else:
                 moment = film_moment(case, plan, lasting, plan.cells)
@@ -162,7 +177,7 @@ def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
     times = np.linspace(0.0, motion.periods / motion.frequency, count + 1)
     try:
         with advised(with_model(case, plan.cavitation)):
-            course = film_course(case, plan, path, times)
+            course = (model_course if plan.model is not None else film_course)(case, plan, path, times)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
     worst = int(np.argmax(np.hypot(*course.history.force.T)))
@@ -199,8 +214,13 @@ def _sommerfeld_number(plan: KinematicPlan, loads: Loads, omega: float) -> float
     return (section.clearance / section.radius) ** 2 * math.hypot(*loads.force) / scale if scale > 0.0 else math.nan
 
 
+def _head(result: KinematicResult) -> dict[str, Any]:
+    model = {"cavitation": result.cavitation} if result.cavitation else {"theory": result.theory}
+    return {**model, "status": result.status}
+
+
 def _row(result: KinematicResult) -> dict[str, Any]:
-    row: dict[str, Any] = {"cavitation": result.cavitation, "status": result.status}
+    row: dict[str, Any] = _head(result)
     row |= {"displacement_x": result.displacement[0], "displacement_y": result.displacement[1]}
     loads = result.loads
     if loads is not None:
@@ -224,11 +244,10 @@ def _table(result: KinematicResult) -> pd.DataFrame:
 
     history = result.history
     if history is None:
-        return pd.DataFrame({"cavitation": [result.cavitation], "status": [result.status]})
+        return pd.DataFrame([_head(result)])
     return pd.DataFrame(
         {
-            "cavitation": result.cavitation,
-            "status": result.status,
+            **_head(result),
             "time_s": history.time_s,
             "displacement_x": history.displacement[:, 0],
             "displacement_y": history.displacement[:, 1],

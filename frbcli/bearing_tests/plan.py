@@ -9,11 +9,13 @@ from frbcli.bearing_tests.faults import bearing_faults, motion_faults
 from frbcli.case.bearing import Bores, SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.section_faults import section_faults
+from frbcli.scene.bearing_models import chosen_model, model_decisions, model_faults
 from frbcli.scene.films import make_law
 from frbcli.scene.plan import Decision
 from frbcli.scene.section import film_rectangle, film_section
@@ -57,6 +59,7 @@ class KinematicPlan:
     decisions: tuple[Decision, ...]
     turning: float = 0.0
     ramp: float = 0.0
+    model: BearingModel | None = None  # the bearing model that tells the forces; cavitation is empty then
     published: bool = False  # whether the two-phase model is in its published form, on quadratic elements
 
     @property
@@ -67,12 +70,12 @@ class KinematicPlan:
     @property
     def remembers(self) -> bool:
         """Whether the film has a state of its own."""
-        return self.law.keeps_oil
+        return self.model is None and self.law.keeps_oil
 
     @property
     def modal(self) -> bool:
         """Whether the pressure is that of the modal film."""
-        return self.rectangle is not None and self.law.closed
+        return self.model is None and self.rectangle is not None and self.law.closed
 
 
 def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotation") -> KinematicPlan:
@@ -80,6 +83,8 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
 
     Raises InputError naming everything that the case lacks for it or that this version does not model.
     """
+    if case.film.bearing_model:
+        return _model_plan(case, cavitation or "", test)
     cavitation = cavitation or case.film.cavitation
     _refuse(case, cavitation, test)
     bearing = case.bearings[0]
@@ -121,7 +126,32 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
         decisions.append(Decision("frame", "of the journal", "the bores turn with it and stand still there"))
     ramp = getattr(bearing.supply, "ramp", 0.0)
     return KinematicPlan(
-        test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning, ramp, published
+        test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning, ramp,
+        published=published,
+    )  # fmt: skip
+
+
+def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
+    """Of a bearing model. Raises as kinematic_plan."""
+    faults = [*motion_faults(case.motion, test), *bearing_faults(case, test, False)]
+    if cavitation:
+        problem = f"has no effect on film.theory = {case.film.theory}, a bearing model."
+        faults.append(Fault("--cavitation", cavitation, None, problem, "Leave it out."))
+    motion = case.motion
+    rate = TWO_PI * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
+    faults += model_faults(case, rate)
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))
+    bearing, model = case.bearings[0], chosen_model(case)
+    assert isinstance(bearing, SingleFilmBearing)
+    assert model is not None
+    section = film_section(case, bearing)
+    decisions = [Decision(*decided) for decided in model_decisions(model)]
+    if test != "rotation":
+        decisions.append(Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"))
+    rectangle = film_rectangle(bearing, section)
+    return KinematicPlan(
+        test, "", section, rectangle, (0, 0), STEPS_PER_PERIOD, rate, tuple(decisions), model=model
     )
 
 

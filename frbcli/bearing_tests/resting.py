@@ -9,8 +9,9 @@ from contextlib import suppress
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.bearing_tests.bearing_model import model_forces
 from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
-from frbcli.bearing_tests.steady_film import film_force
+from frbcli.bearing_tests.steady_film import film_force as solved_force
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.plain.film import Motion
@@ -35,7 +36,7 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
     Sought with few cells first, then with those of the plan. Raises NotConverged if no start leads to one, or
     if the film cannot carry anything.
     """
-    if plan.law.empties and no_inflow(plan.section):
+    if plan.model is None and plan.law.empties and no_inflow(plan.section):
         cavity = plan.section.cavitation_pressure / BAR
         raise NotConverged(
             f"no resting position under {load:g} N: in the long run {plan.law.label}'s film carries 0 N, at any "
@@ -45,7 +46,7 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
         )
     target = np.array([0.0, load])
     position: Array | None = None
-    if plan.rectangle is not None and not plan.modal:
+    if plan.model is None and plan.rectangle is not None and not plan.modal:
         position = resting_displacement(case, kinematic_plan(case, "half-sommerfeld"), load, omega)
     starts = [] if position is None else [position]
     side = math.copysign(1.0, omega)  # the journal gives way in the sense of rotation
@@ -53,7 +54,8 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
     problems = []
     for start in starts:
         try:
-            coarse = start if plan.modal else _newton(case, plan, target, omega, start, COARSE_CELLS)
+            without_cells = plan.modal or plan.model is not None
+            coarse = start if without_cells else _newton(case, plan, target, omega, start, COARSE_CELLS)
             return _newton(case, plan, target, omega, coarse, plan.cells)
         except NotConverged as problem:
             problems.append(str(problem))
@@ -77,6 +79,13 @@ def _capacity(case: Case, plan: KinematicPlan, omega: float) -> str:
         return f"There is no steady film at the eccentricities {', '.join(f'{e:g}' for e in sorted(STARTS))}."
     highest = max(forces, key=forces.__getitem__)
     return f"The largest film force found is {forces[highest]:.3g} N, at an eccentricity of {highest:g}."
+
+
+def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> Array:
+    """(2,) force in N on the journal, told by a bearing model or solved on cells (around, along)."""
+    if plan.model is not None:
+        return np.asarray(model_forces(case, plan, [motion])[0])
+    return solved_force(case, plan, motion, cells)
 
 
 def _newton(

@@ -35,10 +35,10 @@ class FilmField:
 
 @dataclass(frozen=True)
 class FilmMoment:
-    """A film at one moment: its field, the loads on the whole bearing, the estimated relative error of the force, and
-    what it took."""
+    """A film at one moment: its field, None of a bearing model, the loads on the whole bearing, the estimated relative
+    error of the force, and what it took."""
 
-    field: FilmField
+    field: FilmField | None
     loads: Loads
     force_error: float
     unknowns: int

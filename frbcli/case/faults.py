@@ -29,6 +29,10 @@ _FORMS = {
 }
 
 
+# Keys that take names which are added from Python, and the functions that add them.
+OWN: dict[Path, str] = {("film", "theory"): "frbcli.add_bearing", ("film", "cavitation"): "frbcli.add_law"}
+
+
 @dataclass(frozen=True)
 class _Place:
     """Where an objection belongs: the model that owns the key, and the key's field if there is one."""
@@ -103,7 +107,10 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
         problem = "is missing." if kind == "union_tag_not_found" else "is not known here."
         return Breach((*path, "kind"), problem, _one_of(str(context.get("tag", "")), _kinds(loc)))
     if kind == "literal_error":
-        return Breach(path, "is not known here.", _one_of(str(context["input"]), _choices(_place(loc).field)))
+        remedy = _one_of(str(context["input"]), _choices(_place(loc).field))
+        if path in OWN:
+            remedy += f" One of your own is added in this process before the case is read: {OWN[path]}."
+        return Breach(path, "is not known here.", remedy)
     field = _place(loc).field
     if kind == "tuple_type" and field is not None and _parts(field.annotation, Model):
         kind = "model_type"

@@ -14,7 +14,7 @@ from frbcli.case.schema import ATMOSPHERE, Vogel
 from frbcli.case.tables import Breach, number, table, tables
 from frbcli.units import NUMBER, display
 
-THICKEST_MACHINED = 0.1  # clearance of a lobe over the radius
+THICKEST_MACHINED = 0.05  # clearance of a lobe over the radius
 VISCOSITY_RANGE = (1e-6, 1e4)
 
 

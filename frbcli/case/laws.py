@@ -57,7 +57,7 @@ def __getattr__(name: str) -> Any:
 
 @cache
 def _table(law: Any) -> type[LawTable]:
-    entries: dict[str, Any] = {key.name: _entry(key) for key in law.keys}
+    entries = declared(law.keys)
     return create_model(law.__name__, __base__=LawTable, __doc__=law.meaning, __module__=__name__, **entries)
 
 
@@ -66,6 +66,11 @@ def _table_field(law: type[Law]) -> FieldInfo:
     model = _table(its)
     alias = None if attribute(law) == law.name else law.name
     return FieldInfo.from_annotated_attribute(model, Field(default=model(), alias=alias))
+
+
+def declared(keys: Iterable[Key]) -> dict[str, Any]:
+    """Type and default of each key by its name, as a model takes them."""
+    return {key.name: _entry(key) for key in keys}
 
 
 def _entry(key: Key) -> Any:

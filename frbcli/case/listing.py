@@ -12,6 +12,7 @@ from frbcli.case.model import Model
 from frbcli.case.quantities import unit_of
 from frbcli.case.schema import Case
 from frbcli.case.toml import parse
+from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.cavitation import table
 from frbcli.units import NUMBER, display, readable
 
@@ -60,7 +61,9 @@ def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value
 
 
 def _is_idle(key: str, case: Case) -> bool:
-    """Whether a key belongs to a cavitation model that the case does not use."""
+    """Whether a key belongs to a cavitation or bearing model that the case does not use."""
     section, _, rest = key.partition(".")
     model = rest.partition(".")[0]
+    if section == "film" and model in (bearing.name for bearing in bearing_models.models()):
+        return model != case.film.theory
     return section == "film" and model in table.names() and model not in case.cavitations

@@ -39,7 +39,11 @@ from frbcli.case.quantities import (
 )
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
 from frbcli.case.text import as_text
+from frbcli.case.theories import SHIPPED as THEORIES
+from frbcli.case.theories import Theory, adopt_models, check_model
 from frbcli.errors import Fault, InputError
+from frbcli.film.bearing_model import table as bearing_models
+from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
@@ -53,7 +57,6 @@ STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
 
 Confirmation = Literal["surface-speed", "gap-growth", "clearance"]
-Theory = Literal["auto", "short", "finite"]
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
 
 
@@ -100,7 +103,9 @@ class Oil(Model):
 class FilmModel(Model):
     """How the films are computed."""
 
-    theory: Theory = "auto"
+    theory: Theory = Field(
+        default="auto", description="of the Reynolds equation; or the name of a bearing model added from Python"
+    )
     cavitation: Cavitation = "half-sommerfeld"
     cavitation_factor: Literal["global", "local", "none"] = Field(
         default="global", description="how missing oil lowers the torque: by its mean (4.46), place by place, or not"
@@ -119,6 +124,11 @@ class FilmModel(Model):
     if TYPE_CHECKING:  # the tables of the laws, which these declare
 
         def __getattr__(self, name: str) -> Any: ...
+
+    @property
+    def bearing_model(self) -> str:
+        """The name of the bearing model that `theory` chooses, "" for a theory of the program."""
+        return "" if self.theory in THEORIES else self.theory
 
     def given(self, cavitation: str) -> Any:
         """The values of the table [film.NAME] of a cavitation law by attribute, None if the law has no keys."""
@@ -298,8 +308,10 @@ def add_law(law: type[Law]) -> None:
     """Let film.cavitation take a law of one's own in this process, and [film.NAME] its keys; see CavitationLaw.
 
     A law of the same name that was added before is replaced. Raises ValueError if it is none, or has the name of a
-    shipped law.
+    shipped law or of a bearing model.
     """
+    if any(model.name == getattr(law, "name", None) for model in bearing_models.models()):
+        raise ValueError(f"{law.__name__} has the name of a bearing model, {law.name}; choose another one")
     table.add(law)
     _adopt_laws()
 
@@ -314,6 +326,28 @@ def _adopt_laws() -> None:
     adopt(FilmModel, (RingFilm,))
     for holder in (FloatingRingBearing, Case):
         holder.model_rebuild(force=True)
+
+
+def add_bearing(model: BearingModel) -> None:
+    """Let film.theory take a bearing model of one's own in this process, and [film.NAME] its keys; see BearingModel.
+
+    Its functions are compiled here. A model of the same name that was added before is replaced. Raises InputError if it
+    is none, or numba cannot compile it.
+    """
+    check_model(model, FilmModel)
+    bearing_models.add(model)
+    _adopt_bearings()
+
+
+def remove_bearing(name: str) -> None:
+    """Take a bearing model away that add_bearing has added. Raises KeyError for any other."""
+    bearing_models.remove(name)
+    _adopt_bearings()
+
+
+def _adopt_bearings() -> None:
+    adopt_models(FilmModel)
+    Case.model_rebuild(force=True)
 
 
 def json_schema() -> dict[str, Any]:

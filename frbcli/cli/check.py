@@ -45,7 +45,7 @@ def command(case: Case, terminal: Terminal) -> None:
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
     test = "squeeze" if case.motion is not None and case.motion.frequency else "rotation"
     # after the values, which help to see why a plan is refused
-    expected: dict[str, float | int] | None = None
+    expected: dict[str, float | int | None] | None = None
     lines: tuple[Decision, ...] = ()
     if kinematic:
         decisions = kinematic_plan(case, test=test).decisions
@@ -100,7 +100,8 @@ def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, .
 
     solves = f"{cost.steps} steps, {cost.film_solves} film solves, on the machine of docs/accuracy.md"
     beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
-    parts = f"of the eccentricities before a whirl grows; film forces {error.film_force:.1g}, relative"
+    forces = "as the bearing model has them" if error.film_force is None else f"{error.film_force:.1g}, relative"
+    parts = f"of the eccentricities before a whirl grows; film forces {forces}"
     return (
         Decision("expected error", f"{error.eccentricity:.1g}", parts),
         Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),

@@ -102,6 +102,11 @@ def _kinematic(
     if set(theory) - {"finite"}:
         problem = f"is not for a {test}, which solves the whole film."
         raise InputError(case.name, (Fault("--theory", ",".join(theory), None, problem, "Leave it out."),))
+    if case.film.bearing_model:
+        problem = f"is one model in a {test}: there is nothing to compare it with."
+        raise InputError(
+            case.name, (Fault("film.theory", case.film.bearing_model, None, problem, f"Call `frb {test}`."),)
+        )
     models = cavitation or names(law for law in laws() if law.cavitates)
     return run_test(case, test, models, target, picture, terminal, compared=True) or 0
 

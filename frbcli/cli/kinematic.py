@@ -86,6 +86,9 @@ def draw_test(found: KinematicTest, target: Path, terminal: Terminal) -> None:
 
     if all(result.loads is None for result in found.results):
         return
+    if found.test == "rotation" and all(result.field is None for result in found.results):
+        terminal.remark("No picture: a bearing model tells no pressures.")
+        return
     draw(terminal, lambda: film_figure(found) if found.test == "rotation" else history_figure(found), target)
 
 
@@ -99,7 +102,7 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
         terminal.result(LARGEST)
     for result in found.results:
         if result.problem:
-            terminal.result(f"{result.cavitation}: {result.status}: {result.problem}")
+            terminal.result(f"{result.name}: {result.status}: {result.problem}")
     if not found.complete:
         terminal.result("Interrupted: the other models were not computed.")
 
@@ -107,22 +110,27 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
 def _forces(result: KinematicResult) -> tuple[str, ...]:
     loads = result.loads
     if loads is None:
-        return (result.cavitation, "none", *[""] * (len(FORCES) - 3), f"{result.cpu_s:.1f}")
+        return (result.name, "none", *[""] * (len(FORCES) - 3), f"{result.cpu_s:.1f}")
     x, y = loads.force
     size = math.hypot(x, y)
     error = result.force_error
     return (
-        result.cavitation,
+        result.name,
         f"{math.hypot(*result.displacement):.3f}",
         _number(x, size),
         _number(y, size),
         _number(size, size),
-        "-" if math.isnan(result.sommerfeld_number) else f"{result.sommerfeld_number:.3g}",
+        _told(result.sommerfeld_number, ".3g"),
         f"{math.degrees(math.atan2(y, x)):.0f}°",
-        f"{loads.p_max / BAR:.4g}",
-        "-" if math.isnan(error) else f"{error:.0e}".replace("e-0", "e-"),
+        _told(loads.p_max / BAR, ".4g"),
+        _told(error, ".0e").replace("e-0", "e-"),
         f"{result.cpu_s:.1f}",
     )
+
+
+def _told(value: float, form: str) -> str:
+    """A number in a form; "-" for one that nobody knows."""
+    return "-" if math.isnan(value) else format(value, form)
 
 
 def _number(value: float, size: float) -> str:
@@ -134,15 +142,15 @@ def _number(value: float, size: float) -> str:
 def _oil(result: KinematicResult) -> tuple[str, ...]:
     loads = result.loads
     if loads is None:
-        return (result.cavitation, *[""] * (len(OIL) - 1))
+        return (result.name, *[""] * (len(OIL) - 1))
     return (
-        result.cavitation,
-        f"{loads.p_min / BAR:.4g}",
-        f"{loads.torque.journal:.4g}",
-        f"{loads.oil_fraction:.3f}",
-        f"{loads.oil.in_m3_s * 1e9:.4g}",
-        f"{loads.oil.out_m3_s * 1e9:.4g}",
-        f"{loads.oil.defect_relative:.0e}",
+        result.name,
+        _told(loads.p_min / BAR, ".4g"),
+        _told(loads.torque.journal, ".4g"),
+        _told(loads.oil_fraction, ".3f"),
+        _told(loads.oil.in_m3_s * 1e9, ".4g"),
+        _told(loads.oil.out_m3_s * 1e9, ".4g"),
+        _told(loads.oil.defect_relative, ".0e"),
     )
 
 
@@ -151,8 +159,8 @@ def result_document(result: KinematicResult) -> dict[str, Any]:
     loads, history = result.loads, result.history
     oil = None if loads is None else loads.oil
     document: dict[str, Any] = {
-        "cavitation": result.cavitation,
-        "theory": "finite",
+        "cavitation": result.cavitation or None,
+        "theory": result.theory,
         "status": result.status,
         "displacement": result.displacement,
         "force_N": None if loads is None else loads.force,

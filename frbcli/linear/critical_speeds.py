@@ -2,7 +2,7 @@
 
 A mode of the rotor in its films whose natural frequency equals the rotor speed. The films are half-Sommerfeld ones,
 full wherever they carry: a film that keeps its oil has no stiffness of its own, and one that starves holds the journal
-in other ways from moment to moment.
+in other ways from moment to moment. A bearing model is taken as it is.
 """
 
 from __future__ import annotations
@@ -35,8 +35,10 @@ def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
     floating rings, whose films whirl from low speeds on, and where no resting position is found."""
     if rings(case):
         return None
-    film = FilmModel(cavitation="half-sommerfeld", theory=case.film.theory)
-    full = case.model_copy(update={"film": film})
+    full = case
+    if not case.film.bearing_model:
+        film = FilmModel(cavitation="half-sommerfeld", theory=case.film.theory)
+        full = case.model_copy(update={"film": film})
     top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))
     try:
         system = make_system(full, make_plan(full))

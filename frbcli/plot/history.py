@@ -13,9 +13,11 @@ HEIGHT = 5.4
 
 
 def history_figure(found: KinematicTest) -> Figure:
-    """F_y of a squeeze, the pressure at the probe of a whirl, over time for all models; below, the gap at phi = pi."""
+    """F_y of a squeeze and of a bearing model, the pressure at the probe of another whirl, over time for all models;
+    below, the gap at phi = pi."""
     motion = found.case.motion
     assert motion is not None
+    pressures = found.test == "whirl" and all(result.plan.model is None for result in found.results)
     with styled():
         words = f"{found.test} with {motion.frequency:g} Hz, eccentricity {motion.eccentricity:g}"
         if motion.speed:
@@ -26,13 +28,15 @@ def history_figure(found: KinematicTest) -> Figure:
             history = result.history
             if history is None:
                 continue
-            values = history.force[:, 1] if found.test == "squeeze" else history.probe_pressure / BAR
-            label = label_of(result.cavitation) + ("" if result.status == "ok" else ", not converged")
+            values = history.probe_pressure / BAR if pressures else history.force[:, 1]
+            model = result.plan.model
+            label = label_of(result.cavitation) if model is None else model.label
+            label += "" if result.status == "ok" else ", not converged"
             colour, line = COLOURS[number % len(COLOURS)], LINES[number % len(LINES)]
             above.plot(history.time_s, values, color=colour, linestyle=line, label=label)
             below.plot(history.time_s, history.gap_ratio, color=GREY)
-        squeezed = found.test == "squeeze"
-        above.set_ylabel("vertical force on the journal in N" if squeezed else "pressure at phi = 180°, z = B/4 in bar")
+        force = "vertical force on the journal in N"
+        above.set_ylabel("pressure at phi = 180°, z = B/4 in bar" if pressures else force)
         below.set_ylabel("gap H at phi = 180°")
         below.set_ylim(bottom=0.0)
         below.set_xlabel("time in s")

@@ -12,7 +12,9 @@ from frbcli.analysis.events import find_events
 from frbcli.analysis.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, joined, located, points
 from frbcli.case.load import LARGEST_FILE
+from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.toml import TomlFault, parse
+from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.envelope import extremes
 from frbcli.plot.style import plain
@@ -93,6 +95,8 @@ def model(run: Run) -> str:
     cavitation = next(iter(cavitation), "") if isinstance(cavitation, dict) else cavitation
     if not isinstance(cavitation, str) or not _MODEL.fullmatch(cavitation):
         cavitation = ""
+    if isinstance(theory, str) and theory not in THEORIES and _MODEL.fullmatch(theory):
+        return bearing_label(theory)
     words = [label_of(cavitation)]
     if theory in ("short", "finite"):
         words.append(f"{theory} bearing")

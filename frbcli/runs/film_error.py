@@ -19,6 +19,7 @@ from frbcli.film.rectangles.bearing import evaluate
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.runs.control import control_of
+from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.plan import Plan
 from frbcli.scene.published import run_film
@@ -72,6 +73,8 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     theory this is the error of the theory itself. In contact it is that of the film in the gap that is kept. Films with
     oil of their own are compared in states in which it has settled; where it does not settle, they are left out.
     """
+    if plan.form == GIVEN:  # a bearing model is what it is: nothing finer is there
+        return FilmErrors(*np.zeros((3, 0)))
     if isinstance(system.films, PublishedFilm):
         forces = _published_forces(system.films, case)
     elif plan.cells is not None:

@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
+from frbcli.scene.bearing_models import model_record
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
 
@@ -45,7 +46,8 @@ def header(
         case_text=case.source_text,
         units=units,
         versions={PROGRAM: _version(PROGRAM), "python": platform.python_version()}
-        | {package: _version(package) for package in PACKAGES},
+        | {package: _version(package) for package in PACKAGES}
+        | model_record(case),
         references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
         | {f"{CLEARANCE_STEP}_{number}_s": segment.start for number, segment in enumerate(segments[1:], start=1)}

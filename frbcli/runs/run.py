@@ -21,6 +21,7 @@ from frbcli.runs.header import header
 from frbcli.runs.interrupt import held_back
 from frbcli.runs.march import March, Progress
 from frbcli.runs.restored import WrongCheckpoint
+from frbcli.scene.bearing_models import RECORD, model_record
 from frbcli.scene.cost import ExpectedCost, expected_cost
 from frbcli.scene.limits import require_affordable
 from frbcli.scene.plan import Plan, make_plan
@@ -188,6 +189,9 @@ def earlier_run(command: str, case: Case, path: Path) -> Run | None:
         problem = f"holds a {run.command} of another case ({name}) or of this one with other keys."
         remedy = "Give the case and the --set of that run, or another --output."
         raise _refuse(path, "--resume", problem, remedy)
+    if run.versions.get(RECORD) != model_record(case).get(RECORD):
+        problem = f"was made with another bearing model of the name {case.film.theory} than this process has."
+        raise _refuse(path, "--resume", problem, "Add the model of that run, or give another --output.")
     if run.status != "interrupted" and (missing := untold(run.cost, run.error)):
         raise refuse(path, f"does not tell its {missing}.", "Remove it, or give another --output.")
     return run

@@ -21,6 +21,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.chain import MODES as CHAIN_MODES
 from frbcli.film.rectangles.table import Mesh
 from frbcli.rotor.excitation import Array, SpeedProfile
+from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.films import film_places, turning_rings
@@ -34,12 +35,12 @@ ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step t
 # By form of the film. SOLVE_us: of a solve; ITERATIONS: solves of a stage; CROWDED: steps over the fewest allowed, as a
 # film whose whirl is hard takes more.
 SOLVE_us = {CLOSED_FORM: 0.5, CLIPPED: 14.0, TABLE: 0.5, FIELDS: 14.0, CHAINS: 20.0, CELLS: 36.0, SOLUTIONS: 0.8,
-            PUBLISHED: 1300.0}  # fmt: skip
+            PUBLISHED: 1300.0, GIVEN: 1.0}  # fmt: skip
 ITERATIONS = {CLOSED_FORM: 1.6, CLIPPED: 2.4, TABLE: 1.6, FIELDS: 2.4, CHAINS: 2.2, CELLS: 2.6, SOLUTIONS: 1.3,
-              PUBLISHED: 4.0}  # fmt: skip
+              PUBLISHED: 4.0, GIVEN: 1.6}  # fmt: skip
 RING_ITERATIONS = 3.6  # of a film with cells between a ring and something else
 CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.15, CELLS: 2.0, SOLUTIONS: 1.05,
-           PUBLISHED: 1.5}  # fmt: skip
+           PUBLISHED: 1.5, GIVEN: 1.05}  # fmt: skip
 # Steps of a run whose journal may go on in an elastic shell: some whirl there for long, and pass element after element
 # of a gap that is all but closed (1.3 to 3.4 times the steps), some never get there.
 ELASTIC = 1.7

@@ -13,6 +13,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.table import Mesh
 from frbcli.film.section_faults import starves
+from frbcli.scene.bearing_models import GIVEN, WHY
 from frbcli.scene.films import film_places
 from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
 from frbcli.scene.section import film_section
@@ -48,10 +49,11 @@ LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4
 
 @dataclass(frozen=True)
 class FilmChoice:
-    """theory: "short" | "finite"; form: how the most expensive film is evaluated, in words, CELLS for cells; mesh: of
-    films without cells, the finest; cells: (around, along) or None; error: expected of the forces, relative, at the
-    eccentricity up to which the film holds the target; theory_why, mesh_why: reasons; films: (form, mesh) of each
-    film on quadratic elements, none of others."""
+    """theory: "short" | "finite", or the name of a bearing model; form: how the most expensive film is evaluated, in
+    words, CELLS for cells; mesh: of films without cells, the finest; cells: (around, along) or None; error: expected of
+    the forces, relative, at the eccentricity up to which the film holds the target, 0 for a bearing model, whose own
+    error nobody knows; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements, none of
+    others."""
 
     theory: str
     form: str
@@ -66,6 +68,9 @@ class FilmChoice:
 def choose_films(case: Case) -> FilmChoice:
     """The cheapest film that holds the target of the case, or what the case sets."""
     target, given = case.accuracy.target, case.accuracy.mesh
+    if case.film.bearing_model:
+        each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
+        return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
     if is_published(case):
         cells, mesh_why = published_elements(case)
         theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
@@ -114,11 +119,15 @@ def short_error(slenderness: float, eccentricity: float) -> float:
 
 def all_clipped(case: Case) -> bool:
     """Whether no film is more than the clipped solution of a linear equation."""
+    if case.film.bearing_model:
+        return False
     return all(law_named(model).closed for model in case.cavitations)
 
 
 def needs_cells(case: Case) -> bool:
     """Whether the films of a case are solved on volumes in a run."""
+    if case.film.bearing_model:
+        return False
     if case.film.solution == "cells":
         return True
     if not all_clipped(case):

@@ -14,6 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.table import Mesh
+from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.coupling import plan_coupling
@@ -53,12 +54,12 @@ Decide = Callable[[str, object, str], None]
 
 @dataclass(frozen=True)
 class Plan:
-    """What will be modelled. theory: "short" | "finite"; cavitation: of films that name none of their own; form: how
-    the most expensive film is evaluated, in words; mesh: of films without cells, the finest; films: form and mesh of
-    each of those on quadratic elements; cells: (around, along) of films with cells, None for the others; film_error:
-    expected of the forces, relative; method: name of a time integration method; tolerance: local error of a
-    displacement over the clearance; steps_per_revolution: at least; coupling: one of COUPLINGS; macro_step: longest
-    one in s of a co-simulation, else None."""
+    """What will be modelled. theory: "short" | "finite", or the name of a bearing model; cavitation: of films that name
+    none of their own; form: how the most expensive film is evaluated, in words; mesh: of films without cells, the
+    finest; films: form and mesh of each of those on quadratic elements; cells: (around, along) of films with cells,
+    None for the others; film_error: expected of the forces, relative; method: name of a time integration method;
+    tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
+    COUPLINGS; macro_step: longest one in s of a co-simulation, else None."""
 
     theory: str
     cavitation: str
@@ -87,19 +88,18 @@ def make_plan(case: Case) -> Plan:
 
     _decide_scene(case, decide)
     films = choose_films(case)
-    decide("theory", films.theory, films.theory_why)
-    for told, cavitation in _cavitations(case):
-        if films.form == PUBLISHED:
-            decide("cavitation", told, "set in the case; the film keeps its oil from step to step, and creates some")
-        elif law_named(cavitation).keeps_oil:
-            decide("cavitation", told, "set in the case; the film conserves oil and keeps it from step to step")
-        else:
-            decide("cavitation", told, "set in the case; the film has no state of its own, oil is not balanced")
+    model = chosen_model(case)
+    if model is not None:
+        for decided in model_decisions(model):
+            decide(*decided)
+    else:
+        _decide_models(case, films, decide)
     for film in unfed_films(case):
         decide("supply", f"{film.name} {'starves' if film.keeps else 'missing'}".strip(), film.reason)
     coupling, reason = plan_coupling(case)
     decide("coupling", coupling, reason)
-    _decide_film(case, films, decide)
+    if model is None:
+        _decide_film(case, films, decide)
     method, tolerance, steps = _time_integration(case, films, decide)
     if not turning_rings(case):
         decide("torque", "left out", "the rotor speed is given and no ring turns")
@@ -123,6 +123,18 @@ def make_plan(case: Case) -> Plan:
     )
 
 
+def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
+    """Theory and cavitation."""
+    decide("theory", films.theory, films.theory_why)
+    for told, cavitation in _cavitations(case):
+        if films.form == PUBLISHED:
+            decide("cavitation", told, "set in the case; the film keeps its oil from step to step, and creates some")
+        elif law_named(cavitation).keeps_oil:
+            decide("cavitation", told, "set in the case; the film conserves oil and keeps it from step to step")
+        else:
+            decide("cavitation", told, "set in the case; the film has no state of its own, oil is not balanced")
+
+
 def _decide_scene(case: Case, decide: Decide) -> None:
     """Bearings, films and gap."""
     places = film_places(case)
@@ -135,7 +147,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     for bearing in rings(case):
         if coupled(bearing):
             decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
-    if len(places) == 1:
+    if len(places) == 1 and not case.film.bearing_model:
         decide("gap", *_gap(places[0].geometry))
     for decided in clearance_decisions(case):
         decide(*decided)

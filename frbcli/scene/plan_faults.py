@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from frbcli.case.bearing import CircumferentialGroove
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
@@ -9,6 +11,7 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import section_faults
+from frbcli.scene.bearing_models import model_faults
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.clearance_steps import clearance_faults
 from frbcli.scene.coupling import coupling_fault
@@ -21,10 +24,10 @@ from frbcli.scene.tabulated import solution_fault
 
 def plan_faults(case: Case) -> list[Fault]:
     """Every part of a case that no run can have."""
-    faults: list[Fault] = []
+    faults = model_faults(case, 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end)))
 
     def missing(key: str, value: str, known: tuple[str, ...]) -> None:
-        faults.append(Fault(key, value, None, "is not modelled in this version.", f"Modelled are: {', '.join(known)}."))
+        faults.append(_missing(key, value, known))
 
     if case.film.theory == "short" and (needs_cells(case) or not all_clipped(case)):
         remedy = "finite or auto for this cavitation model and supply; short knows half-sommerfeld between rectangles"
@@ -33,6 +36,8 @@ def plan_faults(case: Case) -> list[Fault]:
         missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
     faults += channel_faults(case)
     faults += clearance_faults(case)
+    if case.film.bearing_model:
+        return faults or _bearing_faults(case)
     chained = any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case))
     told = solution_fault(case, all_clipped(case), not (chained or needs_cells(case)))
     faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
@@ -49,7 +54,16 @@ def plan_faults(case: Case) -> list[Fault]:
             section = ends_at_ambient(section)
         for found in section_faults(section):
             faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
-    if not faults and len(case.bearings) != 1 and not isinstance(case.rotor, TurbochargerRotor):
-        both = "one [bearing], which stands for both of a symmetric rotor"
-        missing("bearing", f"{len(case.bearings)} bearings", (both,))
-    return faults
+    return faults or _bearing_faults(case)
+
+
+def _bearing_faults(case: Case) -> list[Fault]:
+    """Of the number of bearings."""
+    if len(case.bearings) == 1 or isinstance(case.rotor, TurbochargerRotor):
+        return []
+    both = "one [bearing], which stands for both of a symmetric rotor"
+    return [_missing("bearing", f"{len(case.bearings)} bearings", (both,))]
+
+
+def _missing(key: str, value: str, known: tuple[str, ...]) -> Fault:
+    return Fault(key, value, None, "is not modelled in this version.", f"Modelled are: {', '.join(known)}.")

@@ -14,6 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
 from frbcli.rotor.beam import ELEMENTS
 from frbcli.rotor.reduction import DENSE, MOST, RIGID
+from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE, needs_cells
 from frbcli.scene.films import film_places, turning_rings
@@ -72,6 +73,8 @@ def film_error_s(case: Case, plan: Plan) -> float:
     if plan.cells is not None:
         fine = plan.cells[0] * FINER, plan.cells[1] * FINER
         return CELL_SAMPLES * films * (_steady_s(plan.cells) + _steady_s(fine))
+    if plan.form == GIVEN:
+        return 0.0
     if plan.form == SOLUTIONS:  # one state in place of a table of thousands
         return SAMPLES * films * 1e-3 * _table_s(plan)
     axial, around = FINER * plan.mesh.axial, FINER * plan.mesh.circumferential
@@ -150,7 +153,7 @@ def _table_s(plan: Plan) -> float:
     if plan.form == SOLUTIONS:
         size = plan.mesh.circumferential / SOLUTION_MESH.circumferential
         return SOLUTIONS_s * size * along_factor(_half(plan.mesh)) / along_factor(_half(SOLUTION_MESH))
-    if plan.cells is not None or plan.theory == "short":
+    if plan.cells is not None or plan.theory == "short" or plan.form == GIVEN:
         return 0.0
     modes = MODES_s * plan.mesh.axial**3
     if plan.form == CHAINS:

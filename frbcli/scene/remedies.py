@@ -26,6 +26,8 @@ def advised(case: Case) -> Iterator[None]:
 def film_remedies(case: Case) -> tuple[str, ...]:
     """What makes the films of a case easier to solve, best first, as far as it is not in the case already."""
     models, film = set(case.cavitations), case.film
+    if film.bearing_model:
+        return (f"a force of film.theory = {film.bearing_model} without jumps, or with derivatives of its own",)
     found = []
     if "two-phase" in models and is_published(case):
         found.append('film.two-phase.form = "conservative"')

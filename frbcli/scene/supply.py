@@ -58,8 +58,10 @@ def is_unfed(section: Section, cavitation: str) -> bool:
 
 
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
-    """The films of a case that no oil is pushed into."""
-    found = []
+    """The films of a case that no oil is pushed into; none by a bearing model, whose oil nobody knows."""
+    found: list[UnfedFilm] = []
+    if case.film.bearing_model:
+        return ()
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film, cavitation = place.geometry, case.cavitation(place.geometry)
         section = film_section(case, film, place.feed_holes)

@@ -27,6 +27,7 @@ from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.ring import with_rings, with_spins
+from frbcli.scene.bearing_models import GIVEN, bearing_film
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import (
     centrifugal_pressures,
@@ -138,6 +139,8 @@ def make_system(case: Case, plan: Plan) -> System:
         factor = case.film.cavitation_factor
         return replace(system, films=data, volumes=volumes, cavitation_factor=factor)
     bearings = tuple(_bearing(case, place.geometry) for place in places)
+    if plan.form == GIVEN:
+        return replace(system, bearings=bearings, films=tuple(bearing_film(case, bearing) for bearing in bearings))
     if plan.form == SOLUTIONS:
         solved = tuple(source_film(case, place.geometry, plan.mesh) for place in places)
         return replace(system, bearings=bearings, solved=solved, films=tuple(film.film() for film in solved))

@@ -51,6 +51,10 @@ def accuracy(
     a case that cannot be modelled.
     """
     _check_names(case, theories, couplings)
+    if case.film.bearing_model:
+        problem = "is a bearing model, which has no theories and meshes to compare."
+        fault = Fault("film.theory", case.film.theory, None, problem, "`frb runup --verify` tells the error of a run.")
+        raise InputError(case.name or "case", (fault,))
     short = _until(case, until)
     own = planned_rung(make_plan(short))
     fine = replace(own, theory="finite", mesh=_mesh(own, REFERENCE_MESH), tolerance=REFERENCE_TOLERANCE * own.tolerance)

@@ -16,6 +16,7 @@ from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
@@ -44,7 +45,8 @@ class Variant:
     @property
     def name(self) -> str:
         """For tables and file names."""
-        return f"{self.cavitation} {self.theory}" + ("" if self.coupling == "auto" else f" {self.coupling}")
+        films = f"{self.cavitation} {self.theory}" if self.theory in THEORIES else self.theory
+        return films + ("" if self.coupling == "auto" else f" {self.coupling}")
 
     @property
     def coupled(self) -> str:
@@ -167,7 +169,8 @@ def make_variants(
     case: Case, cavitations: Sequence[str] = (), theories: Sequence[str] = (), couplings: Sequence[str] = ()
 ) -> tuple[Variant, ...]:
     """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
-    faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, THEORIES)]
+    known = (*THEORIES, *(model.name for model in models()))
+    faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, known)]
     faults += _unknown("--coupling", couplings, COUPLINGS)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
@@ -187,7 +190,7 @@ def make_variants(
     variants = tuple(dict.fromkeys(found))
     if len(variants) < 2:
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
-        remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(THEORIES)}, "
+        remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(known)}, "
         remedy += f"--coupling {','.join(COUPLINGS)}."
         raise InputError(case.name or "case", (Fault("comparison", "", None, problem, remedy),))
     return variants

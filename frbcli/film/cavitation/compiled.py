@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import cfunc, njit, types
+from numba import cfunc, types
 from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
@@ -27,6 +27,7 @@ from frbcli.compiled import compiled
 from frbcli.film.cavitation import penalty
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS, SHIPPED
+from frbcli.film.jitted import jitted
 
 # What a film keeps of its law while its journal moves: the parameters, and w below which a cell is empty.
 EMPTY = LARGEST_PARAMETERS
@@ -55,13 +56,13 @@ class CompiledLaw(NamedTuple):
 def compiled_law(law: Any) -> CompiledLaw:
     """The functions of a law, compiled in this process or found where numba keeps them."""
     shared = {"COUNT": max(len(fields(law)), 1), "cell": compiled_cell(law)}
-    shared |= {name: _jitted(getattr(law, name)) for name in ("follow", "empty")}
+    shared |= {name: jitted(getattr(law, name)) for name in ("follow", "empty")}
     return CompiledLaw(_for_law(law, _follow, _FOLLOW, shared), _for_law(law, _cells, _CELLS, shared))
 
 
 def compiled_cell(law: type[Law]) -> Any:
     """`cell` of a law for kernels that are made for this law alone."""
-    return _jitted(law.cell)
+    return jitted(law.cell)
 
 
 def addresses(law: Law) -> tuple[float, float]:
@@ -148,21 +149,6 @@ def _for_law(law: type[Law], template: Any, signature: Any, shared: dict[str, An
     function.__module__ = law.__module__ if shipped else __name__
     function.__qualname__ = f"{law.__qualname__}.{template.__name__}"
     return cfunc(signature, cache=shipped, error_model="numpy")(function)
-
-
-def _jitted(function: Any) -> Any:
-    """A plain function as numba takes it, with every plain function that it calls."""
-    if not _is_plain(function):
-        return function
-    known = function.__globals__
-    called = {name: _jitted(known[name]) for name in function.__code__.co_names if _is_plain(known.get(name))}
-    names = {**known, **called}
-    made = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
-    return njit(error_model="numpy")(made)
-
-
-def _is_plain(value: Any) -> bool:
-    return isinstance(value, FunctionType)
 
 
 wright_omega = compiled()(penalty.wright_omega)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import AxialGroove, groove_pressure
 from frbcli.film.grid import Array
@@ -110,7 +111,12 @@ class FilmForce:
 
 
 def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:
-    """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s."""
+    """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s.
+
+    Derivatives of a bearing model that does not tell them are central differences here.
+    """
+    if isinstance(film, BearingModelFilm):
+        film = film._replace(central=1)
     d, v = np.asarray(displacement) / clearance, np.asarray(velocity) / clearance
     values = np.array(film_force(film, d[0], d[1], v[0], v[1], omega))
     return FilmForce(values[:2], values[2:6].reshape(2, 2) / clearance, values[6:].reshape(2, 2) / clearance)

@@ -1,7 +1,8 @@
 """One film as the time loop sees it: force and derivatives from displacement, velocity and angular speed.
 
 The kind of a film is its type: the compiler sees it and compiles what the films of a case need. A kind is a row of
-POLAR if it is solved along and across the line of centres; films whose grooves stand still are solved in x and y.
+POLAR if it is solved along and across the line of centres; films whose grooves stand still are solved in x and y;
+bearing models are asked for their force as they are.
 """
 
 from __future__ import annotations
@@ -12,13 +13,14 @@ from typing import Any
 from numba.extending import overload
 
 from frbcli.compiled import compiled
+from frbcli.film.bearing_model.film import BearingModelFilm, model_force
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
 from frbcli.film.rectangles.chain import ChainFilm, chain_force
 from frbcli.film.rectangles.fields import FieldsFilm, fields_force
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, short_closed, short_general
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, TableFilm, table_force
 
-FilmData = ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm
+FilmData = ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm | BearingModelFilm
 
 NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
 
@@ -50,16 +52,20 @@ def _of_a_kind(film, eccentricity, w_r, w_t, omega):  # type: ignore[no-untyped-
     return POLAR[film.instance_class]
 
 
-def _in_frame(film: Any, d_x: float, d_y: float, w_x: float, w_y: float, omega: float) -> Any:
-    """film_force with w in place of the velocity, by the frame in which the film is solved."""
+def _in_frame(film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Any:
+    """film_force, by the frame in which the film is solved."""
     raise NotImplementedError
 
 
 @overload(_in_frame)
-def _by_kind(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
-    if film.instance_class is ChainFilm:
-        return lambda film, d_x, d_y, w_x, w_y, omega: _standing(film, d_x, d_y, w_x, w_y, omega)
-    return lambda film, d_x, d_y, w_x, w_y, omega: _polar(film, d_x, d_y, w_x, w_y, omega)
+def _by_kind(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+    if film.instance_class is BearingModelFilm:
+        return lambda film, d_x, d_y, v_x, v_y, omega: model_force(film, d_x, d_y, v_x, v_y, omega)
+    solve = _standing if film.instance_class is ChainFilm else _polar
+    # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
+    return lambda film, d_x, d_y, v_x, v_y, omega: solve(
+        film, d_x, d_y, v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x, omega
+    )
 
 
 @compiled()
@@ -71,8 +77,7 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     Returns the force (x, y) in N, its derivatives by d (xx, xy, yx, yy) in N and by v (xx, xy, yx, yy) in N s: ten
     numbers.
     """
-    # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
-    return _in_frame(film, d_x, d_y, v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x, omega)
+    return _in_frame(film, d_x, d_y, v_x, v_y, omega)
 
 
 @compiled()

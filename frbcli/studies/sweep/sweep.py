@@ -89,6 +89,7 @@ def sweep(
     cases = [_case(case, chosen) for chosen in settings]
     if isinstance(cases[0], InputError) and not any(isinstance(each, Case) for each in cases):
         raise cases[0]
+    _check_models(cases, workers)
     folder = Path(directory).absolute()
     _make(folder / RUNS if keep_runs and method == "runup" else folder)
     log = folder / LOG
@@ -155,6 +156,14 @@ def _case(case: Case, chosen: Settings) -> Case | InputError:
     except InputError as error:
         return error
     return its_case
+
+
+def _check_models(cases: Sequence[Case | InputError], workers: Workers) -> None:
+    """Raises InputError for bearing models that the processes of a sweep do not have."""
+    models = {each.film.bearing_model for each in cases if isinstance(each, Case)} - {""}
+    if models and (workers.jobs != 1 or workers.backend != "loky"):
+        problem = f"start processes that do not have the bearing model {min(models)}, which was added in this one."
+        raise _refuse("--jobs", str(workers.jobs), problem, "Take one: Workers(jobs=1).")
 
 
 def _compile(tasks: Sequence[Task]) -> None:

@@ -1,0 +1,52 @@
+"""Kinematic tests of a bearing model: it tells the force, and neither pressures nor oil."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from frbcli.bearing_tests.history import Course, History
+from frbcli.bearing_tests.journal_path import Path
+from frbcli.bearing_tests.plan import KinematicPlan
+from frbcli.bearing_tests.steady_film import Array, FilmMoment
+from frbcli.case.schema import Case
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.loads import Loads, OilBalance, Torque
+from frbcli.film.rectangles.bearing import evaluate
+from frbcli.scene.bearing_models import bearing_film
+
+UNKNOWN = math.nan
+
+
+def model_moment(case: Case, plan: KinematicPlan, motion: Motion) -> FilmMoment:
+    """The force for a motion; what a model does not tell is NaN, and there is no field."""
+    x, y = model_forces(case, plan, [motion])[0]
+    return FilmMoment(None, _loads(float(x), float(y)), UNKNOWN, 0, 0)
+
+
+def model_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> Course:
+    """The forces along a path at the times after the first; times: (n,) s."""
+    motions = [path(float(time)) for time in times[1:]]
+    force, displacement = model_forces(case, plan, motions), np.array([motion.d for motion in motions])
+    x, y = force[np.argmax(np.hypot(*force.T))]
+    history = History(
+        time_s=times[1:],
+        displacement=displacement,
+        force=force,
+        probe_pressure=np.full(len(motions), UNKNOWN),
+        gap_ratio=1.0 + displacement[:, 1],  # at phi = pi, where the normal points up
+    )
+    return Course(history, None, _loads(float(x), float(y)), UNKNOWN, 0, 0, "")
+
+
+def model_forces(case: Case, plan: KinematicPlan, motions: list[Motion]) -> Array:
+    """(n, 2) forces in N on the journal by the whole bearing."""
+    assert plan.rectangle is not None
+    film, c = bearing_film(case, plan.rectangle), plan.section.clearance
+    found = [evaluate(film, c, c * np.array(motion.d), c * np.array(motion.v), motion.omega) for motion in motions]
+    return np.array([moment.force for moment in found])
+
+
+def _loads(x: float, y: float) -> Loads:
+    return Loads((x, y), Torque(*[UNKNOWN] * 2), UNKNOWN, UNKNOWN, UNKNOWN, OilBalance(*[UNKNOWN] * 5))

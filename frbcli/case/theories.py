@@ -1,0 +1,123 @@
+"""The film theories in a case file: those of the program, and the bearing models of this process with their keys."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field, create_model
+from pydantic.fields import FieldInfo
+
+from frbcli.case.laws import declared
+from frbcli.case.model import Model
+from frbcli.errors import Fault, InputError
+from frbcli.film.bearing_model import table
+from frbcli.film.bearing_model.model import DIMENSIONS, BearingModel, wrong
+from frbcli.film.cavitation.law import Key
+from frbcli.film.cavitation.table import names as law_names
+
+SHIPPED = ("auto", "short", "finite")
+THEORY = "theory"  # the key that takes the name of a theory
+_NAME = re.compile("[a-z][a-z-]{0,39}")  # as pictures of a run read it
+_PARAMETER = re.compile("[a-z][a-z0-9_]{0,39}")
+
+if TYPE_CHECKING:
+    Theory = str
+else:
+    Theory = Literal[SHIPPED]
+
+
+class ModelTable(Model):
+    """A table [film.NAME], made from the keys of a bearing model."""
+
+
+def attribute(model: BearingModel) -> str:
+    """The attribute of a FilmModel that holds the table of a bearing model."""
+    return model.name.replace("-", "_")
+
+
+def adopt_models(film: type[Model]) -> None:
+    """Give the model of [film] the table of every bearing model that has keys and of no other, and its `theory` their
+    names. Models that hold it have to be rebuilt by the caller."""
+    fields = film.__pydantic_fields__
+    for name in [name for name, field in fields.items() if isinstance(field.default, ModelTable)]:
+        del fields[name]
+    fields |= {attribute(model): _field(model) for model in table.models() if model.keys}
+    names: Any = Literal[(*SHIPPED, *(model.name for model in table.models()))]
+    fields[THEORY].annotation = names
+    film.model_rebuild(force=True)
+
+
+def check_model(model: BearingModel, film: type[Model]) -> None:
+    """Raises InputError unless a bearing model can be added; its functions are compiled here."""
+    if not isinstance(model, BearingModel):
+        fault = Fault("model", repr(model)[:80], None, "is no BearingModel.", "Make one of frbcli.BearingModel.")
+        raise InputError("bearing model", (fault,))
+    if not (isinstance(model.name, str) and _NAME.fullmatch(model.name)):
+        raise wrong(model, "name", "is not made of small letters and -.", 'Write e.g. name = "squeeze-film-damper".')
+    others = {
+        name: field
+        for name, field in film.__pydantic_fields__.items()
+        if not isinstance(field.default, ModelTable)
+    }  # fmt: skip
+    taken = {*SHIPPED, *law_names(), *others, *(field.alias for field in others.values())}
+    if {model.name, attribute(model)} & taken:
+        raise wrong(model, "name", "is that of a key or model of the program.", "Choose another one.")
+    if not isinstance(model.label, str) or not model.label.isprintable():
+        raise wrong(model, "label", "is no text.", "Write what pictures call the model.")
+    _check_keys(model)
+    from frbcli.film.bearing_model.compiled import compiled_model  # numba takes longer to import than a case to read
+
+    compiled_model(model)
+
+
+def _check_keys(model: BearingModel) -> None:
+    seen = set(DIMENSIONS)
+    for key in model.keys:
+        if not (isinstance(key, Key) and _PARAMETER.fullmatch(key.name)):
+            raise wrong(model, "keys", "are no BearingKeys with names.", 'Write e.g. BearingKey("depth", 1.0).')
+        if key.name in seen:
+            remedy = "Choose another one: the functions take it beside those of the bearing and of other keys."
+            raise wrong(model, f"keys.{key.name}", "is a name that is there already.", remedy)
+        seen.add(key.name)
+
+
+def values_of(model: BearingModel, film: Any) -> tuple[float, ...]:
+    """The values of the keys of a model in a FilmModel; a choice as its number from 0, NaN for what is not given.
+    Raises InputError for a FilmModel that was made before the model was added."""
+    if not model.keys:
+        return ()
+    try:
+        given = getattr(film, attribute(model))
+        return tuple(_number(key, getattr(given, key.name)) for key in model.keys)
+    except (AttributeError, ValueError):
+        problem = "has not the keys of the bearing model: the case was read before that was added."
+        raise InputError("case", (Fault(f"film.{model.name}", "", None, problem, "Read the case again."),)) from None
+
+
+def _number(key: Key, value: float | str | None) -> float:
+    if value is None:
+        return math.nan
+    return float(key.choices.index(str(value)) if key.choices else value)
+
+
+def __getattr__(name: str) -> Any:
+    """The model of the table of the bearing model of this name: where copies of a case find it."""
+    for model in table.models():
+        if attribute(model) == name and model.keys:
+            return _tables(model)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+@cache
+def _tables(model: BearingModel) -> type[ModelTable]:
+    entries, name = declared(model.keys), attribute(model)
+    return create_model(name, __base__=ModelTable, __doc__=model.meaning, __module__=__name__, **entries)
+
+
+def _field(model: BearingModel) -> FieldInfo:
+    made = _tables(model)
+    alias = None if attribute(model) == model.name else model.name
+    return FieldInfo.from_annotated_attribute(made, Field(default=made(), alias=alias))
