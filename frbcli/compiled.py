@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from numba import njit
+from numba.core.ccallback import CFunc
+from numba.core.sigutils import normalize_signature
 
 _PACKAGE = Path(__file__).parent
 _IMPORTS = re.compile(r"^from frbcli\.([\w.]+) import", re.MULTILINE)
@@ -30,16 +32,32 @@ def compiled(inline: bool = False, fastmath: Set[str] = frozenset()) -> Callable
         kernel: Any = njit(
             cache=True, error_model="numpy", inline="always" if inline else "never", fastmath=set(fastmath) or False
         )(function)
-        # What the index of the cache is compared with when it is read; numba has no public way to it.
-        kernel._cache._cache_file._source_stamp = sources_digest(Path(function.__code__.co_filename))
+        _follow(kernel, Path(function.__code__.co_filename))
         return kernel
 
     return decorated
 
 
-def sources_digest(file: Path) -> str:
-    """Of the contents of a file of this package and of all that it imports from it, directly or not."""
-    found, waiting = set[Path](), [file]
+def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> Any:
+    """A function compiled for one signature, to be called by its address; kept on disk if it is made of `sources`."""
+    normalize: Any = normalize_signature  # numba gives it no types
+    made: Any = CFunc(function, normalize(signature), locals={}, options={"error_model": "numpy"})
+    if sources:
+        made.enable_caching()
+        _follow(made, *sources)
+    made.compile()
+    return made
+
+
+def _follow(made: Any, *sources: Path) -> None:
+    """Have the cache of a kernel follow its sources: what its index is compared with when it is read, to which numba
+    has no public way."""
+    made._cache._cache_file._source_stamp = sources_digest(*sources)
+
+
+def sources_digest(*files: Path) -> str:
+    """Of the contents of files of this package and of all that they import from it, directly or not."""
+    found, waiting = set[Path](), list(files)
     while waiting:
         found.add(one := waiting.pop())
         waiting += [other for other in _source(one)[1] if other not in found]

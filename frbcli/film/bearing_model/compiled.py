@@ -13,11 +13,12 @@ from types import FunctionType
 from typing import Any
 
 import numpy as np
-from numba import cfunc, typeof, types
+from numba import typeof, types
 from numba.core.errors import NumbaError
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
+from frbcli.compiled import c_function
 from frbcli.film.bearing_model.film import MOTION, NUMBERS
 from frbcli.film.bearing_model.model import BearingModel, wrong
 from frbcli.film.jitted import jitted
@@ -50,7 +51,7 @@ def compiled_model(model: BearingModel) -> Any:
         shared["derivatives"] = _checked(model, "derivatives", model.derivatives, record, DERIVATIVES)
         template = _by_derivatives
     function = FunctionType(template.__code__, {**globals(), **shared}, template.__name__)
-    return cfunc(_SIGNATURE, error_model="numpy")(function)
+    return c_function(function, _SIGNATURE)
 
 
 def _checked(model: BearingModel, name: str, function: Any, record: Any, count: int) -> Any:

@@ -13,17 +13,18 @@ import inspect
 from collections.abc import Callable
 from dataclasses import fields
 from functools import cache
+from pathlib import Path
 from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import cfunc, types
+from numba import types
 from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
-from frbcli.compiled import compiled
+from frbcli.compiled import c_function, compiled
 from frbcli.film.cavitation import penalty
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS, SHIPPED
@@ -148,7 +149,7 @@ def _for_law(law: type[Law], template: Any, signature: Any, shared: dict[str, An
     function = FunctionType(code, {**globals(), **shared})
     function.__module__ = law.__module__ if shipped else __name__
     function.__qualname__ = f"{law.__qualname__}.{template.__name__}"
-    return cfunc(signature, cache=shipped, error_model="numpy")(function)
+    return c_function(function, signature, *((Path(file), Path(__file__)) if shipped else ()))
 
 
 wright_omega = compiled()(penalty.wright_omega)
