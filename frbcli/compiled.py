@@ -11,29 +11,35 @@ import re
 from collections.abc import Callable, Set
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
+import numpy as np
 from numba import njit
 from numba.core.ccallback import CFunc
 from numba.core.sigutils import normalize_signature
+from numpy.typing import NDArray
 
 _PACKAGE = Path(__file__).parent
 _IMPORTS = re.compile(r"^from frbcli\.([\w.]+) import", re.MULTILINE)
 
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
-def compiled(inline: bool = False, fastmath: Set[str] = frozenset()) -> Callable[[Callable[..., Any]], Any]:
+
+def compiled(inline: bool = False, fastmath: Set[str] = frozenset()) -> Callable[[Kernel], Kernel]:
     """Decorates a function that is compiled, once for each set of types, and kept on disk; numbers that are not finite
     follow IEEE 754 and raise nothing.
 
     inline: put into the functions that call it before they are compiled; fastmath: LLVM's flags, e.g. {"contract"}.
     """
 
-    def decorated(function: Callable[..., Any]) -> Any:
+    def decorated(function: Kernel) -> Kernel:
         kernel: Any = njit(
             cache=True, error_model="numpy", inline="always" if inline else "never", fastmath=set(fastmath) or False
         )(function)
         _follow(kernel, Path(function.__code__.co_filename))
-        return kernel
+        return cast("Kernel", kernel)
 
     return decorated
 

@@ -12,14 +12,16 @@ LATEST = 1.0 - (1.0 - LARGEST_ECCENTRICITY) / KEPT  # beginning from which films
 
 
 @compiled()
-def closes_freely_until(contact_eccentricity):  # type: ignore[no-untyped-def]
+def closes_freely_until(contact_eccentricity: float) -> float:
     """Eccentricity from which on the film's gap closes more slowly than the journal moves: where the surfaces touch,
     or somewhat before if the gap that is kept would be too small for the films."""
     return min(contact_eccentricity, LATEST)
 
 
 @compiled()
-def contact_gap(begins, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
+def contact_gap(
+    begins: float, d_x: float, d_y: float, v_x: float, v_y: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """What a film feels of a journal beyond the eccentricity `begins`, see closes_freely_until; d: displacement over
     the clearance, v: its rate.
 

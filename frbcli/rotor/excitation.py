@@ -60,7 +60,7 @@ def speed_profile(times: list[float], speeds: list[float]) -> SpeedProfile:
 
 
 @compiled()
-def rotation(times, speeds, angles, piece, t):  # type: ignore[no-untyped-def]
+def rotation(times: Array, speeds: Array, angles: Array, piece: int, t: float) -> tuple[float, float, float]:
     """Angular acceleration, speed and angle at the time t inside the given piece of a profile."""
     start = t - times[piece]
     acceleration = (speeds[piece + 1] - speeds[piece]) / (times[piece + 1] - times[piece])

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from frbcli.compiled import compiled
+from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
 from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
 from frbcli.film.cells.block_cyclic import solve_ring
@@ -47,7 +47,7 @@ NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
 @compiled()
-def set_law(numbers, grid, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+def set_law(numbers: Array, grid: Array, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> None:
     """Keep with the grid what the film's law is at this motion, see follow_law."""
     law = np.empty(LAW_NUMBERS)
     follow_law(numbers, d_x, d_y, v_x, v_y, omega, law)
@@ -56,7 +56,7 @@ def set_law(numbers, grid, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untype
 
 
 @compiled()
-def law_of(grid):  # type: ignore[no-untyped-def]
+def law_of(grid: Array) -> Array:
     """(LAW_NUMBERS,) the law that set_law has kept, in one piece."""
     law = np.empty(LAW_NUMBERS)
     for i in range(LAW_NUMBERS):
@@ -65,7 +65,7 @@ def law_of(grid):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-def]
+def guess_unknowns(w: Array, start: Array, before: Array, s: int, ahead: float, lag: float) -> None:
     """w of a stage by a straight line: in the first through the step before, later through the last stage."""
     m, k = w.shape
     for i in range(m):
@@ -77,30 +77,11 @@ def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-
 
 
 @compiled()
-def cell_numbers(  # type: ignore[no-untyped-def]
-    numbers,
-    ring,
-    width,
-    cells,
-    w,
-    past,
-    states,
-    stencil,
-    blocks,
-    fields,
-    rates,
-    flows,
-    grid,
-    slopes,
-    channel,
-    d_x,
-    d_y,
-    v_x,
-    v_y,
-    omega,
-    g,
-    iteration,
-):
+def cell_numbers(
+    numbers: Array, ring: Array, width: Array, cells: Array, w: Array, past: Array, states: Array, stencil: Array,
+    blocks: Array, fields: Array, rates: Array, flows: Array, grid: Array, slopes: Array, channel: Array,
+    d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float, iteration: int,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_numbers of films.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
     pressures of the channels over its cells, see channels.py."""
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
@@ -164,7 +145,7 @@ def cell_numbers(  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untyped-def]
+def move_cells(w: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: float, changes: Array) -> int:
     """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
     pressures, changes (slots,); 1 if the film had not settled.
 
@@ -190,7 +171,7 @@ def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untype
 
 
 @compiled()
-def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
+def oil_fraction(cells: Array, states: Array) -> float:
     """The mean oil fraction of a film, (4.46)."""
     m, k = states.shape[1], states.shape[2]
     area, oil = 0.0, 0.0
@@ -203,7 +184,7 @@ def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+def sheared(ring: Array, cells: Array, states: Array, d_x: float, d_y: float, factor: int) -> float:
     """drag_integral of films.py for a film with cells."""
     if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
         return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))

@@ -6,8 +6,9 @@ The equations are those of stage.py. Films with cells are corrected along with t
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from frbcli.compiled import compiled
+from frbcli.compiled import Array, compiled
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
 from frbcli.solve.contact import push_back, shell_ahead, touches
 from frbcli.solve.dense import solve_dense
@@ -19,9 +20,10 @@ CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction m
 
 
 @compiled()
-def _in_contact(  # type: ignore[no-untyped-def]
-    films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration, c, contact_at, contact_stiffness, film
-):
+def _in_contact(
+    films: Any, work: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float, s: int,
+    iteration: int, c: float, contact_at: float, contact_stiffness: float, film: Array,
+) -> None:  # fmt: skip
     """FORCE, BY_X, BY_Y of a bearing in contact: the film at what it feels of the journal, and the elastic shell;
     FOLLOWS_X, FOLLOWS_Y."""
     x, y = 2 * f, 2 * f + 1
@@ -45,7 +47,7 @@ def _in_contact(  # type: ignore[no-untyped-def]
 
 
 @compiled(inline=True)
-def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
+def _solve_small(matrix: Array, film: Array) -> None:
     """CORRECTION <- matrix^-1 CORRECTION for the few journals' equations; closed form for one bearing."""
     if matrix.shape[0] == 2:
         det = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
@@ -58,7 +60,7 @@ def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def reach(d_x, d_y, c_x, c_y, end):  # type: ignore[no-untyped-def]
+def reach(d_x: float, d_y: float, c_x: float, c_y: float, end: float) -> float:
     """Largest factor <= 1 by which the correction c may be applied: the gap to `end` keeps a share of itself."""
     here = norm(d_x, d_y)
     there = norm(d_x + c_x, d_y + c_y)
@@ -71,7 +73,10 @@ def reach(d_x, d_y, c_x, c_y, end):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline=True)
-def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film):  # type: ignore[no-untyped-def]
+def forces(
+    films: Any, work: Any, clearances: Array, contact_at: float, contact_stiffness: float, g: float, s: int,
+    iteration: int, film: Array,
+) -> None:  # fmt: skip
     """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
     meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
     for f in range(clearances.shape[0]):
@@ -95,9 +100,10 @@ def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iterati
 
 
 @compiled(inline=True)
-def correct(  # type: ignore[no-untyped-def]
-    films, work, compliance, clearances, contact_at, contact_stiffness, g, film, newton
-):
+def correct(
+    films: Any, work: Any, compliance: Array, clearances: Array, contact_at: float, contact_stiffness: float,
+    g: float, film: Array, newton: Array,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """One correction of U by Newton's method, and of the films' cells with it.
 
     Returns (share of it that was applied, what may be left of the error of a smooth force, how far the journals moved

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from frbcli.compiled import compiled
+from frbcli.compiled import Array, Indices, compiled
 from frbcli.solve.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
 from frbcli.solve.state import INVERSE_SPEED
 
@@ -29,18 +29,18 @@ U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL
 
 
 @compiled()
-def norm(x, y):  # type: ignore[no-untyped-def]
+def norm(x: float, y: float) -> float:
     return math.sqrt(x * x + y * y)
 
 
 @compiled()
-def limit_of(contact_stiffness):  # type: ignore[no-untyped-def]
+def limit_of(contact_stiffness: float) -> float:
     """Eccentricity that is no state any more: under elastic contact the shell gives way, else it ends at the shell."""
     return ELASTIC_LIMIT if contact_stiffness > 0.0 else 1.0
 
 
 @compiled(inline=True)
-def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
+def lagrange(a: float, b: float, c: float, t: float) -> tuple[float, float, float]:
     """The three weights of the parabola through points at the times a, b, c, at the time t."""
     return (
         (t - b) * (t - c) / ((a - b) * (a - c)),
@@ -50,10 +50,11 @@ def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline=True)
-def start_stage(  # type: ignore[no-untyped-def]
-    weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed, angle, gyroscopic,
-    at, film,
-):
+def start_stage(
+    weights: Array, s: int, step: float, g: float, q: Array, v: Array, stage_v: Array, stage_a: Array,
+    products: Array, loads: Array, selection: Array, acceleration: float, speed: float, angle: float,
+    gyroscopic: bool, at: Array, film: Array,
+) -> None:  # fmt: skip
     """Fill V, Q, FREE of `at` and U_0, X_0 of `film`: what stage s knows before its films do."""
     n = q.shape[0]
     for i in range(n):
@@ -84,15 +85,18 @@ def start_stage(  # type: ignore[no-untyped-def]
 
 
 @compiled(inline=True)
-def begin_lag(numbers, g, speed, at):  # type: ignore[no-untyped-def]
+def begin_lag(numbers: Array, g: float, speed: float, at: Array) -> float:
     """The lag of `accelerate` in a stage of a gyroscopic rotor, which begins with the speed of its inverse: LATE."""
     for i in range(at.shape[1]):
         at[LATE, i] = at[FREE, i]
-    return g * (speed - numbers[INVERSE_SPEED])
+    return g * (speed - float(numbers[INVERSE_SPEED]))
 
 
 @compiled(inline=True)
-def guess(points, three, s, selection, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
+def guess(
+    points: Array, three: Indices, s: int, selection: Array, q: Array, clearances: Array, g: float, t: float,
+    limit: float, film: Array,
+) -> None:  # fmt: skip
     """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
 
     points: (p, 1 + m) times and journals' velocities of this step and the one before; three: (s, 3) which of them carry
@@ -113,7 +117,10 @@ def guess(points, three, s, selection, q, clearances, g, t, limit, film):  # typ
 
 
 @compiled(inline=True)
-def accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a):  # type: ignore[no-untyped-def]
+def accelerate(
+    s: int, g: float, lag: float, products: Array, spread: Array, selection: Array, at: Array, film: Array,
+    stage_v: Array, stage_a: Array,
+) -> None:  # fmt: skip
     """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
 
     lag: g times the difference between the stage's speed and that of the inverse, for the rest of the gyroscopic term.

@@ -17,7 +17,7 @@ from frbcli.solve.films import accept_films, begin_stage, make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.journal_newton import NEWTON_LIMIT, correct, forces
 from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
-from frbcli.solve.scratch import make_scratch
+from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, start_stage
 from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, RotorData, State
 from frbcli.solve.step import (
@@ -55,7 +55,7 @@ class Own(NamedTuple):
 
 
 @compiled()
-def _largest_eccentricity(clearances, selection, q):  # type: ignore[no-untyped-def]
+def _largest_eccentricity(clearances: Array, selection: Array, q: Array) -> float:
     largest = 0.0
     for f in range(clearances.shape[0]):
         x, y = 0.0, 0.0
@@ -90,9 +90,10 @@ def advance(
 
 
 @compiled()
-def _advance(  # type: ignore[no-untyped-def]
-    rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil
-):
+def _advance(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
+    own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array,
+) -> tuple[int, int]:  # fmt: skip
     """advance with the arrays that it works in."""
     # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
     numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past

@@ -54,7 +54,9 @@ call_model: Any = intrinsic(_call_model)
 
 
 @compiled()
-def model_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+def model_force(
+    film: BearingModelFilm, d_x: float, d_y: float, v_x: float, v_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_force of a bearing model: d over the clearance, v in 1/s, as everywhere in the loop."""
     c = film.clearance
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)

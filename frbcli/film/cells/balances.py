@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from frbcli.compiled import compiled
+from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.axial import BEND
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
@@ -46,7 +46,10 @@ BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 
 @compiled()
-def _end_flow(kind, last, beyond, conductance, bend, groove, length, steepness):  # type: ignore[no-untyped-def]
+def _end_flow(
+    kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, length: float,
+    steepness: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance)."""
     rise, change = last - groove, bend * (last - beyond)
     by_last, by_beyond = 1.0 + bend, -bend
@@ -67,7 +70,10 @@ def _end_flow(kind, last, beyond, conductance, bend, groove, length, steepness):
 
 
 @compiled()
-def _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right):  # type: ignore[no-untyped-def]
+def _flow_around(
+    ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float, g: float,
+    stencil: Array, right: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -101,7 +107,9 @@ def _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right)
 
 
 @compiled()
-def _flow_along(ring, cells, states, d_x, d_y, g, stencil, right):  # type: ignore[no-untyped-def]
+def _flow_along(
+    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, g: float, stencil: Array, right: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
@@ -125,7 +133,10 @@ def _flow_along(ring, cells, states, d_x, d_y, g, stencil, right):  # type: igno
 
 
 @compiled()
-def _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil, right):  # type: ignore[no-untyped-def]
+def _store(
+    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, rate: float, past: Array, g: float,
+    v_x: float, v_y: float, spin: float, stencil: Array, right: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
@@ -150,7 +161,10 @@ def _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil
 
 
 @compiled()
-def _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right, flows):  # type: ignore[no-untyped-def]
+def _flow_through_ends(
+    numbers: Array, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, g: float, stencil: Array,
+    right: Array, flows: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     steepness = STEEPNESS / numbers[AMBIENT]
     for i in range(m):
@@ -195,7 +209,7 @@ def _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right
 
 
 @compiled()
-def _hold_given(cells, stencil, right, flows):  # type: ignore[no-untyped-def]
+def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> None:
     """Cells with a given pressure keep it; what would leave them is their supply."""
     m, k = cells.shape[1], cells.shape[2]
     for i in range(m):
@@ -215,9 +229,11 @@ def _hold_given(cells, stencil, right, flows):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def balances(  # type: ignore[no-untyped-def]
-    numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, right, flows
-):
+def balances(
+    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float,
+    rate: float, past: Array, g: float, v_x: float, v_y: float, spin: float, stencil: Array, right: Array,
+    flows: Array,
+) -> None:  # fmt: skip
     """The balances of the cells and their derivatives.
 
     d: displacement; omega: omega_J + omega_S relative to the grid. Stored are rate H theta - past (m, k); with rate 0,

@@ -168,7 +168,7 @@ def assemble(
 
 
 @compiled()
-def _free_end(elements, e, place, p, m, r):  # type: ignore[no-untyped-def]
+def _free_end(elements: Elements, e: int, place: int, p: Array, m: Array, r: Array) -> None:
     """Add the outflow (4.36), (4.37) through an end at the nodes 3 i + place."""
     for q in range(3):
         here = 0.0

@@ -29,7 +29,7 @@ def make_step(law: TwoPhase, cavitation: float, ambient: float) -> Step:
 
 
 @compiled()
-def oil_fraction(step, pressure):  # type: ignore[no-untyped-def]
+def oil_fraction(step: Step, pressure: float) -> tuple[float, float, float]:
     """theta (4.32), dtheta/dp (4.33) and d2theta/dp2 at a scaled gauge pressure."""
     y = 1.0 + (pressure - step.cavitation) / step.cavity
     s, x_0, m = step.slope, step.start, step.linear
@@ -45,7 +45,7 @@ def oil_fraction(step, pressure):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def step_pressure(step, ratio, w):  # type: ignore[no-untyped-def]
+def step_pressure(step: Step, ratio: float, w: float) -> tuple[float, float]:
     """Scaled gauge pressure with theta - 1 + ratio (y - 1) = w, y = p / p_cav, and its derivative by w."""
     s, x_0, m = step.slope, step.start, step.linear
     bottom = s * x_0 - 1.0 + (x_0 - 1.0) * ratio

@@ -79,7 +79,7 @@ def pressures_of(unknowns: Unknowns, step: Step, w: Array) -> tuple[Array, Array
 
 
 @compiled()
-def _wright(z):  # type: ignore[no-untyped-def]
+def _wright(z: float) -> float:
     """omega with omega + log(omega) = z."""
     y = z if z < 1.0 else math.log(z)
     for _ in range(MOST):

@@ -31,7 +31,7 @@ def force_weights(vertices: Array) -> Array:
 
 
 @compiled()
-def _roots(p0, p1, p2):  # type: ignore[no-untyped-def]
+def _roots(p0: float, p1: float, p2: float) -> tuple[float, float]:
     """The two crossing points of the quadratic through p0, p1, p2 at 0, 1/2, 1, ascending; 2.0 where there is none."""
     a, b = 2.0 * (p0 - 2.0 * p1 + p2), -3.0 * p0 + 4.0 * p1 - p2
     first = second = 2.0
@@ -54,7 +54,7 @@ def _roots(p0, p1, p2):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def clipped_line(fields, level, vertices, lengths, weights, result):  # type: ignore[no-untyped-def]
+def clipped_line(fields: Array, level: float, vertices: Array, lengths: Array, weights: Array, result: Array) -> None:
     """Integrals over one turn at one axial position, over the region where the pressure fields[0] exceeds the level.
 
     fields: (r, 2 m) nodal values: the pressure, then its derivatives; result (r, 2) += integrals of (fields[0] - level)
@@ -77,7 +77,10 @@ def clipped_line(fields, level, vertices, lengths, weights, result):  # type: ig
 
 
 @compiled()
-def cut_element(fields, i0, i1, i2, p0, p1, p2, start_angle, length, result):  # type: ignore[no-untyped-def]
+def cut_element(
+    fields: Array, i0: int, i1: int, i2: int, p0: float, p1: float, p2: float, start_angle: float, length: float,
+    result: Array,
+) -> None:  # fmt: skip
     """result += integrals over the part of one element where the quadratic through p0, p1, p2 is positive."""
     first, second = _roots(p0, p1, p2)
     middle = start_angle + 0.5 * length

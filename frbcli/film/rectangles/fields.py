@@ -59,7 +59,7 @@ def field_table(mesh: Mesh, radius_to_width: float) -> Array:
 
 
 @compiled()
-def _line_fields(table, eccentricity, line, unit):  # type: ignore[no-untyped-def]
+def _line_fields(table: Array, eccentricity: float, line: int, unit: Array) -> None:
     """unit (4, m + 1) <- the two fields on the half ring at one axial line and their derivatives by the
     eccentricity."""
     x = -math.log(1.0 - eccentricity)
@@ -79,7 +79,7 @@ def _line_fields(table, eccentricity, line, unit):  # type: ignore[no-untyped-de
 
 
 @compiled()
-def _ring(unit, w_r, w_t, excess, pressure):  # type: ignore[no-untyped-def]
+def _ring(unit: Array, w_r: float, w_t: float, excess: float, pressure: Array) -> float:
     """pressure (n + 1,) <- pressure over the level all around, its first node again at the end. Returns the largest."""
     half = unit.shape[1]
     n = 2 * (half - 1)
@@ -92,7 +92,10 @@ def _ring(unit, w_r, w_t, excess, pressure):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _sort_elements(unit, w_r, w_t, pressure, grid, weights, active, cut, part):  # type: ignore[no-untyped-def]
+def _sort_elements(
+    unit: Array, w_r: float, w_t: float, pressure: Array, grid: Array, weights: Array, active: Array, cut: Array,
+    part: Array,
+) -> None:  # fmt: skip
     """active (2, n + 1) <- weights of the nodes for the elements that lie above the level as a whole; part (4, 2) +=
     the share of the elements that the level crosses. cut: (4, 3) scratch."""
     half, m = unit.shape[1], grid.shape[1]
@@ -115,7 +118,7 @@ def _sort_elements(unit, w_r, w_t, pressure, grid, weights, active, cut, part): 
 
 
 @compiled(fastmath={"reassoc", "contract"})
-def _weighted(unit, active, sums):  # type: ignore[no-untyped-def]
+def _weighted(unit: Array, active: Array, sums: Array) -> None:
     """sums (5, 2) <- the four fields (even, odd, even, odd) and one, summed with the weights of the nodes."""
     half = unit.shape[1]
     n = 2 * (half - 1)
@@ -138,7 +141,9 @@ def _weighted(unit, active, sums):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def fields_force(table, grid, eccentricity, w_r, w_t, sigma, level):  # type: ignore[no-untyped-def]
+def fields_force(
+    table: Array, grid: Array, eccentricity: float, w_r: float, w_t: float, sigma: float, level: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Force of one section, as table_force, with the scaled gauge pressures sigma at z = 1 and `level` in the cavity.
 
     table: of field_table; grid: of field_grid.

@@ -69,7 +69,9 @@ def _by_kind(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+def film_force(
+    film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """Force of one whole bearing on the journal.
 
     d: displacement over the clearance (|d| < 1 is the caller's duty); v: its rate in 1/s; omega: omega_J + omega_S in
@@ -77,11 +79,13 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     Returns the force (x, y) in N, its derivatives by d (xx, xy, yx, yy) in N and by v (xx, xy, yx, yy) in N s: ten
     numbers.
     """
-    return _in_frame(film, d_x, d_y, v_x, v_y, omega)
+    return _in_frame(film, d_x, d_y, v_x, v_y, omega)  # type: ignore[no-any-return]  # an overload of numba
 
 
 @compiled()
-def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+def _polar(
+    film: Any, d_x: float, d_y: float, w_x: float, w_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_force of a film that is solved along and across the line of centres."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     c, s = (d_x / eccentricity, d_y / eccentricity) if eccentricity > NEAR_CENTRE else (1.0, 0.0)
@@ -102,7 +106,9 @@ def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+def _standing(
+    film: ChainFilm, d_x: float, d_y: float, w_x: float, w_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_force of a film whose grooves stand still: solved in the frame of the shell."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     if eccentricity > LARGEST_ECCENTRICITY:  # as in film_force
@@ -114,9 +120,10 @@ def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _with_rotation(  # type: ignore[no-untyped-def]
-    scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
-):
+def _with_rotation(
+    scale: float, omega: float, f_x: float, f_y: float, d_xx: float, d_xy: float, d_yx: float, d_yy: float,
+    k_xx: float, k_xy: float, k_yx: float, k_yy: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """The ten numbers of film_force from derivatives at fixed w: dw/dd = -(omega/2) J adds to the stiffness."""
     half = 0.5 * omega
     return (
@@ -128,7 +135,7 @@ def _with_rotation(  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _turned(rr, rt, tr, tt, c, s):  # type: ignore[no-untyped-def]
+def _turned(rr: float, rt: float, tr: float, tt: float, c: float, s: float) -> tuple[float, float, float, float]:
     """Q [[rr, rt], [tr, tt]] Q^T with Q the rotation by the angle of (c, s)."""
     e, f = c * rr - s * tr, c * rt - s * tt
     g, h = s * rr + c * tr, s * rt + c * tt

@@ -52,7 +52,7 @@ def element_lengths(vertices: Array) -> Array:
 
 
 @compiled()
-def _element(length, cube, decay, local):  # type: ignore[no-untyped-def]
+def _element(length: float, cube: Array, decay: float, local: Array) -> None:
     """local (3, 3) <- matrix of d/dphi(H^3 d/dphi) - decay H^3 on one element; cube: H^3 at its three points."""
     for i in range(3):
         for j in range(3):
@@ -67,7 +67,7 @@ def _element(length, cube, decay, local):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def solve_ring(lengths, cube, decay, load):  # type: ignore[no-untyped-def]
+def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
     """Solve -d/dphi(H^3 dP/dphi) + decay H^3 P = load on the ring of m quadratic elements.
 
     lengths: (m,); cube: (m, 3) H^3 at the quadrature points; load: (r, m, 3) r right-hand sides at the element nodes
@@ -125,7 +125,7 @@ def solve_ring(lengths, cube, decay, load):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def unit_fields(vertices, eccentricity, decays, mode_loads):  # type: ignore[no-untyped-def]
+def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads: Array) -> Array:
     """Pressure of a unit radial and a unit tangential w, and their derivatives by the eccentricity, mode by mode.
 
     Frame of the line of centres: H = 1 + eps cos(Theta), right-hand sides cos(Theta) and sin(Theta), see (3.26).

@@ -7,7 +7,7 @@ section reads P = A z (1 - z) + sigma z on 0 <= z <= 1, with sigma the scaled su
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class SuppliedShortFilm(NamedTuple):
 
 
 @compiled()
-def clipped_section(a, sigma, level):  # type: ignore[no-untyped-def]
+def clipped_section(a: float, sigma: float, level: float) -> tuple[float, float]:
     """Integral over 0 <= z <= 1 of max(a z (1 - z) + sigma z - level, 0), exactly, and its derivative by a.
 
     level <= 0 <= sigma: the edges themselves do not cavitate, the inside may where a is negative.
@@ -52,7 +52,9 @@ def clipped_section(a, sigma, level):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[no-untyped-def]
+def short_closed(
+    eccentricity: float, w_r: float, w_t: float, slenderness: float, clipped: Any,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Force of one section with equal pressures at both edges and in the cavity, in the frame of the line of centres.
 
     In Sommerfeld's angle gamma the integrand is a trigonometric polynomial: the classical closed form. slenderness:
@@ -98,7 +100,9 @@ def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[
 
 
 @compiled()
-def short_general(eccentricity, w_r, w_t, slenderness, sigma, level):  # type: ignore[no-untyped-def]
+def short_general(
+    eccentricity: float, w_r: float, w_t: float, slenderness: float, sigma: float, level: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """As short_closed, with the supply pressure sigma at z = 1 and the cavitation pressure `level`, both scaled,
     gauge."""
     s = math.sqrt(1.0 - eccentricity * eccentricity)

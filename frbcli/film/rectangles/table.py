@@ -60,9 +60,10 @@ def ring_contraction(eccentricity: float) -> float:
 
 
 @compiled()
-def clipped_forces(  # type: ignore[no-untyped-def]
-    fields, shapes, weights_z, directions, stretch, stretch_rate, vertices, clipped
-):
+def clipped_forces(
+    fields: Array, shapes: Array, weights_z: Array, directions: Array, stretch: float, stretch_rate: float,
+    vertices: Array, clipped: bool,
+) -> Array:  # fmt: skip
     """(d, 3, 2) force of unit w in each direction, its derivatives by the direction and by the eccentricity.
 
     fields: (4, k, n) of unit_fields; shapes: (k, l) modes at the axial lines with weights_z (l,); directions: (d,)
@@ -161,7 +162,9 @@ def _slopes(values: Array, step: float, parity: float) -> Array:
 
 
 @compiled()
-def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
+def table_force(
+    table: Array, eccentricity: float, w_r: float, w_t: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Bicubic Hermite interpolation of force_table.
 
     Returns, in the frame of the line of centres, the force (r, t), its derivatives by w (rr, rt, tr, tt) and by the
@@ -204,9 +207,10 @@ def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _hermite(  # type: ignore[no-untyped-def]
-    table, i, j, c, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3
-):
+def _hermite(
+    table: Array, i: int, j: int, c: int, a0: float, a1: float, a2: float, a3: float, c1: float, c2: float,
+    c3: float, b0: float, b1: float, b2: float, b3: float, d1: float, d2: float, d3: float,
+) -> tuple[float, float, float]:  # fmt: skip
     """Value, derivative by x and by psi of component c in the cell (i, j)."""
     # along psi first, at both ends of the cell in x: value and x-derivative, and the psi-slopes of both
     v0 = b0 * table[i, j, c, 0] + b1 * table[i, j + 1, c, 0] + b2 * table[i, j, c, 2] + b3 * table[i, j + 1, c, 2]

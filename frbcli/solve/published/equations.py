@@ -80,9 +80,10 @@ def make_room(film: PublishedFilm) -> Room:
 
 
 @compiled()
-def residual(  # type: ignore[no-untyped-def]
-    equations, room, w, past, d_x, d_y, v_x, v_y, omega, g, contact_at, contact_stiffness
-):
+def residual(
+    equations: FilmEquations, room: Room, w: Array, past: Array, d_x: float, d_y: float, v_x: float, v_y: float,
+    omega: float, g: float, contact_at: float, contact_stiffness: float,
+) -> tuple[float, float]:  # fmt: skip
     """Assemble at the unknowns w (nodes,). Returns the size of the residual, and its share of the sum of its terms."""
     elements = equations.elements
     d_x, d_y, v_x, v_y, xx, yy, xy, turn_xx, turn_yy, turn_xy = feel(

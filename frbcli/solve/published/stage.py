@@ -13,12 +13,12 @@ import math
 
 import numpy as np
 
-from frbcli.compiled import compiled
+from frbcli.compiled import Array, compiled
 from frbcli.film.published.ring import solve_ring
 from frbcli.film.published.unknown import pressures_of
 from frbcli.solve.contact import push_back, shell_ahead
 from frbcli.solve.journal_newton import reach
-from frbcli.solve.published.equations import RIGHTS, residual
+from frbcli.solve.published.equations import RIGHTS, FilmEquations, Room, residual
 from frbcli.solve.stage import CORRECTION, FORCE, OMEGA, U_0, X_0, U, norm
 
 ITERATIONS = 20
@@ -34,7 +34,9 @@ ENOUGH = 2e-3  # the same where the journal does not move any more
 
 
 @compiled()
-def _contact(f, d_x, d_y, clearance, g, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+def _contact(
+    f: Array, d_x: float, d_y: float, clearance: float, g: float, contact_at: float, contact_stiffness: float,
+) -> None:  # fmt: skip
     """Add the elastic contact to forces f (2, RIGHTS): its own, and by the velocity over the clearance."""
     f_x, f_y, k_xx, k_yy, k_xy = push_back(d_x, d_y, clearance, contact_at, contact_stiffness)
     f[0, 0] += f_x
@@ -46,7 +48,10 @@ def _contact(f, d_x, d_y, clearance, g, contact_at, contact_stiffness):  # type:
 
 
 @compiled()
-def _correction(equations, room, compliance, clearance, g, contact_at, contact_stiffness, film):  # type: ignore[no-untyped-def]
+def _correction(
+    equations: FilmEquations, room: Room, compliance: Array, clearance: float, g: float, contact_at: float,
+    contact_stiffness: float, film: Array,
+) -> float:  # fmt: skip
     """CORRECTION of the velocities, FORCE then; solution (nodes, 0) <- correction of the unknowns. Returns its largest
     entry, infinite if a pivot has vanished."""
     solve_ring(room.ring, room.matrix, room.right, room.solution)
@@ -82,9 +87,10 @@ def _correction(equations, room, compliance, clearance, g, contact_at, contact_s
 
 
 @compiled()
-def _put_up_with(  # type: ignore[no-untyped-def]
-    equations, room, compliance, clearance, g, contact_at, contact_stiffness, tolerance, film
-):
+def _put_up_with(
+    equations: FilmEquations, room: Room, compliance: Array, clearance: float, g: float, contact_at: float,
+    contact_stiffness: float, tolerance: float, film: Array,
+) -> bool:  # fmt: skip
     """Take the film as it is at room.best: FORCE, and U that follows from it. Returns whether the journal then moves as
     the film was told, to the tolerance."""
     pressure = pressures_of(equations.unknowns, equations.step, room.best)[0]
@@ -103,9 +109,10 @@ def _put_up_with(  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def solve_stage(  # type: ignore[no-untyped-def]
-    equations, room, compliance, clearance, g, contact_at, contact_stiffness, tolerance, past, w, film
-):
+def solve_stage(
+    equations: FilmEquations, room: Room, compliance: Array, clearance: float, g: float, contact_at: float,
+    contact_stiffness: float, tolerance: float, past: Array, w: Array, film: Array,
+) -> tuple[bool, float, int]:  # fmt: skip
     """w (nodes,), U and FORCE of a stage, beginning from those given. tolerance: of a displacement over the
     clearance; past (e, 9): of theta_t.
 
