@@ -16,7 +16,7 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balances import FLOWS, SIDES, balances
-from frbcli.film.cells.block_cyclic import ENTRIES, solve_ring
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_ring
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.grid import volume_grid
 from frbcli.film.cells.newton_step import film_newton
@@ -68,26 +68,47 @@ def test_wrights_function_solves_its_equation() -> None:
     assert wright_omega(-50.0) == pytest.approx(math.exp(-50.0), rel=1e-12)
 
 
+def film_like(shape: tuple[int, int], closed: bool, seed: int) -> np.ndarray:
+    """Entries over six decades: what leaves a cell enters others, and some is stored."""
+    random = np.random.default_rng(seed)
+    m, k = shape
+    stencil = -(10.0 ** random.uniform(-3.0, 3.0, (ENTRIES, m, k)))
+    stencil[BELOW, :, 0] = stencil[ABOVE, :, -1] = 0.0
+    if closed:  # the last column is cavitated
+        stencil[BEHIND, -1] = 0.0
+    entered = np.roll(stencil[BEFORE], -1, axis=0) + np.roll(stencil[BEHIND], 1, axis=0)
+    entered[:, :-1] += stencil[BELOW, :, 1:]
+    entered[:, 1:] += stencil[ABOVE, :, :-1]
+    stencil[CENTRE] = -entered * (1.0 + 10.0 ** random.uniform(-4.0, 0.0, shape))
+    return stencil
+
+
+def solved_ring(stencil: np.ndarray, right: np.ndarray) -> np.ndarray:
+    m, k, sides = right.shape
+    fields = np.concatenate([np.zeros((m, k, k)), right], axis=2)
+    solve_ring(stencil, np.empty((m, k, k)), fields)
+    return fields[:, :, k:].reshape(-1, sides)
+
+
 @pytest.mark.parametrize("closed", [False, True])
-def test_ring_solver_against_a_dense_one(closed: bool) -> None:
-    random = np.random.default_rng(1)
-    stencil = -random.uniform(0.2, 1.0, (ENTRIES, M, K))
-    stencil[0] = 5.0
-    stencil[3, :, 0] = stencil[4, :, -1] = 0.0
-    if closed:
-        stencil[2, -1] = 0.0
-    right, fields = random.random((M, K, SIDES)), np.zeros((M, K, K + SIDES))
-    fields[:, :, K:] = right
-    solve_ring(stencil, np.empty((M, K, K)), fields)
-    cell = np.arange(M * K).reshape(M, K)
-    matrix = np.zeros((M * K, M * K))
-    matrix[cell, cell] = stencil[0]
-    matrix[cell, np.roll(cell, 1, axis=0)] += stencil[1]
-    matrix[cell, np.roll(cell, -1, axis=0)] += stencil[2]
-    matrix[cell[:, 1:], cell[:, :-1]] = stencil[3, :, 1:]
-    matrix[cell[:, :-1], cell[:, 1:]] = stencil[4, :, :-1]
-    exact = np.linalg.solve(matrix, right.reshape(-1, SIDES))
-    assert np.allclose(fields[:, :, K:].reshape(-1, SIDES), exact, rtol=1e-11, atol=1e-13)
+@pytest.mark.parametrize("shape", [(3, 1), (4, 2), (12, 5), (30, 6), (40, 20)])
+def test_ring_solver_against_a_dense_one(shape: tuple[int, int], closed: bool) -> None:
+    for seed in (1, 2, 3):
+        stencil = film_like(shape, closed, seed)
+        right = np.random.default_rng(seed).normal(size=(*shape, SIDES))
+        cell = np.arange(shape[0] * shape[1]).reshape(shape)
+        matrix = np.zeros((cell.size, cell.size))
+        matrix[cell, cell] = stencil[CENTRE]
+        matrix[cell, np.roll(cell, 1, axis=0)] += stencil[BEFORE]
+        matrix[cell, np.roll(cell, -1, axis=0)] += stencil[BEHIND]
+        matrix[cell[:, 1:], cell[:, :-1]] = stencil[BELOW, :, 1:]
+        matrix[cell[:, :-1], cell[:, 1:]] = stencil[ABOVE, :, :-1]
+        exact = np.linalg.solve(matrix, right.reshape(-1, SIDES))
+        assert np.allclose(solved_ring(stencil, right), exact, rtol=1e-9, atol=1e-10 * np.abs(exact).max())
+
+
+def test_singular_ring_has_no_finite_solution() -> None:
+    assert not np.isfinite(solved_ring(np.zeros((ENTRIES, 4, 2)), np.ones((4, 2, SIDES)))).any()
 
 
 def arrays() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -109,7 +130,7 @@ def test_balances_are_the_plain_ones(law: Law, omega: float, ends: tuple[str, st
     w, past, rate = random.uniform(-0.6, 0.6, (M, K)), random.uniform(0.0, 3e3, (M, K)), 2e3
     motion = Motion((0.3, -0.5), (10.0, 40.0), omega)
     gap = gap_height(film.section, motion.d, film.grid.centre)[:, None]
-    residual, _, plain = Balance(film.section, film.grid, motion).residual(film.cells(w), Storage(rate * gap, past))
+    residual, plain = Balance(film.section, film.grid, motion).residual(film.cells(w), Storage(rate * gap, past))
     data = volume_films([film])
     states, stencil, _, fields, flows = arrays()
     parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]

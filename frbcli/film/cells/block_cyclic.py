@@ -2,7 +2,9 @@
 
 A column is coupled to the two beside it cell by cell, so that the blocks beside the diagonal are diagonal themselves.
 The first columns are eliminated one after the other, with the last one as a border, which closes the ring. Without
-pivoting, see elimination.py. Cheaper than a sparse elimination as long as a column has few cells.
+pivoting: oil that leaves one cell enters others, so that no diagonal entry is smaller than the others of its column
+together, but for what a closing gap takes away and what a law makes. Cheaper than a sparse elimination up to some 40
+cells along.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ def imbalance(cells, fields):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy")
 def damp(cells, rate, stencil):  # type: ignore[no-untyped-def]
-    """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see newton.py."""
+    """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see solver.py."""
     m, k = stencil.shape[1], stencil.shape[2]
     for i in range(m):
         for j in range(k):
