@@ -75,7 +75,7 @@ def _fill(stencil, i, block, columns):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _solve(stencil, blocks, fields, column, row):  # type: ignore[no-untyped-def]
+def solve_blocks(stencil, blocks, fields, column, row):  # type: ignore[no-untyped-def]
     """As solve_ring; column, row: anything as long as a column and a row of fields."""
     m, k, n = len(blocks), len(column), len(row)
     last, held = m - 1, np.empty((k, n))
@@ -148,8 +148,8 @@ def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
     """
     k, n = fields.shape[1:]
     if n == k + len(USUAL_RIGHTS) and k == len(FIVE):
-        _solve(stencil, blocks, fields, FIVE, FIVE + USUAL_RIGHTS)
+        solve_blocks(stencil, blocks, fields, FIVE, FIVE + USUAL_RIGHTS)
     elif n == k + len(USUAL_RIGHTS) and k == len(SIX):
-        _solve(stencil, blocks, fields, SIX, SIX + USUAL_RIGHTS)
+        solve_blocks(stencil, blocks, fields, SIX, SIX + USUAL_RIGHTS)
     else:
-        _solve(stencil, blocks, fields, stencil[0, 0], fields[0, 0])
+        solve_blocks(stencil, blocks, fields, stencil[0, 0], fields[0, 0])

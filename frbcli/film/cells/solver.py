@@ -14,12 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.errors import FilmUnsolved
-from frbcli.film.cavitation.compiled import LAW_NUMBERS, given_parameters
+from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, balances
-from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_ring
+from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.newton_step import damp
 from frbcli.film.cells.plain.balance import Motion, Storage
 from frbcli.film.cells.plain.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE, SOURCE, STATES, cell_states
@@ -59,8 +58,8 @@ class FilmSolver:
         self.film = film
         data, (m, k) = volume_films([film]), film.grid.shape
         self._parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
-        self._law = np.append(given_parameters(film.law), -np.inf)
-        assert len(self._law) == LAW_NUMBERS
+        self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
+        self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
 
@@ -113,8 +112,9 @@ class FilmSolver:
             if left_before < math.inf:
                 pseudo_rate /= min(max(left_before / left, SHRINK), attempt.growth)
             left_before = left
-            damp(self._parts[-1], pseudo_rate, self._stencil)
-            solve_ring(self._stencil, self._blocks, self._fields)
+            self._stencil[CENTRE] += pseudo_rate * self._area
+            # not solve_ring: its kernels for usual lengths take most of the time to compile, and serve the time loop
+            solve_blocks(self._stencil, self._blocks, self._fields, self._stencil[0, 0], self._fields[0, 0])
             w = w + self._fields[:, :, w.shape[1]]
             if not np.max(np.abs(w)) < LARGEST:
                 return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
@@ -124,11 +124,11 @@ class FilmSolver:
         """(m, k) what does not balance, and in the arrays of the solver Newton's equations."""
         cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
         self._flow(motion, storage.past)
-        states, fields, free = self._states, self._fields, ~self.film.grid.fixed
-        kept = free * self.film.grid.area * storage.factor
-        fields[:, :, w.shape[1]] -= kept * states[FRACTION]
+        states, kept = self._states, self._area * storage.factor
         self._stencil[CENTRE] += kept * states[FRACTION_SLOPE]
-        return -fields[:, :, w.shape[1]]
+        right = self._fields[:, :, w.shape[1]]
+        right -= kept * states[FRACTION]
+        return -right
 
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""
@@ -153,7 +153,7 @@ class FilmSolver:
         """(m, k) size of the terms that the residual is the sum of: it is round-off of theirs."""
         pressure, fraction = self._states[PRESSURE], self._states[FRACTION]
         kept = np.abs(storage.factor * fraction) + np.abs(storage.past) + self._states[SOURCE]
-        size = passed[0] * np.abs(pressure) + passed[1] * np.abs(fraction) + self.film.grid.area * kept
+        size = passed[0] * np.abs(pressure) + passed[1] * np.abs(fraction) + self._area * kept
         terms: Array = np.maximum(size + np.abs(self._stencil[CENTRE]) * (1.0 + np.abs(w)), np.finfo(float).tiny)
         return terms
 
@@ -164,7 +164,7 @@ class FilmSolver:
         if film.law.clips:  # so do the flows, as the loads
             pressure[:] = film.pressure(state)
             self._flow(motion, storage.past)
-        area = np.where(film.grid.fixed, 0.0, film.grid.area)
+        area = self._area
         still = STILL_MOTION * motion.rate + STILL_STEP * np.abs(storage.past)
         flows = Flows(
             inflow=float(self._flows[INFLOW]),
