@@ -11,7 +11,7 @@ import pytest
 from volume_films import CLEARANCE, RADIUS, ROTATION, Row, law_of, motion_of, polar_motion, reference_rows, section_of
 
 from frbcli.bearing_tests.plan import STEADY_CELLS
-from frbcli.bearing_tests.steady_film import SteadyFilm, steady_film
+from frbcli.bearing_tests.steady_film import FilmMoment, steady_film
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
@@ -45,7 +45,7 @@ def force_error(row: Row) -> float:
     return 2e-2 if row["eccentricity"] == "0.9" else 1e-2
 
 
-def solved(row: Row) -> tuple[Motion, Section, SteadyFilm]:
+def solved(row: Row) -> tuple[Motion, Section, FilmMoment]:
     section = section_of(row["supply"], 1e5 * float(row["supply_pressure_bar"]), row["ends"])
     motion = motion_of(row)
     return motion, section, steady_film(section, law_of(row, section, motion), motion, STEADY_CELLS)

@@ -154,6 +154,17 @@ def test_order_in_time_of_a_film_that_stays_full() -> None:
     assert math.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(2.0, abs=0.2)
 
 
+def test_order_in_time_of_the_oil_that_a_film_keeps() -> None:
+    """One, of a whirl that leaves half of the cells partly empty: from step to step the oil is kept as by Euler."""
+    film, end = film_of(TwoPhase(0.9), "oil-bath", 24, 8), 0.3 / FREQUENCY
+    oil = []
+    for steps in (50, 100, 200):
+        *_, last = march(film, whirl, np.linspace(0.0, end, steps + 1))
+        oil.append(float((film.grid.area * film.content(whirl(end), last.solution.w)).sum()))
+    assert np.mean(last.solution.state.fraction < 0.999) > 0.5
+    assert math.log2((oil[0] - oil[1]) / (oil[1] - oil[2])) == pytest.approx(1.0, abs=0.1)
+
+
 def test_full_film_at_rest_stays_full() -> None:
     section = section_of("none")
     grid = volume_grid(section, np.linspace(0.0, 2.0 * math.pi, 17), np.linspace(0.0, 1.0, 5))

@@ -47,21 +47,10 @@ class FilmMoment:
     iterations: int
 
 
-@dataclass(frozen=True)
-class SteadyFilm:
-    """A steady film: its solution and loads, and the relative error of its force."""
-
-    film: VolumeFilm
-    solution: VolumeSolution
-    loads: Loads
-    force_error: float
-    iterations: int
-
-
 def steady_film(
     section: Section, law: Law, motion: Motion, cells: tuple[int, int], factor: CavitationFactor = "none"
-) -> SteadyFilm:
-    """Solve on half the cells each way, and from there on all.
+) -> FilmMoment:
+    """The film for a motion that lasts, solved on half the cells each way, and from there on all.
 
     cells: around and along the whole film; one cut at its plane of symmetry gets half of those along; factor: of the
     torque, for a shell at rest. Raises NotConverged.
@@ -72,24 +61,27 @@ def steady_film(
     first = FilmSolver(coarse).steady(motion)
     film = VolumeFilm(section, fitted_grid(section, motion.d, around, along), law, reference)
     solution = FilmSolver(film).steady(motion, film.from_coarser(coarse, first.w))
-    fine = loads(film, motion, solution, factor=factor)
-    error = estimate(fine.force, loads(coarse, motion, first).force, law.order)
-    return SteadyFilm(film, solution, fine, error, first.iterations + solution.iterations)
+    found = loads(film, motion, solution, factor=factor)
+    return FilmMoment(
+        film_field(film, motion, solution),
+        found,
+        estimate(found.force, loads(coarse, motion, first).force, law.order),
+        int(np.count_nonzero(~film.grid.fixed)),
+        first.iterations + solution.iterations,
+    )
 
 
 def film_moment(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> FilmMoment:
-    """The film for a motion that lasts. Raises NotConverged."""
+    """The film for a motion that lasts, by the modal film where that is known. Raises NotConverged."""
     law = law_at(case, plan, math.hypot(*motion.d))
     found = steady_film(plan.section, law, motion, cells, case.film.cavitation_factor)
-    told, error = found.loads, found.force_error
-    if plan.rectangle is not None and plan.modal:
-        place, velocity = _si(plan, motion)
-        force = modal_force(plan, motion)
-        coarse = modal_force(plan, motion, COARSE_MODAL_MESH)
-        top = largest_pressure(plan.rectangle, MODAL_MESH, place, velocity, motion.omega)
-        told, error = replace(told, force=force, p_max=top), estimate(force, coarse)
-    unknowns = int(np.count_nonzero(~found.film.grid.fixed))
-    return FilmMoment(film_field(found.film, motion, found.solution), told, error, unknowns, found.iterations)
+    if plan.rectangle is None or not plan.modal:
+        return found
+    place, velocity = _si(plan, motion)
+    force, coarse = modal_force(plan, motion), modal_force(plan, motion, COARSE_MODAL_MESH)
+    top = largest_pressure(plan.rectangle, MODAL_MESH, place, velocity, motion.omega)
+    told = replace(found.loads, force=force, p_max=top)
+    return replace(found, loads=told, force_error=estimate(force, coarse))
 
 
 def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> Array:
