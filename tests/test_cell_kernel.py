@@ -182,6 +182,13 @@ def test_solved_films_balance_by_the_plain_equations(law: Law, flowing: Motion |
     assert flows.inflow - flows.outflow == pytest.approx(net - ends.sum(), abs=scale)
 
 
+def test_start_in_any_order_of_memory_leads_to_the_same_film() -> None:
+    film, motion = film_of(TwoPhase(0.9), "free-to-air", "groove"), Motion((0.3, -0.5), (0.0, 0.0), 400.0)
+    start = np.random.default_rng(5).uniform(-0.2, 0.5, (M, K))
+    found = [FilmSolver(film).steady(motion, w) for w in (start, np.asfortranarray(start))]
+    assert np.array_equal(found[0].w, found[1].w)
+
+
 @pytest.mark.parametrize("remembers", [True, False])
 @pytest.mark.parametrize("name", LAWS)
 def test_derivatives_by_the_journals_velocity(name: str, remembers: bool) -> None:

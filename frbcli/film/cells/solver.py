@@ -85,6 +85,7 @@ class FilmSolver:
     def _solve(self, motion: Motion, start: Array, storage: Storage) -> VolumeSolution:
         """By the first of ATTEMPTS that gets there."""
         spent, failure = 0, ""
+        start = np.ascontiguousarray(start, dtype=np.float64)  # as the kernels take it
         for attempt in ATTEMPTS:
             w, iterations, failure = self._iterate(motion, start, storage, attempt)
             spent += iterations
