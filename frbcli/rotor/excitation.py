@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from frbcli.compiled import compiled
 
 Array = NDArray[np.float64]
 
@@ -58,7 +59,7 @@ def speed_profile(times: list[float], speeds: list[float]) -> SpeedProfile:
     return SpeedProfile(t, omega, angles)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def rotation(times, speeds, angles, piece, t):  # type: ignore[no-untyped-def]
     """Angular acceleration, speed and angle at the time t inside the given piece of a profile."""
     start = t - times[piece]

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
 from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
 from frbcli.film.cells.block_cyclic import solve_ring
@@ -46,7 +46,7 @@ SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth th
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def set_law(numbers, grid, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     """Keep with the grid what the film's law is at this motion, see follow_law."""
     law = np.empty(LAW_NUMBERS)
@@ -55,7 +55,7 @@ def set_law(numbers, grid, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untype
         grid[LAW + i] = law[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def law_of(grid):  # type: ignore[no-untyped-def]
     """(LAW_NUMBERS,) the law that set_law has kept, in one piece."""
     law = np.empty(LAW_NUMBERS)
@@ -64,7 +64,7 @@ def law_of(grid):  # type: ignore[no-untyped-def]
     return law
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-def]
     """w of a stage by a straight line: in the first through the step before, later through the last stage."""
     m, k = w.shape
@@ -76,7 +76,7 @@ def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-
                 w[i, j] = start[i, j] + lag * (w[i, j] - start[i, j])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def cell_numbers(  # type: ignore[no-untyped-def]
     numbers,
     ring,
@@ -163,7 +163,7 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untyped-def]
     """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
     pressures, changes (slots,); 1 if the film had not settled.
@@ -189,7 +189,7 @@ def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untype
     return 1 if grid[UNSETTLED] != 0.0 else 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
     """The mean oil fraction of a film, (4.46)."""
     m, k = states.shape[1], states.shape[2]
@@ -202,7 +202,7 @@ def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
     return oil / area
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-def]
     """drag_integral of films.py for a film with cells."""
     if factor == SIMPLE_FACTOR:  # (4.6): of a plain film

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.cells.balances import BY_ITSELF, SIDES
 from frbcli.film.cells.channel_flow import (
     channel_pressures,
@@ -30,7 +30,7 @@ from frbcli.solve.cell_films import (
 from frbcli.solve.dense import solve_dense
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def set_laws(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-untyped-def]
     """The parameters of the films' laws where the journals are guessed to be."""
     for f in range(clearances.shape[0]):
@@ -40,7 +40,7 @@ def set_laws(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-unt
         set_law(films.numbers[f], grids[:, f], d_x, d_y, v_x, v_y, omega[2 * f])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
     """channel (films, m, k) <- the channels' pressures over the cells of their feed holes, by the films as they are."""
     count = films.feed_holes.shape[0]
@@ -59,7 +59,7 @@ def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
                 channel[f, i, j] = means[q]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def join(  # type: ignore[no-untyped-def]
     films, grids, states, fields, clearances, follows_x, follows_y, force, cross, answers, changes
 ):
@@ -104,7 +104,7 @@ def join(  # type: ignore[no-untyped-def]
             cross[2 * f + 1, j] += push_y * answers[q, 1 + j]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def follow_journals(films, answers, correction, share, changes):  # type: ignore[no-untyped-def]
     """changes (films, slots) <- of the channels' pressures with a share of a correction of the journals' velocities."""
     for q in range(films.feed_holes.shape[0]):

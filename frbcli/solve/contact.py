@@ -5,20 +5,20 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
 from frbcli.solve.stage import ELASTIC_LIMIT
 from frbcli.solve.state import Array, Control
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def touches(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
     """Whether a film feels less than the displacement. Where contact ends the run, stiffness 0, it never does."""
     return contact_stiffness > 0.0 and eccentricity > closes_freely_until(contact_at)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def shell_ahead(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
     """Where the gap ends for Newton's method: at the shell, and in contact as far ahead as the gap was wide there, but
     no further than a shell gives way."""
@@ -27,7 +27,7 @@ def shell_ahead(eccentricity, contact_at, contact_stiffness):  # type: ignore[no
     return 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def feel(d_x, d_y, v_x, v_y, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
     """The ten numbers of contact_gap, in contact or not."""
     if touches(math.sqrt(d_x * d_x + d_y * d_y), contact_at, contact_stiffness):
@@ -35,7 +35,7 @@ def feel(d_x, d_y, v_x, v_y, contact_at, contact_stiffness):  # type: ignore[no-
     return d_x, d_y, v_x, v_y, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def push_back(d_x, d_y, clearance, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
     """The radial spring of the surfaces beyond the eccentricity of contact: force (x, y) in N, and what it falls by per
     displacement over the clearance (xx, yy, xy)."""

@@ -6,10 +6,10 @@ here have two to some sixty unknowns.
 
 from __future__ import annotations
 
-from numba import njit
+from frbcli.compiled import compiled
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def solve_dense(matrix, right):  # type: ignore[no-untyped-def]
     """right (n, r) <- matrix^-1 right by elimination with row pivoting; matrix (n, n) is overwritten.
 

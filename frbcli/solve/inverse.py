@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED
 
@@ -16,13 +16,13 @@ E_DAMPING, E_STIFFNESS, E_GYROSCOPIC = range(3)
 E_STATIC, E_COS, E_SIN = range(3)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def outdated(numbers, g, speed, gyroscopic):  # type: ignore[no-untyped-def]
     """Whether the inverse that the numbers tell of does not serve a stage with this g and speed."""
     return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
     """Make the inverse E for this g and speed, keep its products, and book in the numbers for what they are.
 

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import compiled
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
 from frbcli.solve.contact import push_back, shell_ahead, touches
 from frbcli.solve.dense import solve_dense
@@ -19,7 +18,7 @@ NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
 CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction may close
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _in_contact(  # type: ignore[no-untyped-def]
     films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration, c, contact_at, contact_stiffness, film
 ):
@@ -45,7 +44,7 @@ def _in_contact(  # type: ignore[no-untyped-def]
     film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = xy
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
     """CORRECTION <- matrix^-1 CORRECTION for the few journals' equations; closed form for one bearing."""
     if matrix.shape[0] == 2:
@@ -58,7 +57,7 @@ def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
         solve_dense(matrix, right)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def reach(d_x, d_y, c_x, c_y, end):  # type: ignore[no-untyped-def]
     """Largest factor <= 1 by which the correction c may be applied: the gap to `end` keeps a share of itself."""
     here = norm(d_x, d_y)
@@ -71,7 +70,7 @@ def reach(d_x, d_y, c_x, c_y, end):  # type: ignore[no-untyped-def]
     return factor
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film):  # type: ignore[no-untyped-def]
     """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
     meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
@@ -95,7 +94,7 @@ def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iterati
     join_films(films, work, clearances, film[FORCE], film[FOLLOWS_X], film[FOLLOWS_Y])
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def correct(  # type: ignore[no-untyped-def]
     films, work, compliance, clearances, contact_at, contact_stiffness, g, film, newton
 ):

@@ -12,8 +12,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.films import make_work, write_oil
@@ -42,7 +42,7 @@ GROWTH = 1.25  # of a macro step at most: it cannot be taken back
 SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _tell(selection, spins, clearances, q, v, motion):  # type: ignore[no-untyped-def]
     """motion <- what the films are told of the rotor: journals' displacements and velocities, then angles and speeds of
     the rings. Returns the largest eccentricity."""
@@ -60,7 +60,7 @@ def _tell(selection, spins, clearances, q, v, motion):  # type: ignore[no-untype
     return largest
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _responses(rotor, selection):  # type: ignore[no-untyped-def]
     """(n, m + rings) what forces on the journals and torques on the rings do to the accelerations."""
     m, n = selection.shape
@@ -74,7 +74,7 @@ def _responses(rotor, selection):  # type: ignore[no-untyped-def]
     return responses
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _extrapolate(past, t, lagrange, given, film):  # type: ignore[no-untyped-def]
     """given (m + rings,) <- forces of the films and torques on the rings at the time t by the parabola; FORCE too."""
     parabola(past[:, 0], t, lagrange)
@@ -87,7 +87,7 @@ def _extrapolate(past, t, lagrange, given, film):  # type: ignore[no-untyped-def
         film[FORCE, k] = given[k]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _recall(past, three, motions):  # type: ignore[no-untyped-def]
     """three, motions <- times and motions of the last two macro times."""
     for p in range(2):
@@ -96,7 +96,7 @@ def _recall(past, three, motions):  # type: ignore[no-untyped-def]
             motions[p, k] = past[1 + p, 1 + k]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _remember(past, t_new, motion, film, torque, given):  # type: ignore[no-untyped-def]
     """past moves on to t_new; given <- what the extrapolated forces and torques were off by."""
     told, m = motion.shape[0], film.shape[1]
@@ -109,7 +109,7 @@ def _remember(past, t_new, motion, film, torque, given):  # type: ignore[no-unty
         given[k] = past[2, 1 + told + k] - given[k]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _amend(responses, compliance, clearances, given, a):  # type: ignore[no-untyped-def]
     """Make the accelerations a (n,) consistent with forces that were off by `given`. Returns the largest velocity of a
     journal, over its clearance, that they were off by in a stage."""
@@ -141,7 +141,7 @@ def advance_in_turn(
     return int(status), int(rows)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _advance(  # type: ignore[no-untyped-def]
     rotor, films, tableau, control, state, scratch, work, budget, out_q, out_v, out_oil
 ):

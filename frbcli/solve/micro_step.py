@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import move_film
 from frbcli.solve.films import accept_films, begin_stage
@@ -24,13 +23,13 @@ MICRO_STEPS, MICRO_REJECTED, MICRO_STEP, FILMS_REMEMBER, CO_NUMBERS = range(NUMB
 UNSOLVED_SHARE = 0.25  # of a step whose films were not solved, to be tried instead
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def parabola(times, t, weights):  # type: ignore[no-untyped-def]
     """weights (3,) <- of Lagrange's parabola through three times (3,), at the time t."""
     weights[0], weights[1], weights[2] = lagrange(times[0], times[1], times[2], t)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _move_journals(motions, times, t, g, film, bodies, angles, lagrange):  # type: ignore[no-untyped-def]
     """U of the journals at the time t and X_0, g U short of where they are; speeds and angles of the rings."""
     m, rings = film.shape[1], bodies.shape[0] - 1
@@ -48,7 +47,7 @@ def _move_journals(motions, times, t, g, film, bodies, angles, lagrange):  # typ
             bodies[1 + r] += lagrange[p] * motions[p, 2 * m + rings + r]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, film):  # type: ignore[no-untyped-def]
     """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
     for iteration in range(NEWTON_LIMIT):
@@ -63,7 +62,7 @@ def _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, f
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _oil_error(defect, stage_oil, step):  # type: ignore[no-untyped-def]
     """Largest embedded error of the oil H theta of a cell."""
     stages, count, m, k = stage_oil.shape
@@ -78,7 +77,7 @@ def _oil_error(defect, stage_oil, step):  # type: ignore[no-untyped-def]
     return error
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def films_follow(  # type: ignore[no-untyped-def]
     films, work, wet, flows, numbers, weights, moments, defect, order, tolerance, profile_times, profile_speeds,
     profile_angles, piece, turning, clearances, contact_at, contact_stiffness, motions, three, film, bodies, angles

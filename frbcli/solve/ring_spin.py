@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.contact import feel
 from frbcli.solve.film_forces import drag_integral
@@ -12,7 +12,7 @@ from frbcli.solve.stage import FORCE, OMEGA, X_0, Q, U, V
 from frbcli.solve.state import GRID, SLIP, SUM
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def set_speeds(turning, bodies, angles, film, grids):  # type: ignore[no-untyped-def]
     """OMEGA of each film, and how its grid stands, by speeds and angles of the rotor and the rings."""
     for f in range(turning.shape[0]):
@@ -26,7 +26,7 @@ def set_speeds(turning, bodies, angles, film, grids):  # type: ignore[no-untyped
             grids[GRID_TURN, f], grids[GRID_SPEED, f] = angle, speed
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles):  # type: ignore[no-untyped-def]
     """bodies, angles (1 + rings,) <- speed and angle of the rotor, and of each ring, which goes on as it did in the
     stage before."""
@@ -37,7 +37,7 @@ def guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles):  # typ
         angles[1 + r] = at[Q, i] + g * bodies[1 + r]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def spin_up(  # type: ignore[no-untyped-def]
     films, work, rotor, s, g, clearances, contact_at, contact_stiffness, at, film, bodies, angles, torque, stage_v,
     stage_a

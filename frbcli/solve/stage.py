@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import compiled
 from frbcli.solve.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
 from frbcli.solve.state import INVERSE_SPEED
 
@@ -29,18 +28,18 @@ V, Q, FREE, LATE, STAGE_ROWS = range(5)
 U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL_ROWS = range(11)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def norm(x, y):  # type: ignore[no-untyped-def]
     return math.sqrt(x * x + y * y)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def limit_of(contact_stiffness):  # type: ignore[no-untyped-def]
     """Eccentricity that is no state any more: under elastic contact the shell gives way, else it ends at the shell."""
     return ELASTIC_LIMIT if contact_stiffness > 0.0 else 1.0
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
     """The three weights of the parabola through points at the times a, b, c, at the time t."""
     return (
@@ -50,7 +49,7 @@ def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def start_stage(  # type: ignore[no-untyped-def]
     weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed, angle, gyroscopic,
     at, film,
@@ -84,7 +83,7 @@ def start_stage(  # type: ignore[no-untyped-def]
         film[X_0, k], film[U_0, k] = place, rate
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def begin_lag(numbers, g, speed, at):  # type: ignore[no-untyped-def]
     """The lag of `accelerate` in a stage of a gyroscopic rotor, which begins with the speed of its inverse: LATE."""
     for i in range(at.shape[1]):
@@ -92,7 +91,7 @@ def begin_lag(numbers, g, speed, at):  # type: ignore[no-untyped-def]
     return g * (speed - numbers[INVERSE_SPEED])
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def guess(points, three, s, selection, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
     """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
 
@@ -113,7 +112,7 @@ def guess(points, three, s, selection, q, clearances, g, t, limit, film):  # typ
             film[U, x], film[U, y] = (here_x - film[X_0, x]) / g, (here_y - film[X_0, y]) / g
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a):  # type: ignore[no-untyped-def]
     """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
 

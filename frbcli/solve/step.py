@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.state import (
     CONTACT,
@@ -42,7 +41,7 @@ GROWTH = 1.2  # a step is enlarged only if it pays for the new inverse
 LASTING = 0.95  # of the longest allowed step: a step chosen there lasts a while before the speed outgrows it
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def local_error(defect, observed, stage_v, stage_a, step, g):  # type: ignore[no-untyped-def]
     """Largest embedded error of the observed displacements, over their clearances; velocities count times g."""
     n, stages = stage_v.shape
@@ -61,7 +60,7 @@ def local_error(defect, observed, stage_v, stage_a, step, g):  # type: ignore[no
     return error
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_q, out_v, written):  # type: ignore[no-untyped-def]
     """Dense output: the cubic through displacements and velocities at both ends of a step. Returns rows written."""
     last = stage_v.shape[1] - 1
@@ -77,7 +76,7 @@ def write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_q
     return written
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def book_error(numbers, errors, step, error):  # type: ignore[no-untyped-def]
     """Add the local error of a step, which is done, to the fading sum of all, and to its span of the run."""
     spans = errors.shape[1]
@@ -88,7 +87,7 @@ def book_error(numbers, errors, step, error):  # type: ignore[no-untyped-def]
     errors[ERRORS_SUM, span] += error
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def step_after(h, error, before, order):  # type: ignore[no-untyped-def]
     """Proportional-integral control: the step after an accepted one; errors over the tolerance, now and before."""
     ratio = SAFETY * max(error, 1e-8) ** (-0.7 / order) * max(before, 1e-8) ** (0.3 / order)
@@ -96,7 +95,7 @@ def step_after(h, error, before, order):  # type: ignore[no-untyped-def]
     return h * ratio if ratio < 1.0 or ratio > GROWTH else h
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def step_to_take(h, before, remaining, speed, steps_per_revolution, longest):  # type: ignore[no-untyped-def]
     """(step that the controller keeps, step to take now): some of a revolution, and never across a kink of the profile.
 
@@ -113,7 +112,7 @@ def step_to_take(h, before, remaining, speed, steps_per_revolution, longest):  #
     return h, h
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def begin_step(numbers, times, speeds, angles, control, room):  # type: ignore[no-untyped-def]
     """(status, t, piece, h, step): how things stand, the time, its piece of the profile, and both of step_to_take.
 
@@ -135,14 +134,14 @@ def begin_step(numbers, times, speeds, angles, control, room):  # type: ignore[n
     return RUNNING, t, piece, h, step
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def begin_stages(v, a, stage_v, stage_a):  # type: ignore[no-untyped-def]
     """The first stage, which is explicit: the state at the start of the step."""
     for i in range(v.shape[0]):
         stage_v[i, 0], stage_a[i, 0] = v[i], a[i]
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(inline=True)
 def begin_past(past_now, past):  # type: ignore[no-untyped-def]
     """The points that predict the stages, see State.past: those of the step before, ahead of its own."""
     for k in range(HISTORY):
@@ -150,14 +149,14 @@ def begin_past(past_now, past):  # type: ignore[no-untyped-def]
             past[k, i] = past_now[k, i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def shorter(step, error, order):  # type: ignore[no-untyped-def]
     """The step to try in place of one whose error, over the tolerance, was too large or no number."""
     share = SAFETY * error ** (-1.0 / order) if math.isfinite(error) else 0.0
     return step * max(SMALLEST_SHARE, share)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def reject(numbers, step, error, order):  # type: ignore[no-untyped-def]
     """Count a step that has to be tried again, shorter. Returns whether that makes sense any more."""
     numbers[REJECTED] += 1
@@ -165,14 +164,14 @@ def reject(numbers, step, error, order):  # type: ignore[no-untyped-def]
     return not numbers[STEP] < SMALLEST_STEP
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def end_of_step(t, step, end):  # type: ignore[no-untyped-def]
     """The time after a step: the end of the profile's piece, not a rounding error beside it."""
     t_new = t + step
     return end if t_new >= end * (1.0 - 1e-15) else t_new
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def displace(weights, stage_v, step, q, q_new):  # type: ignore[no-untyped-def]
     """q_new <- the displacements after a step; weights: (stages,) of the result."""
     for i in range(q.shape[0]):
@@ -182,7 +181,7 @@ def displace(weights, stage_v, step, q, q_new):  # type: ignore[no-untyped-def]
         q_new[i] = q[i] + step * total
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def move_on(q, v, a, q_new, stage_v, stage_a):  # type: ignore[no-untyped-def]
     """The state after a step: q_new, and the velocities and accelerations of the last stage."""
     last = stage_v.shape[1] - 1
@@ -190,7 +189,7 @@ def move_on(q, v, a, q_new, stage_v, stage_a):  # type: ignore[no-untyped-def]
         q[i], v[i], a[i] = q_new[i], stage_v[i, last], stage_a[i, last]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def keep_past(past, past_now):  # type: ignore[no-untyped-def]
     """The points of a step that is done: its start, its first stage, and its end."""
     end = past.shape[0] - 1
@@ -198,7 +197,7 @@ def keep_past(past, past_now):  # type: ignore[no-untyped-def]
         past_now[0, i], past_now[1, i], past_now[2, i] = past[HISTORY - 1, i], past[HISTORY, i], past[end, i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def count_step(numbers, errors, control, t_new, step, speed, drift, largest):  # type: ignore[no-untyped-def]
     """Count a step that is done. drift: what its error adds to that of the run; largest eccentricity at its end.
 
@@ -212,7 +211,7 @@ def count_step(numbers, errors, control, t_new, step, speed, drift, largest):  #
     return CONTACT if control.contact_stiffness == 0.0 and largest >= control.contact_eccentricity else RUNNING
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def choose_next(numbers, h, error, order, longest):  # type: ignore[no-untyped-def]
     """The step after an accepted one, at most `longest`; error: of the accepted one over the tolerance."""
     numbers[STEP] = min(step_after(h, error, numbers[ERROR_BEFORE], order), longest)

@@ -10,8 +10,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.films import accept_films, begin_stage, make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
@@ -54,7 +54,7 @@ class Own(NamedTuple):
     torque: Array
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _largest_eccentricity(clearances, selection, q):  # type: ignore[no-untyped-def]
     largest = 0.0
     for f in range(clearances.shape[0]):
@@ -89,7 +89,7 @@ def advance(
     return int(status), int(rows)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _advance(  # type: ignore[no-untyped-def]
     rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil
 ):

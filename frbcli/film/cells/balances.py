@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.axial import BEND
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
@@ -46,7 +45,7 @@ INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, FLOWS = range(6)
 BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _end_flow(kind, last, beyond, conductance, bend, groove, length, steepness):  # type: ignore[no-untyped-def]
     """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance)."""
     rise, change = last - groove, bend * (last - beyond)
@@ -67,7 +66,7 @@ def _end_flow(kind, last, beyond, conductance, bend, groove, length, steepness):
     return conductance * felt, conductance * by_last, conductance * by_beyond, felt
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right):  # type: ignore[no-untyped-def]
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
@@ -101,7 +100,7 @@ def _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right)
             stencil[BEFORE, n, j] -= by_own
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _flow_along(ring, cells, states, d_x, d_y, g, stencil, right):  # type: ignore[no-untyped-def]
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
@@ -125,7 +124,7 @@ def _flow_along(ring, cells, states, d_x, d_y, g, stencil, right):  # type: igno
             stencil[BELOW, i, j + 1] -= low
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil, right):  # type: ignore[no-untyped-def]
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
@@ -150,7 +149,7 @@ def _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil
                 stencil[CENTRE, i, j] += kept
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right, flows):  # type: ignore[no-untyped-def]
     m, k = states.shape[1], states.shape[2]
     steepness = STEEPNESS / numbers[AMBIENT]
@@ -195,7 +194,7 @@ def _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right
                 flows[INFLOW] -= flow
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _hold_given(cells, stencil, right, flows):  # type: ignore[no-untyped-def]
     """Cells with a given pressure keep it; what would leave them is their supply."""
     m, k = cells.shape[1], cells.shape[2]
@@ -215,7 +214,7 @@ def _hold_given(cells, stencil, right, flows):  # type: ignore[no-untyped-def]
                     right[i, j, k + side] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def balances(  # type: ignore[no-untyped-def]
     numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, right, flows
 ):

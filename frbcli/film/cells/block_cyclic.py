@@ -10,7 +10,8 @@ cells along.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from frbcli.compiled import compiled
 
 CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
 # The usual lengths of columns and the usual number of right-hand sides, as tuples: the compiler knows how long they are
@@ -18,7 +19,7 @@ CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
 FIVE, SIX, USUAL_RIGHTS = (0,) * 5, (0,) * 6, (0,) * 3
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def _invert(a, columns):  # type: ignore[no-untyped-def]
     """a (k, k) <- its inverse, by Gauss and Jordan's elimination in place."""
     k = len(columns)
@@ -35,7 +36,7 @@ def _invert(a, columns):  # type: ignore[no-untyped-def]
                     a[i, j] -= factor * a[p, j]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def _product(a, b, to, columns, row):  # type: ignore[no-untyped-def]
     """to (k, n) <- a (k, k) b (k, n)."""
     k, n = len(columns), len(row)
@@ -48,7 +49,7 @@ def _product(a, b, to, columns, row):  # type: ignore[no-untyped-def]
                 to[i, c] += factor * b[j, c]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def _subtract_product(a, diagonal, b, to, columns, row):  # type: ignore[no-untyped-def]
     """to (k, n) -= a (k, k) diag(diagonal) b (k, n)."""
     k, n = len(columns), len(row)
@@ -60,7 +61,7 @@ def _subtract_product(a, diagonal, b, to, columns, row):  # type: ignore[no-unty
                     to[i, c] -= factor * b[j, c]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def _fill(stencil, i, block, columns):  # type: ignore[no-untyped-def]
     """block (k, k) <- the equations of column i by its own unknowns."""
     k = len(columns)
@@ -74,7 +75,7 @@ def _fill(stencil, i, block, columns):  # type: ignore[no-untyped-def]
             block[a, a + 1] = stencil[ABOVE, i, a]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def solve_blocks(stencil, blocks, fields, column, row):  # type: ignore[no-untyped-def]
     """As solve_ring; column, row: anything as long as a column and a row of fields."""
     m, k, n = len(blocks), len(column), len(row)
@@ -138,7 +139,7 @@ def solve_blocks(stencil, blocks, fields, column, row):  # type: ignore[no-untyp
             for c in range(k, n):
                 fields[i, a, c] = held[a, c]
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
     """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import balances
 from frbcli.film.cells.block_cyclic import CENTRE, solve_ring
@@ -12,7 +12,7 @@ from frbcli.film.cells.data import AREA, CAVITY, CENTRIFUGAL, CLIPS, COS, FORCE_
 from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def film_loads(numbers, ring, width, states, delta):  # type: ignore[no-untyped-def]
     """Force on the journal with the changes delta (m, k, k + SIDES): (x, y) after the film's own change, and its
     derivatives (xx, xy, yx, yy) by the journal's velocities, in N and N s."""
@@ -40,7 +40,7 @@ def film_loads(numbers, ring, width, states, delta):  # type: ignore[no-untyped-
     return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def imbalance(cells, fields):  # type: ignore[no-untyped-def]
     """What does not balance in fields (m, k, k + SIDES), see balances, as a rate of the gap in 1/s: the mean over the
     cells, and the largest."""
@@ -55,7 +55,7 @@ def imbalance(cells, fields):  # type: ignore[no-untyped-def]
     return total / area, largest
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def damp(cells, rate, stencil):  # type: ignore[no-untyped-def]
     """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see solver.py."""
     m, k = stencil.shape[1], stencil.shape[2]
@@ -64,7 +64,7 @@ def damp(cells, rate, stencil):  # type: ignore[no-untyped-def]
             stencil[CENTRE, i, j] += rate * cells[UNKNOWN, i, j] * cells[AREA, i, j]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def film_newton(  # type: ignore[no-untyped-def]
     numbers,
     ring,
@@ -100,7 +100,7 @@ def film_newton(  # type: ignore[no-untyped-def]
     return film_loads(numbers, ring, width, states, fields)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def store_rates(ring, cells, states, d_x, d_y, g, past, fields, rates):  # type: ignore[no-untyped-def]
     """rates (m, k) <- of the oil H theta of each cell, by the flows that fields hold the balance of: what cells pass to
     each other is the same for both, so that no oil is lost however far the balance is from zero."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import ECCENTRICITY, MOTION, SPEED, WHIRL, call_cells, call_follow
 from frbcli.film.cells.data import CELLS_AT, FOLLOW_AT, GIVEN_PRESSURE, PARAMETERS, REFERENCE, SCALES_END, UNKNOWN
 
@@ -16,7 +16,7 @@ CENTRE = 1e-6  # of the clearance, squared: a journal in the centre does not whi
 WHIRL_EDGE, WHIRL_STEP = 0.3, 0.15  # distance from 0.5 where no whirl is left, and over which it fades
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def whirl_share(d_x, d_y, v_x, v_y, speed):  # type: ignore[no-untyped-def]
     """How far a journal is in half-frequency whirl, 0 to 1, by the rate of its attitude angle over omega_J + omega_S.
 
@@ -28,7 +28,7 @@ def whirl_share(d_x, d_y, v_x, v_y, speed):  # type: ignore[no-untyped-def]
     return place * place * (3.0 - 2.0 * place)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def follow_law(numbers, d_x, d_y, v_x, v_y, speed, law):  # type: ignore[no-untyped-def]
     """law (LAW_NUMBERS,) <- what a film's law is at the displacement d, its rate v and the speed omega_J + omega_S."""
     motion = np.empty(MOTION)
@@ -37,7 +37,7 @@ def follow_law(numbers, d_x, d_y, v_x, v_y, speed, law):  # type: ignore[no-unty
     call_follow(int(numbers[FOLLOW_AT]), numbers[PARAMETERS:], motion, numbers[REFERENCE:SCALES_END], law)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def cell_states(numbers, cells, law, drop, w, states):  # type: ignore[no-untyped-def]
     """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law as follow_law has it; all arrays in
     one piece. drop: by which the given pressures are lower than they were made."""
@@ -55,7 +55,7 @@ def cell_states(numbers, cells, law, drop, w, states):  # type: ignore[no-untype
                     states[layer, i, j] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def pressure_of(numbers, law, w):  # type: ignore[no-untyped-def]
     """Pressure of one cell with the unknown w."""
     unknown, state = np.empty(1), np.empty(STATES)

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import compiled_cell
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.penalty import Penalty
@@ -24,7 +24,7 @@ ABOVE_CAVITY, SOURCE, RISE, FALL, LAYERS = range(5)
 penalty_cell = compiled_cell(Penalty)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _residual(stencil, loads, area, v_r, v_t, cells, right):  # type: ignore[no-untyped-def]
     """The last layer of right (m, k, k + 1) <- minus what does not balance."""
     m, k = area.shape
@@ -42,7 +42,7 @@ def _residual(stencil, loads, area, v_r, v_t, cells, right):  # type: ignore[no-
             right[i, j, k] = -off
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _matrix(stencil, area, cells, damping, newton):  # type: ignore[no-untyped-def]
     """newton (ENTRIES, m, k) <- Newton's matrix by w, which is kept back by the damping in 1/s."""
     m, k = area.shape
@@ -59,7 +59,7 @@ def _matrix(stencil, area, cells, damping, newton):  # type: ignore[no-untyped-d
                 newton[ABOVE, i, j] = stencil[ABOVE, i, j] * rise[i, j + 1]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _settle(law, unit, stencil, loads, area, v_r, v_t, w, cells, newton, blocks, right):  # type: ignore[no-untyped-def]
     """w (m, k) <- unknowns, in units of `unit`, of the film that moves with (v_r, v_t); cells (LAYERS, m, k) <- its
     states. Returns the iterations, LIMIT if it has not settled."""
@@ -86,7 +86,7 @@ def _settle(law, unit, stencil, loads, area, v_r, v_t, w, cells, newton, blocks,
     return LIMIT
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def row_forces(law, unit, stencil, loads, area, push, width, velocities, forces):  # type: ignore[no-untyped-def]
     """forces (d, l, 2) <- integrals of the pressure above that of cavitation for the velocities (d, l, 2).
 

@@ -16,8 +16,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
@@ -115,7 +115,7 @@ def _ends_odd(matrix: Array) -> None:
     matrix[0, [0, 2]] = matrix[-1, [-1, -3]] = 1.0, 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def source_force(table, numbers, eccentricity, w_r, w_t, omega):  # type: ignore[no-untyped-def]
     """Force from source_table as table_force returns it: eight numbers. omega: omega_J + omega_S in rad/s."""
     rate = max(abs(omega), 1.0) if numbers[0, RELATIVE] != 0.0 else 1.0
@@ -156,7 +156,7 @@ def source_force(table, numbers, eccentricity, w_r, w_t, omega):  # type: ignore
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _basis(s):  # type: ignore[no-untyped-def]
     """The four cubic B-splines that are not zero at s in [0, 1], and their slopes."""
     r = 1.0 - s
@@ -172,7 +172,7 @@ def _basis(s):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def spline(table, i, j, k, a, b, c):  # type: ignore[no-untyped-def]
     """Of both components, one after the other: value and derivatives by the three axes, in steps, at (a, b, c) in the
     cell (i, j, k)."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from numba import njit
+from frbcli.compiled import compiled
 
 FOUR = 4  # rows that are subtracted at once
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def invert(a, pivot):  # type: ignore[no-untyped-def]
     """a (k, k) <- its inverse, by Gauss and Jordan's elimination in place; pivot (k,) is overwritten."""
     k = a.shape[0]
@@ -25,7 +25,7 @@ def invert(a, pivot):  # type: ignore[no-untyped-def]
                     a[i, j] -= factor * pivot[j]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def subtract_product(a, b, rest):  # type: ignore[no-untyped-def]
     """rest (m, n) <- rest - a (m, k) b (k, n), four rows of b into two rows at once."""
     rows, k = a.shape

@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 from frbcli.film.published.dense import invert, subtract_product
 
@@ -61,7 +61,7 @@ def _block(pivots: int, others: int, width: int) -> Block:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def solve_ring(ring: Ring, matrix: Array, right: Array, solution: Array) -> None:
     """solution (2 a, n, r) of the elements' matrices (e, 9, 9) and right-hand sides (e, 9, r), both overwritten.
 
@@ -117,7 +117,7 @@ def solve_ring(ring: Ring, matrix: Array, right: Array, solution: Array) -> None
             _substitute_centres(matrix, right, solution, i, s, m - 1)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def _condense_centres(matrix, right, i, along):  # type: ignore[no-untyped-def]
     """The middle nodes of column i out of the equations of the others; their rows are divided by the pivots."""
     for e in range(i * along, (i + 1) * along):
@@ -135,7 +135,7 @@ def _condense_centres(matrix, right, i, along):  # type: ignore[no-untyped-def]
                     right[e, a, s] -= share * right[e, 4, s]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _fill_column(matrix, right, i, column, m, n):  # type: ignore[no-untyped-def]
     """The equations of column i: those of its middle line are to be eliminated from those of the lines beside it."""
     along, rights = m - 1, right.shape[2]
@@ -162,7 +162,7 @@ def _fill_column(matrix, right, i, column, m, n):  # type: ignore[no-untyped-def
                 to[row, 2 * n + s] += right[e, a, s]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _place(a, j, n):  # type: ignore[no-untyped-def]
     """Where local node a of element j is on the middle line, or on the two lines beside it."""
     p, q = a // 3, a % 3
@@ -171,7 +171,7 @@ def _place(a, j, n):  # type: ignore[no-untyped-def]
     return (n if p == 2 else 0) + 2 * j + q
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _begin(rest, front, n):  # type: ignore[no-untyped-def]
     """The front is line 1 between column 0 and the next one, beside the border, from the rows of column 0."""
     rights = rest.shape[1] - 2 * n
@@ -186,7 +186,7 @@ def _begin(rest, front, n):  # type: ignore[no-untyped-def]
             front.ahead[u, 2 * n + s] = rest[n + u, 2 * n + s]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _add(rest, front, n, closing):  # type: ignore[no-untyped-def]
     """Add the rows of a column, behind which the border comes where it closes the ring."""
     rights, behind = rest.shape[1] - 2 * n, n if closing else 0
@@ -201,7 +201,7 @@ def _add(rest, front, n, closing):  # type: ignore[no-untyped-def]
             front.rest[behind + u, 2 * n + s] += rest[n + u, 2 * n + s]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _advance(front, n):  # type: ignore[no-untyped-def]
     """The next line becomes the current one."""
     width = front.rest.shape[1]
@@ -218,7 +218,7 @@ def _advance(front, n):  # type: ignore[no-untyped-def]
             front.rest[u, c] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _eliminate(block, kept, i):  # type: ignore[no-untyped-def]
     """kept[i] <- own^-1 ahead, and rest less what that takes from it."""
     invert(block.own, block.pivot)
@@ -231,7 +231,7 @@ def _eliminate(block, kept, i):  # type: ignore[no-untyped-def]
     subtract_product(block.below, values, block.rest)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _substitute_centres(matrix, right, solution, i, s, along):  # type: ignore[no-untyped-def]
     """The values at the odd places of the middle line of column i."""
     lines = solution.shape[0]

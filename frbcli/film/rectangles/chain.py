@@ -12,8 +12,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array, axial_modes, axial_vertices
 from frbcli.film.rectangles.clip import cut_element
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, SLOPE
@@ -83,7 +83,7 @@ def chain_table(axial: int, radius_to_width: float, profile: Callable[[Array], A
     return table[None, None]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def element_matrices(grid, d_x, d_y, along, across):  # type: ignore[no-untyped-def]
     """Element matrices of H^3 and of its derivatives by d_x and d_y, without the mode's share.
 
@@ -105,7 +105,7 @@ def element_matrices(grid, d_x, d_y, along, across):  # type: ignore[no-untyped-
                     across[e, t, entry] += weight * length * VALUES[entry, g]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _solve_chain(stiff, first, count, row, rows, fields, diagonal, upper):  # type: ignore[no-untyped-def]
     """Solve one piece of `count` elements from `first` on for the right-hand sides fields[row : row + rows], in place.
 
@@ -152,7 +152,7 @@ def _solve_chain(stiff, first, count, row, rows, fields, diagonal, upper):  # ty
             )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def mode_fields(grid, along, across, w_x, w_y, decay, load, groove, scratch, fields):  # type: ignore[no-untyped-def]
     """fields (5, 2 m + 1) <- pressure, its derivatives by w_x and w_y, and by d_x and d_y, of one mode.
 
@@ -199,7 +199,7 @@ def mode_fields(grid, along, across, w_x, w_y, decay, load, groove, scratch, fie
             first = e + 1
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def chain_force(table, grid, d_x, d_y, w_x, w_y, level, clipped):  # type: ignore[no-untyped-def]
     """Integrals of P n dz dphi over the bearing, with P clipped at `level` (scaled, gauge) if clipped.
 

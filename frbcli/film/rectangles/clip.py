@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, element_lengths, gauss_angles
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def force_weights(vertices: Array) -> Array:
     """(2, 3, m) integrals of each element's shape functions times cos(Theta) and sin(Theta)."""
     m = vertices.shape[0]
@@ -30,7 +30,7 @@ def force_weights(vertices: Array) -> Array:
     return weights
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _roots(p0, p1, p2):  # type: ignore[no-untyped-def]
     """The two crossing points of the quadratic through p0, p1, p2 at 0, 1/2, 1, ascending; 2.0 where there is none."""
     a, b = 2.0 * (p0 - 2.0 * p1 + p2), -3.0 * p0 + 4.0 * p1 - p2
@@ -53,7 +53,7 @@ def _roots(p0, p1, p2):  # type: ignore[no-untyped-def]
     return min(first, second), max(first, second)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def clipped_line(fields, level, vertices, lengths, weights, result):  # type: ignore[no-untyped-def]
     """Integrals over one turn at one axial position, over the region where the pressure fields[0] exceeds the level.
 
@@ -76,7 +76,7 @@ def clipped_line(fields, level, vertices, lengths, weights, result):  # type: ig
         cut_element(fields, i0, i1, i2, p0, p1, p2, vertices[e], lengths[e], result)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def cut_element(fields, i0, i1, i2, p0, p1, p2, start_angle, length, result):  # type: ignore[no-untyped-def]
     """result += integrals over the part of one element where the quadratic through p0, p1, p2 is positive."""
     first, second = _roots(p0, p1, p2)

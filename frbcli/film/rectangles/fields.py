@@ -11,8 +11,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.clip import cut_element, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
@@ -58,7 +58,7 @@ def field_table(mesh: Mesh, radius_to_width: float) -> Array:
     return table
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _line_fields(table, eccentricity, line, unit):  # type: ignore[no-untyped-def]
     """unit (4, m + 1) <- the two fields on the half ring at one axial line and their derivatives by the
     eccentricity."""
@@ -78,7 +78,7 @@ def _line_fields(table, eccentricity, line, unit):  # type: ignore[no-untyped-de
             unit[2 + f, i] = d1 * (high[i] - low[i]) + d2 * low_x[i] + d3 * high_x[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _ring(unit, w_r, w_t, excess, pressure):  # type: ignore[no-untyped-def]
     """pressure (n + 1,) <- pressure over the level all around, its first node again at the end. Returns the largest."""
     half = unit.shape[1]
@@ -91,7 +91,7 @@ def _ring(unit, w_r, w_t, excess, pressure):  # type: ignore[no-untyped-def]
     return largest
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _sort_elements(unit, w_r, w_t, pressure, grid, weights, active, cut, part):  # type: ignore[no-untyped-def]
     """active (2, n + 1) <- weights of the nodes for the elements that lie above the level as a whole; part (4, 2) +=
     the share of the elements that the level crosses. cut: (4, 3) scratch."""
@@ -114,7 +114,7 @@ def _sort_elements(unit, w_r, w_t, pressure, grid, weights, active, cut, part): 
     active[0, 2 * m], active[1, 2 * m] = carried_c, carried_s
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@compiled(fastmath={"reassoc", "contract"})
 def _weighted(unit, active, sums):  # type: ignore[no-untyped-def]
     """sums (5, 2) <- the four fields (even, odd, even, odd) and one, summed with the weights of the nodes."""
     half = unit.shape[1]
@@ -137,7 +137,7 @@ def _weighted(unit, active, sums):  # type: ignore[no-untyped-def]
         sums[4, c] = one - middle
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def fields_force(table, grid, eccentricity, w_r, w_t, sigma, level):  # type: ignore[no-untyped-def]
     """Force of one section, as table_force, with the scaled gauge pressures sigma at z = 1 and `level` in the cavity.
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba import njit
 from numba.extending import overload
 
+from frbcli.compiled import compiled
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
 from frbcli.film.rectangles.chain import ChainFilm, chain_force
 from frbcli.film.rectangles.fields import FieldsFilm, fields_force
@@ -62,7 +62,7 @@ def _by_kind(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     return lambda film, d_x, d_y, w_x, w_y, omega: _polar(film, d_x, d_y, w_x, w_y, omega)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     """Force of one whole bearing on the journal.
 
@@ -75,7 +75,7 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     return _in_frame(film, d_x, d_y, v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x, omega)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     """film_force of a film that is solved along and across the line of centres."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
@@ -96,7 +96,7 @@ def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     """film_force of a film whose grooves stand still: solved in the frame of the shell."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
@@ -108,7 +108,7 @@ def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     return _with_rotation(film.force_scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _with_rotation(  # type: ignore[no-untyped-def]
     scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
 ):
@@ -122,7 +122,7 @@ def _with_rotation(  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _turned(rr, rt, tr, tt, c, s):  # type: ignore[no-untyped-def]
     """Q [[rr, rt], [tr, tt]] Q^T with Q the rotation by the angle of (c, s)."""
     e, f = c * rr - s * tr, c * rt - s * tt

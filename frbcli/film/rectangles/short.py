@@ -10,7 +10,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+
+from frbcli.compiled import compiled
 
 ANGLES = 96  # points of the trapezoidal rule in Sommerfeld's angle where no closed form exists
 
@@ -34,7 +35,7 @@ class SuppliedShortFilm(NamedTuple):
     level: float
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def clipped_section(a, sigma, level):  # type: ignore[no-untyped-def]
     """Integral over 0 <= z <= 1 of max(a z (1 - z) + sigma z - level, 0), exactly, and its derivative by a.
 
@@ -50,7 +51,7 @@ def clipped_section(a, sigma, level):  # type: ignore[no-untyped-def]
     return total, slope
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[no-untyped-def]
     """Force of one section with equal pressures at both edges and in the cavity, in the frame of the line of centres.
 
@@ -96,7 +97,7 @@ def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def short_general(eccentricity, w_r, w_t, slenderness, sigma, level):  # type: ignore[no-untyped-def]
     """As short_closed, with the supply pressure sigma at z = 1 and the cavitation pressure `level`, both scaled,
     gauge."""

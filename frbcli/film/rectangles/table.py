@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
@@ -59,7 +59,7 @@ def ring_contraction(eccentricity: float) -> float:
     return float(max((1.0 - eccentricity) / (1.0 + eccentricity), 1e-6) ** 0.3)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def clipped_forces(  # type: ignore[no-untyped-def]
     fields, shapes, weights_z, directions, stretch, stretch_rate, vertices, clipped
 ):
@@ -160,7 +160,7 @@ def _slopes(values: Array, step: float, parity: float) -> Array:
     return slopes
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
     """Bicubic Hermite interpolation of force_table.
 
@@ -203,7 +203,7 @@ def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _hermite(  # type: ignore[no-untyped-def]
     table, i, j, c, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3
 ):

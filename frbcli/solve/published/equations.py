@@ -7,8 +7,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import DIRECTIONS, Elements, Gap, assemble
@@ -79,7 +79,7 @@ def make_room(film: PublishedFilm) -> Room:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def residual(  # type: ignore[no-untyped-def]
     equations, room, w, past, d_x, d_y, v_x, v_y, omega, g, contact_at, contact_stiffness
 ):

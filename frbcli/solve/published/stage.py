@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.published.ring import solve_ring
 from frbcli.film.published.unknown import pressures_of
 from frbcli.solve.contact import push_back, shell_ahead
@@ -33,7 +33,7 @@ TOLERATED = 1e-2
 ENOUGH = 2e-3  # the same where the journal does not move any more
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _contact(f, d_x, d_y, clearance, g, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
     """Add the elastic contact to forces f (2, RIGHTS): its own, and by the velocity over the clearance."""
     f_x, f_y, k_xx, k_yy, k_xy = push_back(d_x, d_y, clearance, contact_at, contact_stiffness)
@@ -45,7 +45,7 @@ def _contact(f, d_x, d_y, clearance, g, contact_at, contact_stiffness):  # type:
     f[1, 2] -= g * k_yy
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _correction(equations, room, compliance, clearance, g, contact_at, contact_stiffness, film):  # type: ignore[no-untyped-def]
     """CORRECTION of the velocities, FORCE then; solution (nodes, 0) <- correction of the unknowns. Returns its largest
     entry, infinite if a pivot has vanished."""
@@ -81,7 +81,7 @@ def _correction(equations, room, compliance, clearance, g, contact_at, contact_s
     return largest if math.isfinite(largest) and math.isfinite(u_x + u_y) else math.inf
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def _put_up_with(  # type: ignore[no-untyped-def]
     equations, room, compliance, clearance, g, contact_at, contact_stiffness, tolerance, film
 ):
@@ -102,7 +102,7 @@ def _put_up_with(  # type: ignore[no-untyped-def]
     return off < tolerance
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def solve_stage(  # type: ignore[no-untyped-def]
     equations, room, compliance, clearance, g, contact_at, contact_stiffness, tolerance, past, w, film
 ):
