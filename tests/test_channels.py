@@ -21,6 +21,7 @@ from frbcli.film.cells.channels import Channel, channel_resistance, with_channel
 from frbcli.film.cells.data import FLOW_SCALE, volume_films
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import net_flow, oil_defect
@@ -121,7 +122,7 @@ def _fed(film: VolumeFilm, feed_holes: float, groove: float) -> float:
         replace(grid, fixed_pressure=np.where(grid.fixed, feed_holes / scale, 0.0)),
         film.law, film.scales.reference,
     )  # fmt: skip
-    flow = there.steady(Motion((0.0, 0.0), (0.0, 0.0), 0.0)).flows.supply
+    flow = FilmSolver(there).steady(Motion((0.0, 0.0), (0.0, 0.0), 0.0)).flows.supply
     return flow * section.copies * section.radius * section.width * section.clearance
 
 

@@ -11,6 +11,7 @@ import pytest
 from volume_films import ROTATION, polar_motion, section_of
 
 from frbcli import load_case
+from frbcli.bearing_tests.march import march
 from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
 from frbcli.cli.main import run
 from frbcli.errors import InputError
@@ -24,7 +25,7 @@ from frbcli.film.cells.openings import hole_area
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.cells.plain.loads import Loads, loads
-from frbcli.film.cells.plain.transient import march
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.supply import supplied, supply_share
 from frbcli.film.gap import AxialGroove, Hole, Lobes, Section, gap_height, graded_ring, smallest_gap
 from frbcli.film.operating import (
@@ -46,7 +47,7 @@ def film_on(section: Section, phi: np.ndarray, along: int = 8, law: Law | None =
 
 
 def steady_loads(film: VolumeFilm, motion: Motion) -> Loads:
-    return loads(film, motion, film.steady(motion))
+    return loads(film, motion, FilmSolver(film).steady(motion))
 
 
 # --- lobes -----------------------------------------------------------------------------------------------------------
@@ -238,7 +239,7 @@ def test_plain_film_is_the_same_in_any_frame(speed: float) -> None:
     angle = 7 * TURN / (len(RING) - 1)
     expected = steady_loads(film, motion)
     seen = seen_from(motion, angle, speed)
-    found = loads(film, seen, film.steady(seen), slip=motion.omega)
+    found = loads(film, seen, FilmSolver(film).steady(seen), slip=motion.omega)
     # the surfaces carry a full film's oil by the gap in the middle of a face, its squeeze counts in that of a cell
     assert turned(found.force, angle) == pytest.approx(expected.force, rel=1e-3)
     assert found.torque.couette == pytest.approx(expected.torque.couette, rel=1e-12)
@@ -278,7 +279,7 @@ def test_turning_bore_is_in_its_frame_what_a_bore_at_that_place_is_in_the_lab(la
     expected = steady_loads(lab, motion)
     journal = film_on(with_hole(2.2, PLAIN.width), RING, law=law)
     seen = seen_from(motion, angle, speed)
-    found = loads(journal, seen, journal.steady(seen), slip=motion.omega)
+    found = loads(journal, seen, FilmSolver(journal).steady(seen), slip=motion.omega)
     deviation = np.array(turned(found.force, angle)) - expected.force
     assert np.linalg.norm(deviation) < 2e-3 * np.linalg.norm(expected.force)
     elsewhere = np.array(steady_loads(film_on(with_hole(2.2, PLAIN.width), RING, law=law), motion).force)

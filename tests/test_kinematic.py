@@ -16,6 +16,7 @@ from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.plain.loads import loads
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.supply import supplied
 from frbcli.film.rectangles.bearing import evaluate, make_film
 from frbcli.film.rectangles.table import Mesh
@@ -132,7 +133,7 @@ def steady_force(supply: str, share: float = 1.0) -> np.ndarray:
     around, along = CELLS[0], CELLS[1] // (2 if section.far == "symmetry" else 1)
     grid = fitted_grid(section, (0.0, 0.0), around, along)
     film = supplied(VolumeFilm(section, grid, Reynolds(), reference_pressure(section, motion)), share)
-    return np.array(loads(film, motion, film.steady(motion)).force)
+    return np.array(loads(film, motion, FilmSolver(film).steady(motion)).force)
 
 
 def test_whirl_with_a_bore_in_the_journal_ends_as_with_one_where_it_has_come_to() -> None:

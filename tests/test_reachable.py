@@ -21,7 +21,6 @@ PACKAGE = Path(frbcli.__file__).parent
 PLAIN = {
     ("frbcli.film.rectangles.plain", "solve_plain"): "frbcli.film.rectangles.modal",
     ("frbcli.film.rectangles.short", "short_pressure"): "frbcli.film.rectangles.short",
-    ("frbcli.film.cells.plain.transient", "total_balance"): "frbcli.film.cells.balances",
 }
 # Pages of the documentation are made by them, with commands that tests/README tells.
 TOOLS = {

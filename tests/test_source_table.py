@@ -16,6 +16,7 @@ from frbcli.film.cells.grid import fitted_grid
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.cells.plain.loads import force
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
 from frbcli.film.grid import Array
 from frbcli.film.penalty_table.film import SourceFilm
@@ -56,7 +57,7 @@ def in_metres(film: SourceFilm, state: tuple[tuple[float, float], tuple[float, f
 
 
 def steady(film: VolumeFilm, motion: Motion) -> Array:
-    return np.array(force(film, film.pressure(film.steady(motion).state)))
+    return np.array(force(film, film.pressure(FilmSolver(film).steady(motion).state)))
 
 
 @pytest.mark.parametrize(

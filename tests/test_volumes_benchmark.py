@@ -27,6 +27,7 @@ from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import COS, GAP, SIN, volume_films
 from frbcli.film.cells.newton_step import film_newton
 from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.states import FRACTION, STATES, cell_states, follow_law
 from frbcli.film.rectangles.bearing import RectangularBearing
 
@@ -107,7 +108,7 @@ def seconds(job: Callable[[], object], count: int) -> float:
 
 def iteration_seconds(along: int) -> float:
     film = film_of(TwoPhase(0.99), 40, along)
-    w = film.steady(ROTATION).w
+    w = FilmSolver(film).steady(ROTATION).w
     data = volume_films([film])
     parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
 

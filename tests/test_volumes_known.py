@@ -11,6 +11,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 from volume_films import AMBIENT, ROTATION, polar_motion, section_of
 
+from frbcli.bearing_tests.march import march
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
@@ -21,7 +22,7 @@ from frbcli.film.cells.openings import hole_area
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.plain.film import VolumeFilm, reference_pressure
 from frbcli.film.cells.plain.loads import loads
-from frbcli.film.cells.plain.transient import march
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_height
 from frbcli.film.section_faults import runs_dry, section_faults
 
@@ -62,7 +63,7 @@ def measured_fronts(cells: int) -> tuple[float, float, float]:
     phi = LEADING + np.linspace(0.0, TURN, cells + 1)
     film = VolumeFilm(section, volume_grid(section, phi, np.linspace(0.0, 1.0, 3)), Elrod(), OMEGA)
     motion = Motion((0.0, ECCENTRICITY), (0.0, 0.0), OMEGA)
-    fraction = film.steady(motion).state.fraction[:, 0]
+    fraction = FilmSolver(film).steady(motion).state.fraction[:, 0]
     empty = np.flatnonzero(fraction < 1.0)
     return float(phi[empty[0]]), float(phi[empty[-1] + 1]), TURN / cells
 
@@ -84,7 +85,7 @@ def test_oil_in_the_cavity_of_a_long_bearing_is_what_passed_the_rupture() -> Non
     phi = LEADING + np.linspace(0.0, TURN, 289)
     film = VolumeFilm(section, volume_grid(section, phi, np.linspace(0.0, 1.0, 3)), Elrod(), OMEGA)
     motion = Motion((0.0, ECCENTRICITY), (0.0, 0.0), OMEGA)
-    fraction = film.steady(motion).state.fraction[:, 0]
+    fraction = FilmSolver(film).steady(motion).state.fraction[:, 0]
     empty = fraction < 1.0
     flow = fraction * gap_height(section, motion.d, phi[1:])  # through the face after each cell
     inner = empty & np.roll(empty, 1) & np.roll(empty, -1)
@@ -138,7 +139,7 @@ def test_elrod_is_reynolds_for_an_axial_groove() -> None:
     forces = []
     for law in (Elrod(), Reynolds()):
         film = VolumeFilm(section, fitted_grid(section, ROTATION.d, 96, 16), law, 50.0)
-        forces.append(np.array(loads(film, ROTATION, film.steady(ROTATION)).force))
+        forces.append(np.array(loads(film, ROTATION, FilmSolver(film).steady(ROTATION)).force))
     assert forces[0] == pytest.approx(forces[1], rel=1e-3)
 
 
@@ -147,7 +148,7 @@ def test_two_phase_tends_to_elrod_as_it_gets_steeper() -> None:
 
     def force(law: Law) -> np.ndarray:
         film = VolumeFilm(section, fitted_grid(section, ROTATION.d, 64, 12), law, 50.0)
-        return np.array(loads(film, ROTATION, film.steady(ROTATION)).force)
+        return np.array(loads(film, ROTATION, FilmSolver(film).steady(ROTATION)).force)
 
     exact = force(Elrod())
     gaps = [float(np.hypot(*(force(TwoPhase(x, 0.0)) - exact))) for x in (0.9, 0.99, 0.999)]
@@ -167,7 +168,7 @@ def test_bores_that_shrink_to_nothing_give_the_plain_film() -> None:
 
     def force(section: Section) -> np.ndarray:
         film = VolumeFilm(section, volume_grid(section, grid.phi, grid.z), Reynolds(), 50.0)
-        return np.array(loads(film, ROTATION, film.steady(ROTATION)).force)
+        return np.array(loads(film, ROTATION, FilmSolver(film).steady(ROTATION)).force)
 
     expected = force(plain)
     gaps = [float(np.hypot(*(force(with_bores(size)) - expected))) for size in (4e-3, 2e-3, 1e-3, 1e-6)]
@@ -195,7 +196,7 @@ def test_hydrostatic_force_of_a_pocket_is_that_of_its_pressure() -> None:
     phi = 0.5 * opening + np.linspace(0.0, TURN, 181)
     film = VolumeFilm(section, volume_grid(section, phi, np.linspace(0.0, 1.0, 5)), Sommerfeld(), 1.0)
     motion = Motion((0.0, 0.0), (0.0, 0.0), 1e-3)
-    force = loads(film, motion, film.steady(motion)).force
+    force = loads(film, motion, FilmSolver(film).steady(motion)).force
     assert force[0] == pytest.approx(0.0, abs=1e-9)
     assert force[1] == pytest.approx(-pressure * 1e-5 * 2.0 * section.radius * math.sin(0.5 * opening), rel=1e-3)
 
@@ -208,7 +209,7 @@ def test_mirrored_motion_gives_the_mirrored_force(law: Law) -> None:
     phi = np.radians(7.5) + np.linspace(0.0, TURN, 97)
     z = np.linspace(0.0, 1.0, 13)
     force, mirrored = (
-        np.array(loads(film, moved, film.steady(moved)).force)
+        np.array(loads(film, moved, FilmSolver(film).steady(moved)).force)
         for film, moved in (
             (VolumeFilm(section, volume_grid(section, phi, z), law, 50.0), motion),
             (VolumeFilm(section, volume_grid(section, -phi[::-1], z), law, 50.0), mirror),
@@ -225,7 +226,7 @@ def test_half_a_film_is_the_whole_one_cut_in_the_middle() -> None:
     both = np.concatenate([0.5 * faces, 1.0 - 0.5 * faces[-2::-1]])
     phi = fitted_grid(half, motion.d, 64, 4).phi
     found = [
-        loads(film, motion, film.steady(motion))
+        loads(film, motion, FilmSolver(film).steady(motion))
         for film in (
             VolumeFilm(half, volume_grid(half, phi, faces), Elrod(), 50.0),
             VolumeFilm(whole, volume_grid(whole, phi, both), Elrod(), 50.0),
@@ -252,7 +253,7 @@ def test_viscosity_and_speed_scale_the_pressure() -> None:
 
     def of(scaled: Section, motion: Motion) -> tuple[np.ndarray, float]:
         film = VolumeFilm(scaled, volume_grid(scaled, grid.phi, grid.z), TwoPhase(0.99), 50.0)
-        found = loads(film, motion, film.steady(motion))
+        found = loads(film, motion, FilmSolver(film).steady(motion))
         return np.array(found.force), found.oil.in_m3_s
 
     force, flow = of(section, ROTATION)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.bearing_tests.journal_path import Path
+from frbcli.bearing_tests.march import FilmAt, Moment, march
 from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
 from frbcli.case.schema import Case
@@ -17,7 +17,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.frame import path_seen_from, turned
 from frbcli.film.cells.plain.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.film.cells.plain.loads import Loads, estimate, loads
-from frbcli.film.cells.plain.transient import march
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.supply import supplied, supply_share
 
 Array = NDArray[np.float64]
@@ -93,8 +93,8 @@ def _moments(case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, time
     """Those until the film does not converge, and why it does not. Raises NotConverged if there are none."""
     moments: list[_Moment] = []
     try:
-        for time, motion, solution in _solutions(case, plan, film, path, times):
-            moments.append(_moment(case, plan, film, time, motion, solution))
+        for moment in march(film, path, times, film_at=_film_at(case, plan, film)):
+            moments.append(_moment(case, plan, film, moment))
     except NotConverged as failure:
         if not moments:
             raise
@@ -131,7 +131,7 @@ def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, 
         return (math.dist(finer, force) / math.hypot(*finer) if any(finer) else math.nan), 0
     film = _film(case, _coarser(plan), path, times)
     try:
-        solution = _lawful(case, plan, film, worst.motion, worst.time).steady(worst.motion)
+        solution = FilmSolver(_film_at(case, plan, film)(worst.time, worst.motion)).steady(worst.motion)
     except NotConverged:
         return math.nan, 0
     coarse = turned(loads(film, worst.motion, solution).force, plan.turning * worst.time)
@@ -162,23 +162,6 @@ def _size(moment: _Moment) -> float:
     return math.hypot(*moment.loads.force)
 
 
-def _solutions(
-    case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array
-) -> Iterator[tuple[float, Motion, VolumeSolution]]:
-    """Of each time after the first; in the middle of its step where the film has a state of its own."""
-    if plan.remembers:
-        supply = (lambda time: supply_share(time, plan.ramp)) if plan.ramp else None
-        moments = march(film, path, times, supply=supply)
-        yield from ((moment.time, moment.motion, moment.solution) for moment in moments)
-        return
-    w = film.full()
-    for time in times[1:]:
-        motion = path(time)
-        solution = _lawful(case, plan, film, motion, float(time)).steady(motion, w)
-        w = solution.w
-        yield float(time), motion, solution
-
-
 def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFilm:
     """Cells that serve every moment: equal ones around; half of them along where the section is half the film."""
     around, along = plan.cells
@@ -188,17 +171,19 @@ def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFi
     return VolumeFilm(plan.section, grid, law_at(case, plan, 0.0), reference_pressure(plan.section, fastest))
 
 
-def _lawful(case: Case, plan: KinematicPlan, film: VolumeFilm, motion: Motion, time: float) -> VolumeFilm:
-    """The film with supply and law of this moment: that of the penalty model follows the eccentricity."""
-    film = supplied(film, supply_share(time, plan.ramp)) if plan.ramp else film
-    law = law_at(case, plan, math.hypot(*motion.d))
-    return film if law == film.law else VolumeFilm(film.section, film.grid, law, film.scales.reference)
+def _film_at(case: Case, plan: KinematicPlan, film: VolumeFilm) -> FilmAt:
+    """The film with supply and law of a moment: that of the penalty model follows the eccentricity."""
+
+    def film_at(time: float, motion: Motion) -> VolumeFilm:
+        fed = supplied(film, supply_share(time, plan.ramp)) if plan.ramp else film
+        law = film.law if plan.remembers else law_at(case, plan, math.hypot(*motion.d))
+        return fed if law == film.law else VolumeFilm(fed.section, fed.grid, law, fed.scales.reference)
+
+    return film_at
 
 
-def _moment(
-    case: Case, plan: KinematicPlan, film: VolumeFilm, time: float, motion: Motion, solution: VolumeSolution
-) -> _Moment:
-    angle = plan.turning * time
+def _moment(case: Case, plan: KinematicPlan, film: VolumeFilm, moment: Moment) -> _Moment:
+    motion, solution, angle = moment.motion, moment.solution, plan.turning * moment.time
     found = loads(film, motion, solution, motion.omega + 2.0 * plan.turning, case.film.cavitation_factor)
     found = replace(found, force=turned(found.force, angle))
     if plan.modal:
@@ -206,7 +191,7 @@ def _moment(
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
     probe = pressure_at(film_field(film, motion, solution), PROBE - angle, place)
     gap = float(film.gap(motion.d, np.array([PROBE - angle]))[0])
-    return _Moment(time, motion, turned(motion.d, angle), solution, found, probe, gap)
+    return _Moment(moment.time, motion, turned(motion.d, angle), solution, found, probe, gap)
 
 
 def _field(plan: KinematicPlan, film: VolumeFilm, moment: _Moment) -> FilmField:

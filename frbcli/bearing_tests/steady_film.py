@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.case.schema import Case
-from frbcli.film.cells.plain.film import Motion, VolumeFilm, VolumeSolution
-from frbcli.film.cells.plain.loads import Loads, estimate
-from frbcli.film.cells.plain.steady import steady_film
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cells.plain.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.plain.loads import CavitationFactor, Loads, estimate, loads
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.gap import Section
 from frbcli.film.rectangles.table import Mesh
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
 
@@ -45,19 +47,41 @@ class FilmMoment:
     iterations: int
 
 
+def steady_film(
+    section: Section, law: Law, motion: Motion, cells: tuple[int, int], factor: CavitationFactor = "none"
+) -> FilmMoment:
+    """The film for a motion that lasts, solved on half the cells each way, and from there on all.
+
+    cells: around and along the whole film; one cut at its plane of symmetry gets half of those along; factor: of the
+    torque, for a shell at rest. Raises NotConverged.
+    """
+    around, along = cells[0], cells[1] // 2 if section.far == "symmetry" else cells[1]
+    reference = reference_pressure(section, motion)
+    coarse = VolumeFilm(section, fitted_grid(section, motion.d, around // 2, along // 2), law, reference)
+    first = FilmSolver(coarse).steady(motion)
+    film = VolumeFilm(section, fitted_grid(section, motion.d, around, along), law, reference)
+    solution = FilmSolver(film).steady(motion, film.from_coarser(coarse, first.w))
+    found = loads(film, motion, solution, factor=factor)
+    return FilmMoment(
+        film_field(film, motion, solution),
+        found,
+        estimate(found.force, loads(coarse, motion, first).force, law.order),
+        int(np.count_nonzero(~film.grid.fixed)),
+        first.iterations + solution.iterations,
+    )
+
+
 def film_moment(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> FilmMoment:
-    """The film for a motion that lasts. Raises NotConverged."""
+    """The film for a motion that lasts, by the modal film where that is known. Raises NotConverged."""
     law = law_at(case, plan, math.hypot(*motion.d))
-    found = steady_film(plan.section, law, motion, *cells, factor=case.film.cavitation_factor)
-    loads, error = found.loads, found.force_error
-    if plan.rectangle is not None and plan.modal:
-        place, velocity = _si(plan, motion)
-        force = modal_force(plan, motion)
-        coarse = modal_force(plan, motion, COARSE_MODAL_MESH)
-        top = largest_pressure(plan.rectangle, MODAL_MESH, place, velocity, motion.omega)
-        loads, error = replace(loads, force=force, p_max=top), estimate(force, coarse)
-    unknowns = int(np.count_nonzero(~found.film.grid.fixed))
-    return FilmMoment(film_field(found.film, motion, found.solution), loads, error, unknowns, found.iterations)
+    found = steady_film(plan.section, law, motion, cells, case.film.cavitation_factor)
+    if plan.rectangle is None or not plan.modal:
+        return found
+    place, velocity = _si(plan, motion)
+    force, coarse = modal_force(plan, motion), modal_force(plan, motion, COARSE_MODAL_MESH)
+    top = largest_pressure(plan.rectangle, MODAL_MESH, place, velocity, motion.omega)
+    told = replace(found.loads, force=force, p_max=top)
+    return replace(found, loads=told, force_error=estimate(force, coarse))
 
 
 def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> Array:
@@ -65,7 +89,7 @@ def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int
     if plan.modal:
         return np.array(modal_force(plan, motion))
     law = law_at(case, plan, math.hypot(*motion.d))
-    return np.array(steady_film(plan.section, law, motion, *cells).loads.force)
+    return np.array(steady_film(plan.section, law, motion, cells).loads.force)
 
 
 def modal_force(plan: KinematicPlan, motion: Motion, mesh: Mesh = MODAL_MESH) -> tuple[float, float]:

@@ -59,7 +59,7 @@ def imbalance(cells: Array, fields: Array) -> tuple[float, float]:
 
 @compiled()
 def damp(cells: Array, rate: float, stencil: Array) -> None:
-    """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see newton.py."""
+    """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see solver.py."""
     m, k = stencil.shape[1], stencil.shape[2]
     for i in range(m):
         for j in range(k):

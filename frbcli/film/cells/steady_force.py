@@ -13,6 +13,7 @@ from frbcli.film.cells.newton_step import film_newton
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.plain.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.plain.loads import force
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.states import STATES
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.bearing import FilmForce
@@ -28,7 +29,7 @@ def film_at(film: VolumeFilm, eccentricity: float, omega: float) -> VolumeFilm:
 
 def steady_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) -> VolumeSolution:
     """The steady film for a motion. Raises NotConverged."""
-    return film_at(film, math.hypot(*motion.d), motion.omega).steady(motion, start)
+    return FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega)).steady(motion, start)
 
 
 def steady_force(

@@ -47,7 +47,7 @@ def row_equations(section: Section, grid: VolumeGrid, eccentricity: float) -> Ro
     for v in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)):
         rate = gap_rate(v, grid.centre)[:, None]
         balance = Balance(section, grid, Motion((eccentricity, 0.0), v, 0.0))
-        outflow, _, matrix = balance.residual(state, Storage(rate, np.zeros_like(rate)))
+        outflow, matrix = balance.residual(state, Storage(rate, np.zeros_like(rate)))
         outflows.append(outflow)
     return RowEquations(
         np.array([matrix.centre, matrix.before, matrix.behind, matrix.below, matrix.above]),

@@ -92,15 +92,6 @@ class Fluxes(NamedTuple):
         net[:, -1] += self.far
         return net
 
-    def turnover(self) -> Array:
-        """(m, k) half of what passes through the faces of each cell, whatever its direction."""
-        size = np.abs(self.around) + np.abs(np.roll(self.around, 1, axis=0))
-        size[:, :-1] += np.abs(self.along)
-        size[:, 1:] += np.abs(self.along)
-        size[:, 0] += np.abs(self.near)
-        size[:, -1] += np.abs(self.far)
-        return 0.5 * size
-
 
 def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conductances:
     """The conductances of a section. Into a groove or hole the distance counts to its edge."""
@@ -159,8 +150,8 @@ class Balance:
         by_next = by_felt * np.where(smooth, -slope.bend, 0.0)
         return EndFlow(np.where(fixed[:, 0], 0.0, out), by_last, by_next)
 
-    def residual(self, state: CellState, storage: Storage) -> tuple[Array, Array, Stencil]:
-        """What does not balance in each cell (m, k), the size of its terms (m, k), and the stencil of derivatives by w.
+    def residual(self, state: CellState, storage: Storage) -> tuple[Array, Stencil]:
+        """What does not balance in each cell (m, k), and the stencil of derivatives by w.
 
         state: of the law with arrays (m, k), whose slopes are zero and whose values are given in fixed cells.
         """
@@ -168,20 +159,7 @@ class Balance:
         fluxes, near, far = self.fluxes(state.pressure, state.fraction)
         kept = storage.factor * state.fraction
         residual = fluxes.net_outflow() + area * (kept - storage.past - state.source)
-        exchange = self._exchange(state, near, far)
-        size = exchange + fluxes.turnover() + area * (np.abs(kept) + np.abs(storage.past) + state.source)
-        stencil = self._stencil(state, storage, near, far)
-        return np.where(fixed, 0.0, residual), size, stencil
-
-    def _exchange(self, state: CellState, near: EndFlow, far: EndFlow) -> Array:
-        """Size of the terms whose differences are the pressure-driven flows: their round-off is the residual's."""
-        c = self.conductances
-        total = c.around + np.roll(c.around, 1, axis=0)
-        total[:, :-1] += c.along
-        total[:, 1:] += c.along
-        total[:, 0] += near.by_last
-        total[:, -1] += far.by_last
-        return total * np.abs(state.pressure)
+        return np.where(fixed, 0.0, residual), self._stencil(state, storage, near, far)
 
     def _stencil(self, state: CellState, storage: Storage, near: EndFlow, far: EndFlow) -> Stencil:
         c, p_w, t_w = self.conductances, state.pressure_slope, state.fraction_slope

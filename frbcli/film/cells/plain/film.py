@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cells.grid import VolumeGrid, fitted_grid, volume_grid
-from frbcli.film.cells.plain.balance import Balance, Fluxes, Motion, Storage
-from frbcli.film.cells.plain.newton import Unknowns, solve
-from frbcli.film.gap import Section, gap_height, gap_rate
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
 __all__ = [
@@ -25,11 +23,6 @@ __all__ = [
     "reference_pressure",
     "volume_grid",
 ]
-
-
-DRY = -1e-6  # an oil fraction below this is none
-# A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
-STILL_MOTION, STILL_STEP = 1e-4, 1e-6
 
 
 @dataclass(frozen=True)
@@ -78,7 +71,6 @@ class VolumeFilm:
             (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale,
             section.ambient_pressure / section.pressure_scale,
         )
-        self._unknowns = Unknowns.of(grid)
 
     def full(self) -> Array:
         """(m, k) unknown of a full film at the ambient pressure."""
@@ -109,58 +101,6 @@ class VolumeFilm:
         """(m, k) oil in the cells, H theta."""
         content: Array = gap_height(self.section, motion.d, self.grid.centre)[:, None] * self.cells(w).fraction
         return content
-
-    def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
-        """Cells whose oil fraction does not change while the journal moves as it does.
-
-        start: (m, k) unknown to begin from, else a full film. Raises FilmUnsolved.
-        """
-        rate = gap_rate(motion.v, self.grid.centre)[:, None]
-        storage = Storage(rate, np.zeros_like(rate))
-        return self._solve(motion, self.full() if start is None else start, storage)
-
-    def step(self, motion: Motion, w: Array, content: Array, dt: float) -> tuple[VolumeSolution, Array]:
-        """One implicit Euler step to the motion at its end.
-
-        content: (m, k) H theta at its start. Returns (solution, content). Raises FilmUnsolved.
-        """
-        return self.keep(motion, w, 1.0 / dt, content / dt)
-
-    def keep(
-        self, motion: Motion, w: Array, rate: float, past: Array, flowing: Motion | None = None
-    ) -> tuple[VolumeSolution, Array]:
-        """One step of any implicit formula: d(H theta)/dt = rate H theta - past with past (m, k) from earlier steps.
-
-        motion: at the end of the step; flowing: motion whose gap the oil flows through, else that at the end; w: (m, k)
-        unknown to begin from. Returns (solution, content). Raises FilmUnsolved.
-        """
-        storage = Storage(rate * gap_height(self.section, motion.d, self.grid.centre)[:, None], past)
-        solution = self._solve(motion if flowing is None else flowing, w, storage)
-        return solution, self.content(motion, solution.w)
-
-    def _solve(self, motion: Motion, w: Array, storage: Storage) -> VolumeSolution:
-        balance = Balance(self.section, self.grid, motion)
-        w, iterations = solve(self._unknowns, lambda x: balance.residual(self.cells(x), storage), w, motion.rate)
-        state = self.cells(w)
-        if np.min(state.fraction) < DRY:
-            raise FilmUnsolved("the film runs dry: more oil leaves at its ends than can enter it")
-        fluxes, _, _ = balance.fluxes(self.pressure(state), state.fraction)
-        return VolumeSolution(w, state, iterations, self._flows(fluxes, state, storage, motion.rate))
-
-    def _flows(self, fluxes: Fluxes, state: CellState, storage: Storage, rate: float) -> Flows:
-        fixed, area = self.grid.fixed, self.grid.area
-        ends = np.concatenate([fluxes.near, fluxes.far])
-        fed = fluxes.net_outflow()[fixed]  # what leaves a groove net is what it feeds into the film
-        stored = area * (storage.factor * state.fraction - storage.past)
-        return Flows(
-            inflow=float(-ends[ends < 0.0].sum() + fed[fed > 0.0].sum()),
-            outflow=float(ends[ends > 0.0].sum() - fed[fed < 0.0].sum()),
-            source=float((area * state.source)[~fixed].sum()),
-            stored=float(stored[~fixed].sum()),
-            supply=float(fed.sum()),
-            ends=float(ends.sum()),
-            still=float((area * (STILL_MOTION * rate + STILL_STEP * np.abs(storage.past)))[~fixed].sum()),
-        )
 
     def from_coarser(self, coarse: VolumeFilm, w: Array) -> Array:
         """(m, k) unknown to begin from on this grid: w of the same film on a coarser one, nearest cells."""

@@ -1,0 +1,83 @@
+"""A film along a given motion of its journal, moment by moment."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from frbcli.bearing_tests.journal_path import Path
+from frbcli.errors import NotConverged
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.plain.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.grid import Array
+
+MOST_HALVINGS = 6  # of a step whose equations do not converge
+FilmAt = Callable[[float, Motion], VolumeFilm]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A film at a time in s: its motion and its solution."""
+
+    time: float
+    motion: Motion
+    solution: VolumeSolution
+
+
+def march(
+    film: VolumeFilm, path: Path, times: Array, start: Array | None = None, film_at: FilmAt | None = None
+) -> Iterator[Moment]:
+    """The film for each of the times (n,) after the first, in s and rising; a generator, so that it may be left early.
+
+    start: (m, k) unknown at the first time, else a full film at the ambient pressure; film_at: the film with its supply
+    and law as they are at a time and a motion, else it stays the same. A step that does not converge is taken in
+    halves. Raises NotConverged.
+
+    A law that keeps its oil stores it as implicit Euler steps do, but lets it flow through the gap of the middle of the
+    step, which makes the pressure of a full film second order; moments are then of that time. Else the film follows
+    from the motion of the moment.
+    """
+    steps = _Steps(film, path, film.full() if start is None else start, float(times[0]), film_at)
+    for time in times[1:]:
+        yield steps.to(float(time), MOST_HALVINGS)
+
+
+class _Steps:
+    """The past that the next step needs."""
+
+    def __init__(self, film: VolumeFilm, path: Path, w: Array, time: float, film_at: FilmAt | None) -> None:
+        self._film_at, self._path, self._solver = film_at, path, FilmSolver(film)
+        self._w, self._time, self._content = w, time, film.content(path(time), w)
+        self._drift: Array | None = None  # how fast w changed in the step before
+
+    def to(self, time: float, halvings: int) -> Moment:
+        """One step to the time, or two of half its size."""
+        try:
+            return self._step(time)
+        except NotConverged:
+            if halvings == 0:
+                raise
+        self.to(0.5 * (self._time + time), halvings - 1)
+        return self.to(time, halvings - 1)
+
+    def _step(self, time: float) -> Moment:
+        dt, end = time - self._time, self._path(time)
+        if not self._solver.film.law.keeps_oil:
+            solution = self._at(time, end).steady(end, self._w)
+            self._w, self._time = solution.w, time
+            return Moment(time, end, solution)
+        middle = 0.5 * (self._time + time)
+        flowing = self._path(middle)
+        begin = self._w if self._drift is None else self._w + dt * self._drift
+        solver = self._at(middle, flowing)
+        solution, content = solver.keep(end, flowing, begin, 1.0 / dt, self._content / dt)
+        self._drift = (solution.w - self._w) / dt
+        self._w, self._time, self._content = solution.w, time, content
+        return Moment(middle, flowing, solution)
+
+    def _at(self, time: float, motion: Motion) -> FilmSolver:
+        film = self._solver.film if self._film_at is None else self._film_at(time, motion)
+        if film is not self._solver.film:
+            self._solver = FilmSolver(film)
+        return self._solver

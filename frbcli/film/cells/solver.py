@@ -1,0 +1,190 @@
+"""The state of one film for a motion of its journal, to round-off: for kinematic tests, resting positions and starts.
+
+Balances, derivatives and elimination are the compiled ones of the time loop. Here stands what leads Newton's method to
+a solution from afar. The law's kinks make plain Newton steps oscillate between sets of cavitated cells. A storage of w
+in each cell, over a pseudo-time step that is longer the less there is left to balance (switched evolution relaxation),
+keeps the steps short as long as they have to be; the solution does not know of it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.errors import FilmUnsolved
+from frbcli.film.cavitation.compiled import given_parameters
+from frbcli.film.cavitation.law import CellState
+from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, balances
+from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.plain.balance import Motion, Storage
+from frbcli.film.cells.plain.film import Flows, VolumeFilm, VolumeSolution
+from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE, SOURCE, STATES, cell_states
+from frbcli.film.gap import gap_rate
+from frbcli.film.grid import Array
+
+ROUND_OFF = 1e-15  # residual of a cell over the terms that it is the sum of
+SETTLED = 1e-12  # the same, for a residual that does not fall any more
+LARGEST = 1e9  # beyond this, w is the mark of a singular matrix
+SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iteration
+DRY = -1e-6  # an oil fraction below this is none
+RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
+# A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
+STILL_MOTION, STILL_STEP = 1e-4, 1e-6
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One way to go. first: the first pseudo-time step times the motion's rate; growth: the most that it grows by in
+    one iteration; limit: of iterations."""
+
+    first: float
+    growth: float
+    limit: int
+
+
+PLAIN = Attempt(math.inf, 1.0, 20)
+DAMPED = Attempt(1.0, 4.0, 150)
+GENTLE = Attempt(0.1, 1.5, 300)
+ATTEMPTS = (PLAIN, DAMPED, GENTLE)
+
+
+class FilmSolver:
+    """Solves one film for any motion. Its arrays are filled anew in every iteration."""
+
+    def __init__(self, film: VolumeFilm) -> None:
+        self.film = film
+        data, (m, k) = volume_films([film]), film.grid.shape
+        self._parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
+        self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
+        self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
+        self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
+        self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
+
+    def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
+        """Cells whose oil fraction does not change while the journal moves as it does.
+
+        start: (m, k) unknown to begin from, else a full film. Raises FilmUnsolved.
+        """
+        grid = self.film.grid
+        storage = Storage(gap_rate(motion.v, grid.centre)[:, None], np.zeros(grid.shape))
+        return self._solve(motion, self.film.full() if start is None else start, storage)
+
+    def keep(self, motion: Motion, flowing: Motion, w: Array, rate: float, past: Array) -> tuple[VolumeSolution, Array]:
+        """One step of any implicit formula: d(H theta)/dt = rate H theta - past with past (m, k) from earlier steps.
+
+        motion: at the end of the step; flowing: motion whose gap the oil flows through; w: (m, k) unknown to begin
+        from. Returns (solution, content H theta). Raises FilmUnsolved.
+        """
+        gap = self.film.gap(motion.d, self.film.grid.centre)[:, None]
+        solution = self._solve(flowing, w, Storage(rate * gap, past))
+        return solution, gap * solution.state.fraction
+
+    def _solve(self, motion: Motion, start: Array, storage: Storage) -> VolumeSolution:
+        """By the first of ATTEMPTS that gets there."""
+        spent, failure = 0, ""
+        start = np.ascontiguousarray(start, dtype=np.float64)  # as the kernels take it
+        for attempt in ATTEMPTS:
+            w, iterations, failure = self._iterate(motion, start, storage, attempt)
+            spent += iterations
+            if not failure and np.min(self._states[FRACTION]) < DRY:
+                failure = RUNS_DRY  # also where a matrix was so near to a singular one that w leapt far away
+            if not failure:
+                return self._solution(motion, w, storage, spent)
+        if failure == RUNS_DRY:
+            raise FilmUnsolved(failure)
+        tried = "plain, damped, and damped more"
+        raise FilmUnsolved(f"the film did not converge in {spent} Newton iterations ({tried}): {failure}")
+
+    def _iterate(self, motion: Motion, w: Array, storage: Storage, attempt: Attempt) -> tuple[Array, int, str]:
+        """(w, iterations, what is wrong or nothing)."""
+        passed = self._passed(motion)
+        pseudo_rate, left_before, largest_before = motion.rate / attempt.first, math.inf, math.inf
+        worst = np.zeros_like(w)
+        for iteration in range(1, attempt.limit + 1):
+            residual = self._assemble(motion, w, storage)
+            worst = np.abs(residual) / self._terms(passed, w, storage)
+            largest, left = float(np.max(worst)), float(np.abs(residual).sum())
+            if largest < ROUND_OFF or 0.5 * largest_before <= largest < SETTLED:
+                return w, iteration, ""
+            largest_before = largest
+            if left_before < math.inf:
+                pseudo_rate /= min(max(left_before / left, SHRINK), attempt.growth)
+            left_before = left
+            self._stencil[CENTRE] += pseudo_rate * self._area
+            # not solve_ring: its kernels for usual lengths take most of the time to compile, and serve the time loop
+            solve_blocks(self._stencil, self._blocks, self._fields, self._stencil[0, 0], self._fields[0, 0])
+            w = w + self._fields[:, :, w.shape[1]]
+            if not np.max(np.abs(w)) < LARGEST:
+                return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
+        return w, attempt.limit, self._where(worst)
+
+    def _assemble(self, motion: Motion, w: Array, storage: Storage) -> Array:
+        """(m, k) what does not balance, and in the arrays of the solver Newton's equations."""
+        cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
+        self._flow(motion, storage.past)
+        states, kept = self._states, self._area * storage.factor
+        self._stencil[CENTRE] += kept * states[FRACTION_SLOPE]
+        right = self._fields[:, :, w.shape[1]]
+        right -= kept * states[FRACTION]
+        return -right
+
+    def _flow(self, motion: Motion, past: Array) -> None:
+        """Balances of the states without what is stored now."""
+        numbers, ring, width, cells = self._parts
+        d_x, d_y, omega = float(motion.d[0]), float(motion.d[1]), float(motion.omega)
+        balances(
+            numbers, ring, width, cells, self._states, d_x, d_y, omega, 0.0, past, 0.0, 0.0, 0.0, 0.0,
+            self._stencil, self._fields, self._flows,
+        )  # fmt: skip
+
+    def _passed(self, motion: Motion) -> tuple[Array, Array]:
+        """(m, k) what a cell passes on per pressure and per oil fraction of its own, from the derivatives."""
+        found = []
+        for slope in (PRESSURE_SLOPE, FRACTION_SLOPE):
+            self._states[:] = 0.0
+            self._states[slope] = 1.0
+            self._flow(motion, np.zeros(self.film.grid.shape))
+            found.append(self._stencil[CENTRE].copy())
+        return found[0], found[1]
+
+    def _terms(self, passed: tuple[Array, Array], w: Array, storage: Storage) -> Array:
+        """(m, k) size of the terms that the residual is the sum of: it is round-off of theirs."""
+        pressure, fraction = self._states[PRESSURE], self._states[FRACTION]
+        kept = np.abs(storage.factor * fraction) + np.abs(storage.past) + self._states[SOURCE]
+        size = passed[0] * np.abs(pressure) + passed[1] * np.abs(fraction) + self._area * kept
+        terms: Array = np.maximum(size + np.abs(self._stencil[CENTRE]) * (1.0 + np.abs(w)), np.finfo(float).tiny)
+        return terms
+
+    def _solution(self, motion: Motion, w: Array, storage: Storage, iterations: int) -> VolumeSolution:
+        """Of the cells that the arrays of the solver hold."""
+        film, (pressure, fraction, source) = self.film, self._states[:PRESSURE_SLOPE]
+        state = CellState(*self._states.copy())
+        if film.law.clips:  # so do the flows, as the loads
+            pressure[:] = film.pressure(state)
+            self._flow(motion, storage.past)
+        area = self._area
+        still = STILL_MOTION * motion.rate + STILL_STEP * np.abs(storage.past)
+        flows = Flows(
+            inflow=float(self._flows[INFLOW]),
+            outflow=float(self._flows[OUTFLOW]),
+            source=float((area * source).sum()),
+            stored=float((area * (storage.factor * fraction - storage.past)).sum()),
+            supply=float(self._flows[SUPPLY_NET]),
+            ends=float(self._flows[ENDS_NET]),
+            still=float((area * still).sum()),
+        )
+        return VolumeSolution(w, state, iterations, flows)
+
+    def _where(self, worst: Array) -> str:
+        """Which cells do not balance."""
+        grid = self.film.grid
+        i, j = np.unravel_index(int(np.argmax(worst)), worst.shape)
+        open_cells = int(np.count_nonzero(worst > SETTLED))
+        angle = math.degrees(float(np.mod(grid.centre[i], 2.0 * math.pi)))
+        return (
+            f"{open_cells} of {worst.size} cells do not balance, the worst at phi = {angle:.0f} deg, "
+            f"z = {grid.height[j]:.2f} of the section by {worst[i, j]:.1e} of its flow"
+        )
