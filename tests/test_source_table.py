@@ -12,10 +12,10 @@ import frbcli
 from frbcli.case.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.grid import fitted_grid
+from frbcli.film.cells.loads import force
 from frbcli.film.cells.plain.balance import Motion
-from frbcli.film.cells.plain.film import VolumeFilm
-from frbcli.film.cells.plain.loads import force
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
 from frbcli.film.grid import Array

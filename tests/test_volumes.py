@@ -21,9 +21,9 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells import solver
+from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.loads import Torque, estimate, loads
 from frbcli.film.cells.plain.balance import Balance, Motion, Storage
-from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
-from frbcli.film.cells.plain.loads import Torque, estimate, loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 

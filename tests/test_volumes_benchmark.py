@@ -25,8 +25,8 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balances import FLOWS, SIDES
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import COS, GAP, SIN, volume_films
+from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.newton_step import film_newton
-from frbcli.film.cells.plain.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.states import FRACTION, STATES, cell_states, follow_law
 from frbcli.film.rectangles.bearing import RectangularBearing

@@ -8,7 +8,7 @@ from frbcli.case.bearing import Bores, CircumferentialGroove, FloatingRingBearin
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cells.channels import Channel, FeedHole, channel_resistance
-from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.film import VolumeFilm
 
 MIDDLE = 0.5
 INLETS = "a groove around one end of the outer film, or an end in an oil bath"

@@ -13,8 +13,8 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.grid import VolumeGrid, volume_grid
-from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.gap import Section, ends_at_ambient, graded_ring
 from frbcli.film.grid import Array
 from frbcli.film.penalty_table.film import SourceFilm

@@ -13,7 +13,7 @@ from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
 from frbcli.film.cells.channels import with_channels
 from frbcli.film.cells.data import AREA, FEED_HOLE, REMEMBERS, UNKNOWN, VolumeFilms, volume_films
-from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.gap import AxialGroove
 from frbcli.film.grid import Array

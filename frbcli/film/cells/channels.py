@@ -32,8 +32,8 @@ from frbcli.film.cells.data import (
     UNKNOWN,
     VolumeFilms,
 )
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.openings import hole_opening
-from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.gap import Hole
 from frbcli.film.grid import Array
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.axial import axial_weights, end_slopes
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.plain.balance import NO_DISTANCE
-from frbcli.film.cells.plain.film import VolumeFilm
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from frbcli.film.cells.plain.film import VolumeFilm
+from frbcli.film.cells.film import VolumeFilm
 
 
 def supply_share(time: float, rise_time: float) -> float:

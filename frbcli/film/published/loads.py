@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.film.cells.loads import CavitationFactor, Loads, OilBalance, Torque
 from frbcli.film.cells.plain.balance import Motion
-from frbcli.film.cells.plain.loads import CavitationFactor, Loads, OilBalance, Torque
 from frbcli.film.grid import Array
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.plain import AROUND_DIRECTION, terms
@@ -33,7 +33,7 @@ def published_loads(
     """All loads of a solution.
 
     slip: omega_J - omega_S in rad/s, else that of a shell at rest; factor: how missing oil lowers the torque, see
-    frbcli/film/cells/plain/loads.py.
+    frbcli/film/cells/loads.py.
     """
     section, pressure = film.section, solution.state.pressure
     absolute = section.ambient_pressure + section.pressure_scale * pressure
