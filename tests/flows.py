@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from frbcli.solve.state import CHANNELS_NET, ENDS_NET, PASSED, SUPPLY_NET, State
+from frbcli.film.cells.balances import CHANNELS_NET, ENDS_NET, SUPPLY_NET
+from frbcli.solve.films import PASSED
+from frbcli.solve.state import State
 
 
 def net_flow(state: State, film: int) -> float:
