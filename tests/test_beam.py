@@ -197,3 +197,13 @@ def test_slowest_modes_of_many_sections_are_those_of_all(monkeypatch: pytest.Mon
     both = zip((slowest, all_of_them), springs, strict=True)
     found = [whirl_modes(modes, at, np.full(2, 1e7), 500.0) for modes, at in both]
     assert found[0].frequencies[:8] == pytest.approx(found[1].frequencies[:8], rel=1e-4)  # locally bent
+
+
+def test_every_station_has_its_node_however_close_others_are() -> None:
+    """Of places in a row, each nearer to the one before than nodes are told apart, none is left without a node."""
+    near = 0.9e-6 * THICK.length
+    stations = [0.05 + i * near for i in range(9)] + [THICK.length - i * near for i in range(3)]
+    shaft = beam((THICK,), stations, elements=4)
+    found = [shaft.positions[shaft.node(station)] for station in stations]
+    np.testing.assert_allclose(found, stations, rtol=0, atol=2e-6 * THICK.length)
+    assert np.all(np.diff(shaft.positions) > 0.0)

@@ -72,7 +72,7 @@ class Plane:
     def node(self, position: float) -> int:
         """Index of the node at a position in m. Raises ValueError if there is none."""
         index = int(np.argmin(np.abs(self.positions - position)))
-        if abs(self.positions[index] - position) > SAME_PLACE * np.ptp(self.positions):
+        if abs(self.positions[index] - position) > 2.0 * SAME_PLACE * np.ptp(self.positions):  # the last one is moved
             raise ValueError(f"no node at {position} m")
         return index
 
@@ -143,7 +143,10 @@ def beam(sections: Sequence[Section], stations: Sequence[float], elements: int =
 def _nodes(places: Array, length: float, elements: int) -> Array:
     """Ascending nodes (k,) at all places, and as many between them as the longest element demands."""
     places = np.sort(np.clip(places, 0.0, length))
-    kept = places[np.concatenate([[True], np.diff(places) > SAME_PLACE * length])]
+    kept = [0.0]
+    for place in places:  # each that is merged lies near the node it is merged with, however many do
+        if place - kept[-1] > SAME_PLACE * length:
+            kept.append(float(place))
     kept[-1] = length
     parts = np.maximum(np.ceil(np.diff(kept) * elements / length - SAME_PLACE), 1).astype(int)
     pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(kept[:-1], kept[1:], parts, strict=True)]
