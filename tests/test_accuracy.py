@@ -5,17 +5,21 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from frbcli.case.load import load_case
+from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
-from frbcli.errors import InputError
+from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import stability
 from frbcli.plot.accuracy import accuracy_figure
+from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
+from frbcli.studies import accuracy as accuracy_module
 from frbcli.studies.accuracy import accuracy, ladder, planned_rung
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
 
@@ -131,6 +135,22 @@ def test_a_film_without_a_short_theory_has_no_such_rung() -> None:
     assert {rung.theory for rung in rungs} == {"finite"}
     with pytest.raises(InputError, match="short"):
         list(ladder(case, planned_rung(make_plan(case)), theories=["short"]))
+
+
+def test_a_rung_that_does_not_begin_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = accuracy_module.runup
+
+    def begins_but_on_short_films(case: Case, *arguments: Any, **named: Any) -> Run:
+        if case.film.theory == "short":
+            raise NotConverged("the film has no resting position")
+        return real(case, *arguments, **named)
+
+    monkeypatch.setattr(accuracy_module, "runup", begins_but_on_short_films)
+    found = accuracy(load_case("jeffcott", QUICK), 0.02, ["short", "finite"])
+    assert found.complete
+    assert {item.rung.theory for item in found.ladder} == {"finite"}
+    assert {rung.theory for rung, _ in found.failed} == {"short"}
+    assert {problem for _, problem in found.failed} == {"the film has no resting position"}
 
 
 def test_names_that_there_are_not() -> None:

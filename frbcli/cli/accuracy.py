@@ -67,6 +67,7 @@ def command(
         "until_s": found.until_s,
         "reference": reference,
         "ladder": [_document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder],
+        **({"failed": [_rung(rung) | {"message": problem} for rung, problem in found.failed]} if found.failed else {}),
     })
     if picture and found.ladder:
         from frbcli.plot.accuracy import accuracy_figure
@@ -97,6 +98,8 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     for item in found.ladder:
         if item.status != "finished":
             terminal.result(f"{item.rung.name}: {item.status}")
+    for rung, problem in found.failed:
+        terminal.result(f"{rung.name}: did not begin: {problem}")
     if not found.complete:
         terminal.result(f"Interrupted: {len(found.ladder)} rungs are done, without thresholds.")
 

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.stability import default_speeds, stability
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
@@ -47,7 +47,8 @@ def accuracy(
 
     until: in s, shortens the run; the rotor speeds up as before. theories, couplings: to be tried, () for all theories
     that can be had and for the coupling of the plan. observe: called some times a second. Ctrl-C ends it with the rungs
-    done so far; before the reference is there it is raised on. Raises InputError for names that there are not, and for
+    done so far; before the reference is there it is raised on. A rung that does not begin is left out and named, the
+    reference raises NotConverged. Raises InputError for names that there are not, and for
     a case that cannot be modelled.
     """
     _check_names(case, theories, couplings)
@@ -72,14 +73,18 @@ def accuracy(
         exact = run(fine)
         reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
         found: list[RungResult] = []
+        failed: list[tuple[Rung, str]] = []
         complete = False
         with suppress(KeyboardInterrupt):
             for rung in rungs:
-                found.append(_result(rung, run(rung), exact, _tabulating(short, rung), rung == own))
+                try:
+                    found.append(_result(rung, run(rung), exact, _tabulating(short, rung), rung == own))
+                except NotConverged as problem:
+                    failed.append((rung, str(problem)))
             reference, *found = _with_thresholds(case, reference, coarser, found)
             complete = True
     found.sort(key=lambda item: item.cpu_s)
-    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete)
+    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete, tuple(failed))
 
 
 def planned_rung(plan: Plan) -> Rung:

@@ -65,7 +65,7 @@ class RungResult:
 @dataclass(frozen=True)
 class AccuracyLadder:
     """until_s: how long the runs are; reference: its error is how far a run on the rung `coarser` is from it; ladder:
-    in the order of their cost; complete: not interrupted."""
+    in the order of their cost; complete: not interrupted; failed: rungs whose run did not begin, and why."""
 
     case: Case
     until_s: float
@@ -73,6 +73,7 @@ class AccuracyLadder:
     coarser: Rung
     ladder: tuple[RungResult, ...]
     complete: bool = True
+    failed: tuple[tuple[Rung, str], ...] = ()
 
     @property
     def front(self) -> tuple[RungResult, ...]:
@@ -86,8 +87,10 @@ class AccuracyLadder:
 
     def above_front(self, quiet: bool = False) -> float:
         """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
-        quiet: by the counted work in place of the measured CPU time."""
-        planned = next(item for item in self.ladder if item.planned)
+        quiet: by the counted work in place of the measured CPU time. Infinite if that run did not begin."""
+        planned = next((item for item in self.ladder if item.planned), None)
+        if planned is None:
+            return math.inf
         error = planned.error.eccentricity_largest
         costs = {item.rung: item.work_s if quiet else item.cpu_s for item in self.ladder}
         as_close = [item.rung for item in self.ladder if item.error.eccentricity_largest <= error]
