@@ -10,7 +10,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.compiling import compiling_told
-from frbcli.cli.pictures import draw
+from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, SECONDS, here
 from frbcli.cli.transient import live_lines, progress_line
 from frbcli.errors import INTERRUPTED
@@ -48,12 +48,10 @@ def command(
     terminal: Terminal,
 ) -> int:
     """Run CASE up on a ladder of theories, meshes and tolerances against a fine reference: error over cost."""
-    from frbcli.plot.style import check_picture
     from frbcli.studies.accuracy import accuracy
 
     target = output or here(case.name, "-accuracy.png")
-    if picture:
-        check_picture(target)
+    check_place(target if picture else None)
     with live_lines(terminal) as show, compiling_told(terminal, case, show):
         watch = None if show is None else lambda rung, progress: show(f"{rung.name}\n{progress_line(progress)}")
         found = accuracy(case, until, theory, coupling, watch)

@@ -9,7 +9,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compiling_told
-from frbcli.cli.pictures import draw
+from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import exit_code, live_lines, progress_line
 from frbcli.errors import Fault, InputError
@@ -61,7 +61,6 @@ def command(
     Without --cavitation, --theory and --coupling it is compared with all models without a state, which cost little.
     """
     from frbcli.bearing_tests.plan import TESTS
-    from frbcli.plot.style import check_picture
     from frbcli.studies.compare import compare
 
     target = output or here(case.name, "-compare.png")
@@ -70,8 +69,7 @@ def command(
             problem = f"is not for a {test}, in which no rotor moves."
             raise InputError(case.name, (Fault("--coupling", ",".join(coupling), None, problem, "Leave it out."),))
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
-    if picture:
-        check_picture(target)
+    check_place(target if picture else None)
     with live_lines(terminal) as show, compiling_told(terminal, case, show):
         watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
         found = compare(case, cavitation, theory, test, keep, watch, coupling)

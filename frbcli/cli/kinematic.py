@@ -11,7 +11,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal
 from frbcli.cli.compiling import compiling_told
-from frbcli.cli.pictures import draw
+from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import INTERRUPTED, NotConverged
 
@@ -54,11 +54,9 @@ def run_test(
 ) -> int | None:
     """Run a test, tell it, draw it; its exit code. compared: the document is that of `frb compare`."""
     from frbcli.bearing_tests import kinematic
-    from frbcli.plot.style import check_picture
 
     target = output or here(case.name, f"-{test}.png")
-    if picture:
-        check_picture(target)
+    check_place(target if picture else None)
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
     with compiling_told(terminal, case):
         found = tests[test](case, cavitation)

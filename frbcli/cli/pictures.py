@@ -17,6 +17,14 @@ if TYPE_CHECKING:
 MISSING = re.compile(r"Glyph (\d+) .*missing from")  # how matplotlib begins its warning of a letter
 
 
+def check_place(picture: Path | None) -> None:
+    """Raises InputError if a picture that is wanted, None if there is none, cannot be drawn or written there."""
+    if picture is not None:  # whoever wants none does not wait for the library that draws
+        from frbcli.plot.style import check_picture
+
+        check_picture(picture)
+
+
 def draw(terminal: Terminal, picture: Callable[[], Picture], target: Path, what: str = "picture") -> Path | None:
     """Draw a picture of results that are told already. None if that fails, for whatever reason: a remark says why."""
     try:

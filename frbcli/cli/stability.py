@@ -14,7 +14,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compiling_told
 from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
-from frbcli.cli.pictures import draw
+from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT
 from frbcli.cli.stability_table import tell_points
 
@@ -67,15 +67,12 @@ def command(
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes
     from frbcli.linear.stability import stability
-    from frbcli.plot.campbell import campbell_figure
-    from frbcli.plot.style import check_picture
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
     drawn = "campbell" if stiffness is None else "modes"
     picture = None if no_picture else output or Path(f"{_file_name(case.name)}-{drawn}.png")
-    if picture is not None:
-        check_picture(picture)
+    check_place(picture)
     if stiffness is not None:
         emit_modes(terminal, case, stiffness, speeds, picture)
         return None
@@ -83,6 +80,8 @@ def command(
         found = stability(case, speeds or None)
     _tell(terminal, found, bool(speeds))
     if picture is not None:
+        from frbcli.plot.campbell import campbell_figure
+
         picture = draw(terminal, lambda: campbell_figure(found), picture, "Campbell diagram")
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:

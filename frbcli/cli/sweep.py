@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.pictures import draw
+from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES, live_lines
 from frbcli.errors import Fault, InputError
@@ -80,15 +80,13 @@ def command(
 
 def _check_places(table: Path, picture: Path | None) -> None:
     """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
-    from frbcli.plot.style import check_picture
     from frbcli.results.place import wrong_place
 
     if not table.parent.is_dir():
         return  # it is made, or that is refused
     if wrong := wrong_place(table):
         raise _fault("--output", str(table), *wrong)
-    if picture is not None:
-        check_picture(picture)
+    check_place(picture)
 
 
 def _axes(settings: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, ...]]]:
