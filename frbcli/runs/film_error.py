@@ -72,14 +72,14 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     theory this is the error of the theory itself. In contact it is that of the film in the gap that is kept. Films with
     oil of their own are compared in states in which it has settled; where it does not settle, they are left out.
     """
-    if isinstance(system.films, PublishedFilm):
-        forces = _published_forces(system.films, case)
+    if system.published is not None:
+        forces = _published_forces(system.published, case)
     elif plan.cells is not None:
         forces = _cell_forces(plan, system, case)
     else:
         forces = _source_forces(plan, system) if system.solved else _closed_forces(plan, system)
     control, n, found = control_of(case, plan), system.rotor.size, []
-    most = PUBLISHED_SAMPLES if isinstance(system.films, PublishedFilm) else CELL_SAMPLES
+    most = CELL_SAMPLES if system.published is None else PUBLISHED_SAMPLES
     every = 1 if plan.cells is None else max(1, len(samples) // most)
     for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
