@@ -18,7 +18,7 @@ from frbcli.errors import InputError
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.published.data import ElementFilm, make_room
 from frbcli.film.published.film import PublishedFilm
-from frbcli.film.published.loads import oil_content, oil_flows, published_loads
+from frbcli.film.published.loads import oil_flows, open_area, published_loads
 from frbcli.film.published.moving import oil_held, oil_passing, residual
 from frbcli.film.published.unknown import pressures_of, unknowns_of
 from frbcli.runs.march import control_of
@@ -201,7 +201,7 @@ def test_the_oil_of_the_loop_is_that_of_the_plain_flows(settings: tuple[str, ...
     found = oil_passing(data, make_room(data), w, -rate, *motion.d, *motion.v, motion.omega)
     assert min(plain.inflow, plain.outflow) > 0.0
     assert found == pytest.approx((plain.inflow, plain.outflow), rel=1e-9)
-    held = oil_content(film, motion.d, start.fraction)
+    held = data.volume * float((open_area(film) * film.gap(motion).height * start.fraction).sum())
     assert oil_held(data, *motion.d, start.fraction) == pytest.approx(held, rel=1e-12)
 
 

@@ -21,7 +21,7 @@ from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.runs.control import control_of
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.plan import Plan
-from frbcli.scene.published import run_film
+from frbcli.scene.published import published_film
 from frbcli.scene.system import System, planned_film
 from frbcli.solve.contact import felt_motion
 from frbcli.solve.state import Array
@@ -135,7 +135,7 @@ def _source_forces(plan: Plan, system: System) -> Forces:
 
 def _published_forces(own: PublishedFilm, case: Case) -> Forces:
     """Own force of a film in the published form, and as far from it as half as many elements each way tell."""
-    coarse = run_film(case, (max(3, own.mesh.around // 2), max(1, own.mesh.along // 2)))
+    coarse = published_film(case, own.section, (max(3, own.mesh.around // 2), max(1, own.mesh.along // 2)))
 
     def forces(_: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
         fine = published_force(own, at, rate, omega).force

@@ -39,7 +39,8 @@ from frbcli.scene.films import (
     volume_film,
 )
 from frbcli.scene.plan import Plan
-from frbcli.scene.published import PUBLISHED, run_film
+from frbcli.scene.published import PUBLISHED, published_film
+from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTIONS
 from frbcli.scene.turbocharger import make_turbocharger
 
@@ -134,7 +135,7 @@ def make_system(case: Case, plan: Plan) -> System:
         torque=case.film.torque,
     )
     if plan.cells is not None and plan.form == PUBLISHED:
-        film = run_film(case, plan.cells)
+        film = published_film(case, film_section(case, places[0].geometry), plan.cells)
         return replace(system, films=element_film(film), published=film)
     if plan.cells is not None:
         volumes = tuple(volume_film(case, place, plan.cells) for place in places)

@@ -115,8 +115,8 @@ def _keep_rates(film, work, s, g):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy")
 def element_numbers(film, work, d_x, d_y, v_x, v_y, omega, g, iteration):  # type: ignore[no-untyped-def]
-    """film_numbers of films.py. Where the last correction is to be shortened, or the film to be held, the numbers are
-    of no meaning: step_back then takes the correction back."""
+    """film_numbers of film_forces.py. Where the last correction is to be shortened, or the film to be held, the numbers
+    are of no meaning: step_back then takes the correction back."""
     notes = work.notes
     f_x, f_y, xx, xy, yx, yy = math.nan, math.nan, 0.0, 0.0, 0.0, 0.0
     if iteration == 0:
@@ -162,7 +162,7 @@ def _takes_place(film, work, g, iteration):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy")
 def back_off(work, rows):  # type: ignore[no-untyped-def]
-    """step_back of films.py; rows: of stage.py."""
+    """step_back of film_forces.py; rows: of stage.py."""
     notes, w, best_u = work.notes, work.w, work.notes[BEST_U:SIZES]
     if notes[IS_BEST] != 0.0:
         notes[IS_BEST], best_u[:] = 0.0, rows[U]
@@ -182,7 +182,7 @@ def back_off(work, rows):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, error_model="numpy")
 def move_elements(film, work, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
-    """move_film of films.py."""
+    """move_film of film_forces.py."""
     notes, w, change, largest = work.notes, work.w[HERE], work.w[CHANGE], 0.0
     notes[D_X] += g * u_x
     notes[D_Y] += g * u_y
