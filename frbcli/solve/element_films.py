@@ -15,10 +15,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from frbcli.film.published.data import RIGHTS, ElementFilm, Room, make_room
 from frbcli.film.published.moving import (
+    INTERNAL,
     force,
     mean_oil_fraction,
     oil_held,
@@ -35,7 +35,7 @@ from frbcli.solve.state import NOW, OIL, PASSED, RATE, W_BEFORE, Array, W
 CAME, LEFT, HELD, BOOKS = range(4)  # oil through the film in m^3, or now in m^3/s; in it at the start of a run, or now
 
 MOST_CORRECTIONS = 20
-MOST_ITERATIONS = 100  # trials of shortened corrections counted
+MOST_ITERATIONS = 120  # trials of shortened corrections counted
 MEMORY = 4  # a residual has to be smaller than the largest of so many before it
 SMALLEST_SHARE = 0.06  # of a correction
 LARGEST_CORRECTION = 1.0  # of an unknown: the whole of a step theta(p)
@@ -106,14 +106,14 @@ def begin_elements(films, work, wet, flows, weights, s, step, g, ahead, lag):  #
     w[:] = guess
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def _keep_rates(film, work, s, g):  # type: ignore[no-untyped-def]
     """Oil fraction and rate of stage s, which is solved."""
     set_oil_fraction(film, work.room, work.w[HERE], work.thetas[s])
     work.rates[s] = work.thetas[s] / g - work.past
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def element_numbers(film, work, d_x, d_y, v_x, v_y, omega, g, iteration):  # type: ignore[no-untyped-def]
     """film_numbers of film_forces.py. Where the last correction is to be shortened, or the film to be held, the numbers
     are of no meaning: step_back then takes the correction back."""
@@ -139,7 +139,7 @@ def element_numbers(film, work, d_x, d_y, v_x, v_y, omega, g, iteration):  # typ
     return f_x, f_y, 0.0, 0.0, 0.0, 0.0, xx, xy, yx, yy
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def _takes_place(film, work, g, iteration):  # type: ignore[no-untyped-def]
     """Assemble at where the film is; whether its residual is no reason to shorten the last correction."""
     notes, sizes = work.notes, work.notes[SIZES:]
@@ -160,7 +160,7 @@ def _takes_place(film, work, g, iteration):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def back_off(work, rows):  # type: ignore[no-untyped-def]
     """step_back of film_forces.py; rows: of stage.py."""
     notes, w, best_u = work.notes, work.w, work.notes[BEST_U:SIZES]
@@ -180,7 +180,7 @@ def back_off(work, rows):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def move_elements(film, work, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
     """move_film of film_forces.py."""
     notes, w, change, largest = work.notes, work.w[HERE], work.w[CHANGE], 0.0
@@ -200,7 +200,7 @@ def move_elements(film, work, u_x, u_y, share, g):  # type: ignore[no-untyped-de
     return 0 if largest < FILM_SETTLED else 1
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def left_of_elements(work, moved, unsettled, allowed):  # type: ignore[no-untyped-def]
     """left_over of film_forces.py."""
     notes = work.notes

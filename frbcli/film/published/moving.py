@@ -14,8 +14,12 @@ from frbcli.film.published.law import oil_fraction
 from frbcli.film.published.ring import make_ring, solve_ring
 from frbcli.film.published.unknown import pressures_of
 
+# Of kernels that only kernels call: to be callable from Python, with a film in so many arrays, costs a fifth of all
+# compilation.
+INTERNAL = njit(cache=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)  # type: ignore[call-overload]
 
-@njit(cache=True, error_model="numpy")
+
+@INTERNAL
 def _set_gap(film, room, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     sine, cosine = film.elements.sine, film.elements.cosine
     height, slope, rate = room.gap[0], room.gap[1], room.gap[2]
@@ -27,7 +31,7 @@ def _set_gap(film, room, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-
     return Gap(height, slope, rate, 0.5 * omega)
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def set_pressures(film, room, w):  # type: ignore[no-untyped-def]
     """PRESSURE and BY_W of the room <- of the unknowns w (nodes,)."""
     room.nodes[PRESSURE], room.nodes[BY_W] = pressures_of(film.unknowns, film.step, w)
@@ -60,7 +64,7 @@ def residual(film, room, w, past, d_x, d_y, v_x, v_y, omega, g):  # type: ignore
     return math.sqrt(size), left / terms
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def force(film, room):  # type: ignore[no-untyped-def]
     """On the journal, by the PRESSURE of the room."""
     f_x, f_y, pressure = 0.0, 0.0, room.nodes[PRESSURE]
@@ -70,7 +74,7 @@ def force(film, room):  # type: ignore[no-untyped-def]
     return f_x, f_y
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def solve(film, room):  # type: ignore[no-untyped-def]
     """room.solution <- correction of the unknowns, and what the velocities do to them, from what residual has
     assembled. Returns the force after the correction and its derivatives by the velocity (xx, xy, yx, yy); the
@@ -95,7 +99,7 @@ def solve(film, room):  # type: ignore[no-untyped-def]
     return f_x, f_y, xx, xy, yx, yy
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def set_oil_fraction(film, room, w, theta):  # type: ignore[no-untyped-def]
     """theta (e, 9) <- at the points, by the unknowns w (nodes,)."""
     set_pressures(film, room, w)
@@ -108,7 +112,7 @@ def set_oil_fraction(film, room, w, theta):  # type: ignore[no-untyped-def]
             theta[e, q] = oil_fraction(film.step, here)[0]
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def mean_oil_fraction(film, theta):  # type: ignore[no-untyped-def]
     """The factor (4.46) of oil fractions (e, 9)."""
     area, oil = 0.0, 0.0
@@ -163,7 +167,7 @@ def oil_passing(film, room, w, past, d_x, d_y, v_x, v_y, omega):  # type: ignore
     return film.volume * came, film.volume * left
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def _carried(elements, step, pressure, e, gap):  # type: ignore[no-untyped-def]
     """What the surfaces carry out of a groove or hole in element e, net."""
     total = 0.0
@@ -178,7 +182,7 @@ def _carried(elements, step, pressure, e, gap):  # type: ignore[no-untyped-def]
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@INTERNAL
 def _through_end(elements, pressure, e, place):  # type: ignore[no-untyped-def]
     """The outflow (4.36), (4.37) of element e through an end at its nodes 3 i + place."""
     total = 0.0
