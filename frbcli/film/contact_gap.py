@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import compiled
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
 KEPT = 0.2  # of the gap at which the surfaces touch: what no load presses out
 LATEST = 1.0 - (1.0 - LARGEST_ECCENTRICITY) / KEPT  # beginning from which films can be computed in the gap that is kept
 
 
-@njit(cache=True, error_model="numpy")
-def closes_freely_until(contact_eccentricity):  # type: ignore[no-untyped-def]
+@compiled()
+def closes_freely_until(contact_eccentricity: float) -> float:
     """Eccentricity from which on the film's gap closes more slowly than the journal moves: where the surfaces touch,
     or somewhat before if the gap that is kept would be too small for the films."""
     return min(contact_eccentricity, LATEST)
 
 
-@njit(cache=True, error_model="numpy")
-def contact_gap(begins, d_x, d_y, v_x, v_y):  # type: ignore[no-untyped-def]
+@compiled()
+def contact_gap(
+    begins: float, d_x: float, d_y: float, v_x: float, v_y: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """What a film feels of a journal beyond the eccentricity `begins`, see closes_freely_until; d: displacement over
     the clearance, v: its rate.
 

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from frbcli.compiled import compiled
 
 Array = NDArray[np.float64]
 
@@ -58,8 +59,8 @@ def speed_profile(times: list[float], speeds: list[float]) -> SpeedProfile:
     return SpeedProfile(t, omega, angles)
 
 
-@njit(cache=True, error_model="numpy")
-def rotation(times, speeds, angles, piece, t):  # type: ignore[no-untyped-def]
+@compiled()
+def rotation(times: Array, speeds: Array, angles: Array, piece: int, t: float) -> tuple[float, float, float]:
     """Angular acceleration, speed and angle at the time t inside the given piece of a profile."""
     start = t - times[piece]
     acceleration = (speeds[piece + 1] - speeds[piece]) / (times[piece + 1] - times[piece])

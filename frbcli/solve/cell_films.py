@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
 from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
 from frbcli.film.cells.block_cyclic import solve_ring
@@ -46,8 +46,8 @@ SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth th
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
-@njit(cache=True, error_model="numpy")
-def set_law(numbers, grid, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+@compiled()
+def set_law(numbers: Array, grid: Array, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> None:
     """Keep with the grid what the film's law is at this motion, see follow_law."""
     law = np.empty(LAW_NUMBERS)
     follow_law(numbers, d_x, d_y, v_x, v_y, omega, law)
@@ -55,8 +55,8 @@ def set_law(numbers, grid, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untype
         grid[LAW + i] = law[i]
 
 
-@njit(cache=True, error_model="numpy")
-def law_of(grid):  # type: ignore[no-untyped-def]
+@compiled()
+def law_of(grid: Array) -> Array:
     """(LAW_NUMBERS,) the law that set_law has kept, in one piece."""
     law = np.empty(LAW_NUMBERS)
     for i in range(LAW_NUMBERS):
@@ -64,8 +64,8 @@ def law_of(grid):  # type: ignore[no-untyped-def]
     return law
 
 
-@njit(cache=True, error_model="numpy")
-def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-def]
+@compiled()
+def guess_unknowns(w: Array, start: Array, before: Array, s: int, ahead: float, lag: float) -> None:
     """w of a stage by a straight line: in the first through the step before, later through the last stage."""
     m, k = w.shape
     for i in range(m):
@@ -76,31 +76,12 @@ def guess_unknowns(w, start, before, s, ahead, lag):  # type: ignore[no-untyped-
                 w[i, j] = start[i, j] + lag * (w[i, j] - start[i, j])
 
 
-@njit(cache=True, error_model="numpy")
-def cell_numbers(  # type: ignore[no-untyped-def]
-    numbers,
-    ring,
-    width,
-    cells,
-    w,
-    past,
-    states,
-    stencil,
-    blocks,
-    fields,
-    rates,
-    flows,
-    grid,
-    slopes,
-    channel,
-    d_x,
-    d_y,
-    v_x,
-    v_y,
-    omega,
-    g,
-    iteration,
-):
+@compiled()
+def cell_numbers(
+    numbers: Array, ring: Array, width: Array, cells: Array, w: Array, past: Array, states: Array, stencil: Array,
+    blocks: Array, fields: Array, rates: Array, flows: Array, grid: Array, slopes: Array, channel: Array,
+    d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float, iteration: int,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_numbers of films.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
     pressures of the channels over its cells, see channels.py."""
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
@@ -163,8 +144,8 @@ def cell_numbers(  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
-def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untyped-def]
+@compiled()
+def move_cells(w: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: float, changes: Array) -> int:
     """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
     pressures, changes (slots,); 1 if the film had not settled.
 
@@ -189,8 +170,8 @@ def move_cells(w, fields, grid, u_x, u_y, g, changes):  # type: ignore[no-untype
     return 1 if grid[UNSETTLED] != 0.0 else 0
 
 
-@njit(cache=True, error_model="numpy")
-def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
+@compiled()
+def oil_fraction(cells: Array, states: Array) -> float:
     """The mean oil fraction of a film, (4.46)."""
     m, k = states.shape[1], states.shape[2]
     area, oil = 0.0, 0.0
@@ -202,8 +183,8 @@ def oil_fraction(cells, states):  # type: ignore[no-untyped-def]
     return oil / area
 
 
-@njit(cache=True, error_model="numpy")
-def sheared(ring, cells, states, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+@compiled()
+def sheared(ring: Array, cells: Array, states: Array, d_x: float, d_y: float, factor: int) -> float:
     """drag_integral of films.py for a film with cells."""
     if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
         return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))

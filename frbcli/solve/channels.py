@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import Array, compiled
 from frbcli.film.cells.balances import BY_ITSELF, SIDES
 from frbcli.film.cells.channel_flow import (
     channel_pressures,
@@ -20,7 +20,7 @@ from frbcli.film.cells.channel_flow import (
     mean_changes,
     push_of_channel,
 )
-from frbcli.film.cells.data import FILM, SLOT
+from frbcli.film.cells.data import FILM, SLOT, VolumeFilms
 from frbcli.solve.cell_films import (
     GRID_SPEED,
     GRID_TURN,
@@ -30,8 +30,8 @@ from frbcli.solve.cell_films import (
 from frbcli.solve.dense import solve_dense
 
 
-@njit(cache=True, error_model="numpy")
-def set_laws(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-untyped-def]
+@compiled()
+def set_laws(films: VolumeFilms, grids: Array, x_0: Array, u: Array, omega: Array, clearances: Array, g: float) -> None:
     """The parameters of the films' laws where the journals are guessed to be."""
     for f in range(clearances.shape[0]):
         d_x = (x_0[2 * f] + g * u[2 * f]) / clearances[f]
@@ -40,8 +40,8 @@ def set_laws(films, grids, x_0, u, omega, clearances, g):  # type: ignore[no-unt
         set_law(films.numbers[f], grids[:, f], d_x, d_y, v_x, v_y, omega[2 * f])
 
 
-@njit(cache=True, error_model="numpy")
-def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
+@compiled()
+def set_pressures(films: VolumeFilms, grids: Array, w: Array, channel: Array) -> None:
     """channel (films, m, k) <- the channels' pressures over the cells of their feed holes, by the films as they are."""
     count = films.feed_holes.shape[0]
     means = np.empty(count)
@@ -59,10 +59,11 @@ def set_pressures(films, grids, w, channel):  # type: ignore[no-untyped-def]
                 channel[f, i, j] = means[q]
 
 
-@njit(cache=True, error_model="numpy")
-def join(  # type: ignore[no-untyped-def]
-    films, grids, states, fields, clearances, follows_x, follows_y, force, cross, answers, changes
-):
+@compiled()
+def join(
+    films: VolumeFilms, grids: Array, states: Array, fields: Array, clearances: Array, follows_x: Array,
+    follows_y: Array, force: Array, cross: Array, answers: Array, changes: Array,
+) -> None:  # fmt: skip
     """Let the solved films feel each other: their forces, and cross (2 films, 2 films), N s / m, what the channels make
     of the derivatives by the journals' velocities. answers (feed_holes, 1 + 2 films) <- the changes of the channels'
     pressures, by themselves and per journal velocity in m/s; changes (films, slots) <- the former."""
@@ -104,8 +105,8 @@ def join(  # type: ignore[no-untyped-def]
             cross[2 * f + 1, j] += push_y * answers[q, 1 + j]
 
 
-@njit(cache=True, error_model="numpy")
-def follow_journals(films, answers, correction, share, changes):  # type: ignore[no-untyped-def]
+@compiled()
+def follow_journals(films: VolumeFilms, answers: Array, correction: Array, share: float, changes: Array) -> None:
     """changes (films, slots) <- of the channels' pressures with a share of a correction of the journals' velocities."""
     for q in range(films.feed_holes.shape[0]):
         total = answers[q, 0]

@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
 from frbcli.solve.stage import ELASTIC_LIMIT
 from frbcli.solve.state import Array, Control
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def touches(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def touches(eccentricity: float, contact_at: float, contact_stiffness: float) -> float:
     """Whether a film feels less than the displacement. Where contact ends the run, stiffness 0, it never does."""
     return contact_stiffness > 0.0 and eccentricity > closes_freely_until(contact_at)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def shell_ahead(eccentricity, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def shell_ahead(eccentricity: float, contact_at: float, contact_stiffness: float) -> float:
     """Where the gap ends for Newton's method: at the shell, and in contact as far ahead as the gap was wide there, but
     no further than a shell gives way."""
     if contact_stiffness > 0.0:
@@ -27,16 +27,20 @@ def shell_ahead(eccentricity, contact_at, contact_stiffness):  # type: ignore[no
     return 1.0
 
 
-@njit(cache=True, error_model="numpy")
-def feel(d_x, d_y, v_x, v_y, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+@compiled()
+def feel(
+    d_x: float, d_y: float, v_x: float, v_y: float, contact_at: float, contact_stiffness: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """The ten numbers of contact_gap, in contact or not."""
     if touches(math.sqrt(d_x * d_x + d_y * d_y), contact_at, contact_stiffness):
         return contact_gap(closes_freely_until(contact_at), d_x, d_y, v_x, v_y)
     return d_x, d_y, v_x, v_y, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0
 
 
-@njit(cache=True, error_model="numpy")
-def push_back(d_x, d_y, clearance, contact_at, contact_stiffness):  # type: ignore[no-untyped-def]
+@compiled()
+def push_back(
+    d_x: float, d_y: float, clearance: float, contact_at: float, contact_stiffness: float,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
     """The radial spring of the surfaces beyond the eccentricity of contact: force (x, y) in N, and what it falls by per
     displacement over the clearance (xx, yy, xy)."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)

@@ -6,11 +6,11 @@ here have two to some sixty unknowns.
 
 from __future__ import annotations
 
-from numba import njit
+from frbcli.compiled import Array, compiled
 
 
-@njit(cache=True, error_model="numpy")
-def solve_dense(matrix, right):  # type: ignore[no-untyped-def]
+@compiled()
+def solve_dense(matrix: Array, right: Array) -> None:
     """right (n, r) <- matrix^-1 right by elimination with row pivoting; matrix (n, n) is overwritten.
 
     A singular matrix leaves infinities or NaN in `right`: the caller looks at what it does with the result.

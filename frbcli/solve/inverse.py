@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import Array, compiled
 from frbcli.solve.dense import solve_dense
-from frbcli.solve.state import INVERSE_G, INVERSE_SPEED
+from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 
 LASTS = 0.01  # relative change of the speed over which a gyroscopic rotor keeps its inverse
 LAG_SWEEPS = 2  # iterations that bring the rest of the gyroscopic term below 1e-8: each gains a factor of 1000
@@ -16,14 +16,17 @@ E_DAMPING, E_STIFFNESS, E_GYROSCOPIC = range(3)
 E_STATIC, E_COS, E_SIN = range(3)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def outdated(numbers, g, speed, gyroscopic):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def outdated(numbers: Array, g: float, speed: float, gyroscopic: float) -> float:
     """Whether the inverse that the numbers tell of does not serve a stage with this g and speed."""
     return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
 
 
-@njit(cache=True, error_model="numpy")
-def prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance):  # type: ignore[no-untyped-def]
+@compiled()
+def prepare(
+    rotor: RotorData, selection: Array, numbers: Array, g: float, speed: float, products: Array, loads: Array,
+    spread: Array, compliance: Array,
+) -> None:  # fmt: skip
     """Make the inverse E for this g and speed, keep its products, and book in the numbers for what they are.
 
     products (3, n, n), loads (3, n): of E with the matrices and loads in the order of E_...; spread (n, m): with the

@@ -6,22 +6,25 @@ The equations are those of stage.py. Films with cells are corrected along with t
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from numba import njit
-
+from frbcli.compiled import Array, compiled
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
+from frbcli.film.published.data import ElementFilm
 from frbcli.solve.contact import push_back, shell_ahead, touches
 from frbcli.solve.dense import solve_dense
+from frbcli.solve.element_films import ElementWork
 from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film, step_back
 from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FOLLOWS_X, FOLLOWS_Y, FORCE, OMEGA, U_0, X_0, U, norm
 
 CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction may close
 
 
-@njit(cache=True, error_model="numpy")
-def _in_contact(  # type: ignore[no-untyped-def]
-    films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration, c, contact_at, contact_stiffness, film
-):
+@compiled()
+def _in_contact(
+    films: Any, work: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float, s: int,
+    iteration: int, c: float, contact_at: float, contact_stiffness: float, film: Array,
+) -> None:  # fmt: skip
     """FORCE, BY_X, BY_Y of a bearing in contact: the film at what it feels of the journal, and the elastic shell;
     FOLLOWS_X, FOLLOWS_Y."""
     x, y = 2 * f, 2 * f + 1
@@ -44,8 +47,8 @@ def _in_contact(  # type: ignore[no-untyped-def]
     film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = rate_xy
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def _solve_small(matrix: Array, film: Array) -> None:
     """CORRECTION <- matrix^-1 CORRECTION for the few journals' equations; closed form for one bearing."""
     if matrix.shape[0] == 2:
         det = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
@@ -57,8 +60,8 @@ def _solve_small(matrix, film):  # type: ignore[no-untyped-def]
         solve_dense(matrix, right)
 
 
-@njit(cache=True, error_model="numpy")
-def reach(d_x, d_y, c_x, c_y, end):  # type: ignore[no-untyped-def]
+@compiled()
+def reach(d_x: float, d_y: float, c_x: float, c_y: float, end: float) -> float:
     """Largest factor <= 1 by which the correction c may be applied: the gap to `end` keeps a share of itself."""
     here = norm(d_x, d_y)
     there = norm(d_x + c_x, d_y + c_y)
@@ -70,8 +73,11 @@ def reach(d_x, d_y, c_x, c_y, end):  # type: ignore[no-untyped-def]
     return factor
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def forces(
+    films: ElementFilm, work: ElementWork, clearances: Array, contact_at: float, contact_stiffness: float,
+    g: float, s: int, iteration: int, film: Array,
+) -> None:  # fmt: skip
     """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
     meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
     for f in range(clearances.shape[0]):
@@ -94,10 +100,11 @@ def forces(films, work, clearances, contact_at, contact_stiffness, g, s, iterati
     join_films(films, work, clearances, film[FORCE], film[FOLLOWS_X], film[FOLLOWS_Y])
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def correct(  # type: ignore[no-untyped-def]
-    films, work, compliance, clearances, contact_at, contact_stiffness, g, film, newton
-):
+@compiled(inline=True)
+def correct(
+    films: ElementFilm, work: ElementWork, compliance: Array, clearances: Array, contact_at: float,
+    contact_stiffness: float, g: float, film: Array, newton: Array,
+) -> tuple[float, float, float, int]:  # fmt: skip
     """One correction of U by Newton's method, and of the films' cells with it.
 
     Returns (share of it that was applied, what may be left of the error of a smooth force, how far the journals moved

@@ -12,15 +12,15 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import Indices, compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.films import make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.micro_step import films_follow, parabola
 from frbcli.solve.ring_spin import spin_up
-from frbcli.solve.scratch import make_scratch
+from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, start_stage
 from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, RotorData, State
 from frbcli.solve.step import (
@@ -42,8 +42,8 @@ GROWTH = 1.25  # of a macro step at most: it cannot be taken back
 SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
 
 
-@njit(cache=True, error_model="numpy")
-def _tell(selection, spins, clearances, q, v, motion):  # type: ignore[no-untyped-def]
+@compiled()
+def _tell(selection: Array, spins: Indices, clearances: Array, q: Array, v: Array, motion: Array) -> float:
     """motion <- what the films are told of the rotor: journals' displacements and velocities, then angles and speeds of
     the rings. Returns the largest eccentricity."""
     m, rings, largest = selection.shape[0], spins.shape[0], 0.0
@@ -60,8 +60,8 @@ def _tell(selection, spins, clearances, q, v, motion):  # type: ignore[no-untype
     return largest
 
 
-@njit(cache=True, error_model="numpy")
-def _responses(rotor, selection):  # type: ignore[no-untyped-def]
+@compiled()
+def _responses(rotor: RotorData, selection: Array) -> Array:
     """(n, m + rings) what forces on the journals and torques on the rings do to the accelerations."""
     m, n = selection.shape
     inertia, responses = rotor.mass.copy(), np.zeros((n, m + rotor.spins.shape[0]))
@@ -74,8 +74,8 @@ def _responses(rotor, selection):  # type: ignore[no-untyped-def]
     return responses
 
 
-@njit(cache=True, error_model="numpy")
-def _extrapolate(past, t, lagrange, given, film):  # type: ignore[no-untyped-def]
+@compiled()
+def _extrapolate(past: Array, t: float, lagrange: Array, given: Array, film: Array) -> None:
     """given (m + rings,) <- forces of the films and torques on the rings at the time t by the parabola; FORCE too."""
     parabola(past[:, 0], t, lagrange)
     first = past.shape[1] - given.shape[0]
@@ -87,8 +87,8 @@ def _extrapolate(past, t, lagrange, given, film):  # type: ignore[no-untyped-def
         film[FORCE, k] = given[k]
 
 
-@njit(cache=True, error_model="numpy")
-def _recall(past, three, motions):  # type: ignore[no-untyped-def]
+@compiled()
+def _recall(past: Array, three: Array, motions: Array) -> None:
     """three, motions <- times and motions of the last two macro times."""
     for p in range(2):
         three[p] = past[1 + p, 0]
@@ -96,8 +96,8 @@ def _recall(past, three, motions):  # type: ignore[no-untyped-def]
             motions[p, k] = past[1 + p, 1 + k]
 
 
-@njit(cache=True, error_model="numpy")
-def _remember(past, t_new, motion, film, torque, given):  # type: ignore[no-untyped-def]
+@compiled()
+def _remember(past: Array, t_new: float, motion: Array, film: Array, torque: Array, given: Array) -> None:
     """past moves on to t_new; given <- what the extrapolated forces and torques were off by."""
     told, m = motion.shape[0], film.shape[1]
     past[0], past[1] = past[1], past[2]
@@ -109,8 +109,8 @@ def _remember(past, t_new, motion, film, torque, given):  # type: ignore[no-unty
         given[k] = past[2, 1 + told + k] - given[k]
 
 
-@njit(cache=True, error_model="numpy")
-def _amend(responses, compliance, clearances, given, a):  # type: ignore[no-untyped-def]
+@compiled()
+def _amend(responses: Array, compliance: Array, clearances: Array, given: Array, a: Array) -> float:
     """Make the accelerations a (n,) consistent with forces that were off by `given`. Returns the largest velocity of a
     journal, over its clearance, that they were off by in a stage."""
     for i in range(a.shape[0]):
@@ -141,10 +141,11 @@ def advance_in_turn(
     return int(status), int(rows)
 
 
-@njit(cache=True, error_model="numpy")
-def _advance(  # type: ignore[no-untyped-def]
-    rotor, films, tableau, control, state, scratch, work, budget, out_q, out_v, out_oil
-):
+@compiled()
+def _advance(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
+    budget: int, out_q: Array, out_v: Array, out_oil: Array,
+) -> tuple[int, int]:  # fmt: skip
     """advance_in_turn with the arrays that it works in."""
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
     wet, flows = state.wet, state.flows

@@ -6,9 +6,9 @@ The journals' motion is a parabola through the last three macro time points (sec
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from numba import njit
-
+from frbcli.compiled import Array, compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import move_film
 from frbcli.solve.films import NEWTON_LIMIT, accept_films, begin_stage
@@ -24,14 +24,16 @@ MICRO_STEPS, MICRO_REJECTED, MICRO_STEP, FILMS_REMEMBER, CO_NUMBERS = range(NUMB
 UNSOLVED_SHARE = 0.25  # of a step whose films were not solved, to be tried instead
 
 
-@njit(cache=True, error_model="numpy")
-def parabola(times, t, weights):  # type: ignore[no-untyped-def]
+@compiled()
+def parabola(times: Array, t: float, weights: Array) -> None:
     """weights (3,) <- of Lagrange's parabola through three times (3,), at the time t."""
     weights[0], weights[1], weights[2] = lagrange(times[0], times[1], times[2], t)
 
 
-@njit(cache=True, error_model="numpy")
-def _move_journals(motions, times, t, g, film, bodies, angles, lagrange):  # type: ignore[no-untyped-def]
+@compiled()
+def _move_journals(
+    motions: Array, times: Array, t: float, g: float, film: Array, bodies: Array, angles: Array, lagrange: Array,
+) -> None:  # fmt: skip
     """U of the journals at the time t and X_0, g U short of where they are; speeds and angles of the rings."""
     m, rings = film.shape[1], bodies.shape[0] - 1
     parabola(times, t, lagrange)
@@ -48,8 +50,11 @@ def _move_journals(motions, times, t, g, film, bodies, angles, lagrange):  # typ
             bodies[1 + r] += lagrange[p] * motions[p, 2 * m + rings + r]
 
 
-@njit(cache=True, error_model="numpy")
-def _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, film):  # type: ignore[no-untyped-def]
+@compiled()
+def _solve_films(
+    films: Any, work: Any, clearances: Array, contact_at: float, contact_stiffness: float, g: float, s: int,
+    film: Array,
+) -> int:  # fmt: skip
     """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
     for iteration in range(NEWTON_LIMIT):
         forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
@@ -63,8 +68,8 @@ def _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, f
     return 0
 
 
-@njit(cache=True, error_model="numpy")
-def _oil_error(defect, stage_oil, step):  # type: ignore[no-untyped-def]
+@compiled()
+def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
     """Largest embedded error of the oil H theta of a cell."""
     stages, count, m, k = stage_oil.shape
     error = 0.0
@@ -78,11 +83,13 @@ def _oil_error(defect, stage_oil, step):  # type: ignore[no-untyped-def]
     return error
 
 
-@njit(cache=True, error_model="numpy")
-def films_follow(  # type: ignore[no-untyped-def]
-    films, work, wet, flows, numbers, weights, moments, defect, order, tolerance, profile_times, profile_speeds,
-    profile_angles, piece, turning, clearances, contact_at, contact_stiffness, motions, three, film, bodies, angles
-):
+@compiled()
+def films_follow(
+    films: Any, work: Any, wet: Array, flows: Array, numbers: Array, weights: Array, moments: Array,
+    defect: Array, order: float, tolerance: float, profile_times: Array, profile_speeds: Array,
+    profile_angles: Array, piece: int, turning: Array, clearances: Array, contact_at: float,
+    contact_stiffness: float, motions: Array, three: Array, film: Array, bodies: Array, angles: Array,
+) -> bool:  # fmt: skip
     """Take the films from the macro time three[1] to three[2]; FORCE is then theirs. Returns whether that succeeded.
 
     motions: (3, 4 films + 2 rings) of the journals and rings at the macro times three (3,), see macro_step.py.

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numba import njit
+from typing import Any
 
+import numpy as np
+
+from frbcli.compiled import Array, compiled
 from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.contact import feel
 from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.stage import FORCE, OMEGA, X_0, Q, U, V
-from frbcli.solve.state import GRID, SLIP, SUM
+from frbcli.solve.state import GRID, SLIP, SUM, RotorData
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def set_speeds(turning, bodies, angles, film, grids):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def set_speeds(turning: Array, bodies: Array, angles: Array, film: Array, grids: Array) -> None:
     """OMEGA of each film, and how its grid stands, by speeds and angles of the rotor and the rings."""
     for f in range(turning.shape[0]):
         total, speed, angle = 0.0, 0.0, 0.0
@@ -26,8 +28,11 @@ def set_speeds(turning, bodies, angles, film, grids):  # type: ignore[no-untyped
             grids[GRID_TURN, f], grids[GRID_SPEED, f] = angle, speed
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def guess_speeds(
+    spins: Array, s: int, g: float, speed: float, angle: float, at: Array, stage_a: Array, bodies: Array,
+    angles: Array,
+) -> None:  # fmt: skip
     """bodies, angles (1 + rings,) <- speed and angle of the rotor, and of each ring, which goes on as it did in the
     stage before."""
     bodies[0], angles[0] = speed, angle
@@ -37,11 +42,12 @@ def guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles):  # typ
         angles[1 + r] = at[Q, i] + g * bodies[1 + r]
 
 
-@njit(cache=True, error_model="numpy")
-def spin_up(  # type: ignore[no-untyped-def]
-    films, work, rotor, s, g, clearances, contact_at, contact_stiffness, at, film, bodies, angles, torque, stage_v,
-    stage_a
-):
+@compiled()
+def spin_up(
+    films: Any, work: Any, rotor: RotorData, s: int, g: float, clearances: Array, contact_at: float,
+    contact_stiffness: float, at: Array, film: Array, bodies: Array, angles: Array, torque: Array, stage_v: Array,
+    stage_a: Array,
+) -> float:  # fmt: skip
     """Let the films' torques (4.17) turn the rings: speeds and angles of the stage. Returns how far, in rad, the angle
     of a ring was off.
 

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import Array, compiled
 from frbcli.solve.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
 from frbcli.solve.state import INVERSE_SPEED
 
@@ -29,19 +28,19 @@ V, Q, FREE, LATE, STAGE_ROWS = range(5)
 U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL_ROWS = range(11)
 
 
-@njit(cache=True, error_model="numpy")
-def norm(x, y):  # type: ignore[no-untyped-def]
+@compiled()
+def norm(x: float, y: float) -> float:
     return math.sqrt(x * x + y * y)
 
 
-@njit(cache=True, error_model="numpy")
-def limit_of(contact_stiffness):  # type: ignore[no-untyped-def]
+@compiled()
+def limit_of(contact_stiffness: float) -> float:
     """Eccentricity that is no state any more: under elastic contact the shell gives way, else it ends at the shell."""
     return ELASTIC_LIMIT if contact_stiffness > 0.0 else 1.0
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def lagrange(a: Array, b: Array, c: float, t: float) -> tuple[float, float, float]:
     """The three weights of the parabola through points at the times a, b, c, at the time t."""
     return (
         (t - b) * (t - c) / ((a - b) * (a - c)),
@@ -50,11 +49,12 @@ def lagrange(a, b, c, t):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def start_stage(  # type: ignore[no-untyped-def]
-    weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed, angle, gyroscopic,
-    at, film,
-):
+@compiled(inline=True)
+def start_stage(
+    weights: Array, s: int, step: float, g: float, q: Array, v: Array, stage_v: Array, stage_a: Array,
+    products: Array, loads: Array, selection: Array, acceleration: float, speed: float, angle: float,
+    gyroscopic: float, at: Array, film: Array,
+) -> None:  # fmt: skip
     """Fill V, Q, FREE of `at` and U_0, X_0 of `film`: what stage s knows before its films do."""
     n = q.shape[0]
     for i in range(n):
@@ -84,16 +84,19 @@ def start_stage(  # type: ignore[no-untyped-def]
         film[X_0, k], film[U_0, k] = place, rate
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def begin_lag(numbers, g, speed, at):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def begin_lag(numbers: Array, g: float, speed: float, at: Array) -> float:
     """The lag of `accelerate` in a stage of a gyroscopic rotor, which begins with the speed of its inverse: LATE."""
     for i in range(at.shape[1]):
         at[LATE, i] = at[FREE, i]
     return g * (speed - numbers[INVERSE_SPEED])
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def guess(points, three, s, selection, q, clearances, g, t, limit, film):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def guess(
+    points: float, three: Array, s: int, selection: Array, q: Array, clearances: Array, g: float, t: float,
+    limit: float, film: Array,
+) -> None:  # fmt: skip
     """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
 
     points: (p, 1 + m) times and journals' velocities of this step and the one before; three: (s, 3) which of them carry
@@ -113,8 +116,11 @@ def guess(points, three, s, selection, q, clearances, g, t, limit, film):  # typ
             film[U, x], film[U, y] = (here_x - film[X_0, x]) / g, (here_y - film[X_0, y]) / g
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def accelerate(
+    s: int, g: float, lag: float, products: Array, spread: Array, selection: Array, at: Array, film: Array,
+    stage_v: Array, stage_a: Array,
+) -> None:  # fmt: skip
     """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
 
     lag: g times the difference between the stage's speed and that of the inverse, for the rest of the gyroscopic term.

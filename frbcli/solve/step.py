@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import Array, compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.state import (
     CONTACT,
@@ -30,6 +29,7 @@ from frbcli.solve.state import (
     STEPS,
     TIME,
     TURNS,
+    Control,
 )
 
 SMALLEST_STEP = 1e-12  # s
@@ -42,8 +42,8 @@ GROWTH = 1.2  # a step is enlarged only if it pays for the new inverse
 LASTING = 0.95  # of the longest allowed step: a step chosen there lasts a while before the speed outgrows it
 
 
-@njit(cache=True, error_model="numpy")
-def local_error(defect, observed, stage_v, stage_a, step, g):  # type: ignore[no-untyped-def]
+@compiled()
+def local_error(defect: Array, observed: Array, stage_v: Array, stage_a: Array, step: float, g: float) -> float:
     """Largest embedded error of the observed displacements, over their clearances; velocities count times g."""
     n, stages = stage_v.shape
     error = 0.0
@@ -61,8 +61,11 @@ def local_error(defect, observed, stage_v, stage_a, step, g):  # type: ignore[no
     return error
 
 
-@njit(cache=True, error_model="numpy")
-def write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_q, out_v, written):  # type: ignore[no-untyped-def]
+@compiled()
+def write_outputs(
+    numbers: Array, stage_v: Array, output_step: float, t: float, step: float, t_new: float, q: Array,
+    q_new: Array, out_q: Array, out_v: Array, written: int,
+) -> int:  # fmt: skip
     """Dense output: the cubic through displacements and velocities at both ends of a step. Returns rows written."""
     last = stage_v.shape[1] - 1
     while numbers[OUTPUTS] * output_step <= t_new * (1.0 + 1e-12):
@@ -77,8 +80,8 @@ def write_outputs(numbers, stage_v, output_step, t, step, t_new, q, q_new, out_q
     return written
 
 
-@njit(cache=True, error_model="numpy")
-def book_error(numbers, errors, step, error):  # type: ignore[no-untyped-def]
+@compiled()
+def book_error(numbers: Array, errors: Array, step: float, error: float) -> None:
     """Add the local error of a step, which is done, to the fading sum of all, and to its span of the run."""
     spans = errors.shape[1]
     span = min(int(spans * numbers[TIME] / numbers[RUN_END]), spans - 1)
@@ -88,16 +91,18 @@ def book_error(numbers, errors, step, error):  # type: ignore[no-untyped-def]
     errors[ERRORS_SUM, span] += error
 
 
-@njit(cache=True, error_model="numpy")
-def step_after(h, error, before, order):  # type: ignore[no-untyped-def]
+@compiled()
+def step_after(h: float, error: float, before: float, order: float) -> float:
     """Proportional-integral control: the step after an accepted one; errors over the tolerance, now and before."""
     ratio = SAFETY * max(error, 1e-8) ** (-0.7 / order) * max(before, 1e-8) ** (0.3 / order)
     ratio = min(LARGEST_SHARE, max(SMALLEST_SHARE, ratio))
     return h * ratio if ratio < 1.0 or ratio > GROWTH else h
 
 
-@njit(cache=True, error_model="numpy")
-def step_to_take(h, before, remaining, speed, steps_per_revolution, longest):  # type: ignore[no-untyped-def]
+@compiled()
+def step_to_take(
+    h: float, before: float, remaining: float, speed: float, steps_per_revolution: float, longest: float,
+) -> tuple[float, float]:  # fmt: skip
     """(step that the controller keeps, step to take now): some of a revolution, and never across a kink of the profile.
 
     A step near the one before is the one before: a new step costs a new inverse.
@@ -113,8 +118,10 @@ def step_to_take(h, before, remaining, speed, steps_per_revolution, longest):  #
     return h, h
 
 
-@njit(cache=True, error_model="numpy")
-def begin_step(numbers, times, speeds, angles, control, room):  # type: ignore[no-untyped-def]
+@compiled()
+def begin_step(
+    numbers: Array, times: Array, speeds: Array, angles: Array, control: Control, room: int,
+) -> tuple[int, float, int, float, float]:  # fmt: skip
     """(status, t, piece, h, step): how things stand, the time, its piece of the profile, and both of step_to_take.
 
     Without a step, 0, the loop has to end: FINISHED with the profile, or RUNNING, for `room` rows cannot take what the
@@ -135,45 +142,45 @@ def begin_step(numbers, times, speeds, angles, control, room):  # type: ignore[n
     return RUNNING, t, piece, h, step
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def begin_stages(v, a, stage_v, stage_a):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def begin_stages(v: Array, a: Array, stage_v: Array, stage_a: Array) -> None:
     """The first stage, which is explicit: the state at the start of the step."""
     for i in range(v.shape[0]):
         stage_v[i, 0], stage_a[i, 0] = v[i], a[i]
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def begin_past(past_now, past):  # type: ignore[no-untyped-def]
+@compiled(inline=True)
+def begin_past(past_now: Array, past: Array) -> None:
     """The points that predict the stages, see State.past: those of the step before, ahead of its own."""
     for k in range(HISTORY):
         for i in range(past.shape[1]):
             past[k, i] = past_now[k, i]
 
 
-@njit(cache=True, error_model="numpy")
-def shorter(step, error, order):  # type: ignore[no-untyped-def]
+@compiled()
+def shorter(step: float, error: float, order: float) -> float:
     """The step to try in place of one whose error, over the tolerance, was too large or no number."""
     share = SAFETY * error ** (-1.0 / order) if math.isfinite(error) else 0.0
     return step * max(SMALLEST_SHARE, share)
 
 
-@njit(cache=True, error_model="numpy")
-def reject(numbers, step, error, order):  # type: ignore[no-untyped-def]
+@compiled()
+def reject(numbers: Array, step: float, error: float, order: float) -> bool:
     """Count a step that has to be tried again, shorter. Returns whether that makes sense any more."""
     numbers[REJECTED] += 1
     numbers[STEP] = shorter(step, error, order)
     return not numbers[STEP] < SMALLEST_STEP
 
 
-@njit(cache=True, error_model="numpy")
-def end_of_step(t, step, end):  # type: ignore[no-untyped-def]
+@compiled()
+def end_of_step(t: float, step: float, end: float) -> float:
     """The time after a step: the end of the profile's piece, not a rounding error beside it."""
     t_new = t + step
     return end if t_new >= end * (1.0 - 1e-15) else t_new
 
 
-@njit(cache=True, error_model="numpy")
-def displace(weights, stage_v, step, q, q_new):  # type: ignore[no-untyped-def]
+@compiled()
+def displace(weights: Array, stage_v: Array, step: float, q: Array, q_new: Array) -> None:
     """q_new <- the displacements after a step; weights: (stages,) of the result."""
     for i in range(q.shape[0]):
         total = 0.0
@@ -182,24 +189,27 @@ def displace(weights, stage_v, step, q, q_new):  # type: ignore[no-untyped-def]
         q_new[i] = q[i] + step * total
 
 
-@njit(cache=True, error_model="numpy")
-def move_on(q, v, a, q_new, stage_v, stage_a):  # type: ignore[no-untyped-def]
+@compiled()
+def move_on(q: Array, v: Array, a: Array, q_new: Array, stage_v: Array, stage_a: Array) -> None:
     """The state after a step: q_new, and the velocities and accelerations of the last stage."""
     last = stage_v.shape[1] - 1
     for i in range(q.shape[0]):
         q[i], v[i], a[i] = q_new[i], stage_v[i, last], stage_a[i, last]
 
 
-@njit(cache=True, error_model="numpy")
-def keep_past(past, past_now):  # type: ignore[no-untyped-def]
+@compiled()
+def keep_past(past: Array, past_now: Array) -> None:
     """The points of a step that is done: its start, its first stage, and its end."""
     end = past.shape[0] - 1
     for i in range(past.shape[1]):
         past_now[0, i], past_now[1, i], past_now[2, i] = past[HISTORY - 1, i], past[HISTORY, i], past[end, i]
 
 
-@njit(cache=True, error_model="numpy")
-def count_step(numbers, errors, control, t_new, step, speed, drift, largest):  # type: ignore[no-untyped-def]
+@compiled()
+def count_step(
+    numbers: Array, errors: Array, control: Control, t_new: float, step: float, speed: float, drift: float,
+    largest: float,
+) -> int:  # fmt: skip
     """Count a step that is done. drift: what its error adds to that of the run; largest eccentricity at its end.
 
     Returns RUNNING, or CONTACT where a journal has met a shell that does not give way.
@@ -212,8 +222,8 @@ def count_step(numbers, errors, control, t_new, step, speed, drift, largest):  #
     return CONTACT if control.contact_stiffness == 0.0 and largest >= control.contact_eccentricity else RUNNING
 
 
-@njit(cache=True, error_model="numpy")
-def choose_next(numbers, h, error, order, longest):  # type: ignore[no-untyped-def]
+@compiled()
+def choose_next(numbers: Array, h: float, error: float, order: float, longest: float) -> None:
     """The step after an accepted one, at most `longest`; error: of the accepted one over the tolerance."""
     numbers[STEP] = min(step_after(h, error, numbers[ERROR_BEFORE], order), longest)
     numbers[ERROR_BEFORE] = error

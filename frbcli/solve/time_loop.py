@@ -10,15 +10,15 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import left_over
 from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterations, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
-from frbcli.solve.scratch import make_scratch
+from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, start_stage
 from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, RotorData, State
 from frbcli.solve.step import (
@@ -54,8 +54,8 @@ class Own(NamedTuple):
     torque: Array
 
 
-@njit(cache=True, error_model="numpy")
-def _largest_eccentricity(clearances, selection, q):  # type: ignore[no-untyped-def]
+@compiled()
+def _largest_eccentricity(clearances: Array, selection: Array, q: Array) -> float:
     largest = 0.0
     for f in range(clearances.shape[0]):
         x, y = 0.0, 0.0
@@ -89,10 +89,11 @@ def advance(
     return int(status), int(rows)
 
 
-@njit(cache=True, error_model="numpy")
-def _advance(  # type: ignore[no-untyped-def]
-    rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil
-):
+@compiled()
+def _advance(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
+    own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array,
+) -> tuple[int, int]:  # fmt: skip
     """advance with the arrays that it works in."""
     # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
     numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past

@@ -23,6 +23,7 @@ from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
+from frbcli.compiled import compiled
 from frbcli.film.cavitation import penalty
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS, SHIPPED
@@ -164,4 +165,4 @@ def _is_plain(value: Any) -> bool:
     return isinstance(value, FunctionType)
 
 
-wright_omega = njit(cache=True, error_model="numpy")(penalty.wright_omega)
+wright_omega = compiled()(penalty.wright_omega)

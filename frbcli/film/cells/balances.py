@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.axial import BEND
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
@@ -46,8 +45,11 @@ INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, FLOWS = range(6)
 BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 
-@njit(cache=True, error_model="numpy")
-def _end_flow(kind, last, beyond, conductance, bend, groove, length, steepness):  # type: ignore[no-untyped-def]
+@compiled()
+def _end_flow(
+    kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, length: float,
+    steepness: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance)."""
     rise, change = last - groove, bend * (last - beyond)
     by_last, by_beyond = 1.0 + bend, -bend
@@ -67,8 +69,11 @@ def _end_flow(kind, last, beyond, conductance, bend, groove, length, steepness):
     return conductance * felt, conductance * by_last, conductance * by_beyond, felt
 
 
-@njit(cache=True, error_model="numpy")
-def _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right):  # type: ignore[no-untyped-def]
+@compiled()
+def _flow_around(
+    ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float, g: float,
+    stencil: Array, right: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -101,8 +106,10 @@ def _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right)
             stencil[BEFORE, n, j] -= by_own
 
 
-@njit(cache=True, error_model="numpy")
-def _flow_along(ring, cells, states, d_x, d_y, g, stencil, right):  # type: ignore[no-untyped-def]
+@compiled()
+def _flow_along(
+    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, g: float, stencil: Array, right: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
@@ -125,8 +132,11 @@ def _flow_along(ring, cells, states, d_x, d_y, g, stencil, right):  # type: igno
             stencil[BELOW, i, j + 1] -= low
 
 
-@njit(cache=True, error_model="numpy")
-def _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil, right):  # type: ignore[no-untyped-def]
+@compiled()
+def _store(
+    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, rate: float, past: Array, g: float,
+    v_x: float, v_y: float, spin: float, stencil: Array, right: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
@@ -150,8 +160,11 @@ def _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil
                 stencil[CENTRE, i, j] += kept
 
 
-@njit(cache=True, error_model="numpy")
-def _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right, flows):  # type: ignore[no-untyped-def]
+@compiled()
+def _flow_through_ends(
+    numbers: Array, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, g: float, stencil: Array,
+    right: Array, flows: Array,
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     steepness = STEEPNESS / numbers[AMBIENT]
     for i in range(m):
@@ -195,8 +208,8 @@ def _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right
                 flows[INFLOW] -= flow
 
 
-@njit(cache=True, error_model="numpy")
-def _hold_given(cells, stencil, right, flows):  # type: ignore[no-untyped-def]
+@compiled()
+def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> None:
     """Cells with a given pressure keep it; what would leave them is their supply."""
     m, k = cells.shape[1], cells.shape[2]
     for i in range(m):
@@ -215,10 +228,12 @@ def _hold_given(cells, stencil, right, flows):  # type: ignore[no-untyped-def]
                     right[i, j, k + side] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
-def balances(  # type: ignore[no-untyped-def]
-    numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, right, flows
-):
+@compiled()
+def balances(
+    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float,
+    rate: float, past: Array, g: float, v_x: float, v_y: float, spin: float, stencil: Array, right: Array,
+    flows: Array,
+) -> None:  # fmt: skip
     """The balances of the cells and their derivatives.
 
     d: displacement; omega: omega_J + omega_S relative to the grid. Stored are rate H theta - past (m, k); with rate 0,

@@ -7,8 +7,11 @@ pivoting, see elimination.py. Cheaper than a sparse elimination as long as a col
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from numba import njit
+
+from frbcli.compiled import Array, compiled
 
 CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
 # The usual lengths of columns and the usual number of right-hand sides, as tuples: the compiler knows how long they are
@@ -16,8 +19,8 @@ CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
 FIVE, SIX, USUAL_RIGHTS = (0,) * 5, (0,) * 6, (0,) * 3
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _invert(a, columns):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract", "reassoc"})
+def _invert(a: Array, columns: Any) -> None:
     """a (k, k) <- its inverse, by Gauss and Jordan's elimination in place."""
     k = len(columns)
     for p in range(k):
@@ -33,8 +36,8 @@ def _invert(a, columns):  # type: ignore[no-untyped-def]
                     a[i, j] -= factor * a[p, j]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _product(a, b, to, columns, row):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract", "reassoc"})
+def _product(a: Array, b: Array, to: Array, columns: Any, row: Any) -> None:
     """to (k, n) <- a (k, k) b (k, n)."""
     k, n = len(columns), len(row)
     for i in range(k):
@@ -46,8 +49,8 @@ def _product(a, b, to, columns, row):  # type: ignore[no-untyped-def]
                 to[i, c] += factor * b[j, c]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _subtract_product(a, diagonal, b, to, columns, row):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract", "reassoc"})
+def _subtract_product(a: Array, diagonal: Array, b: Array, to: Array, columns: Any, row: Any) -> None:
     """to (k, n) -= a (k, k) diag(diagonal) b (k, n)."""
     k, n = len(columns), len(row)
     for i in range(k):
@@ -58,8 +61,8 @@ def _subtract_product(a, diagonal, b, to, columns, row):  # type: ignore[no-unty
                     to[i, c] -= factor * b[j, c]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _fill(stencil, i, block, columns):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract", "reassoc"})
+def _fill(stencil: Array, i: int, block: Array, columns: Any) -> None:
     """block (k, k) <- the equations of column i by its own unknowns."""
     k = len(columns)
     for a in range(k):
@@ -72,8 +75,8 @@ def _fill(stencil, i, block, columns):  # type: ignore[no-untyped-def]
             block[a, a + 1] = stencil[ABOVE, i, a]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _solve(stencil, blocks, fields, column, row):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract", "reassoc"})
+def _solve(stencil: Array, blocks: Array, fields: Array, column: Any, row: Any) -> None:
     """As solve_ring; column, row: anything as long as a column and a row of fields."""
     m, k, n = len(blocks), len(column), len(row)
     last, held = m - 1, np.empty((k, n))
@@ -136,8 +139,8 @@ def _solve(stencil, blocks, fields, column, row):  # type: ignore[no-untyped-def
             for c in range(k, n):
                 fields[i, a, c] = held[a, c]
 
-@njit(cache=True, error_model="numpy")
-def solve_ring(stencil, blocks, fields):  # type: ignore[no-untyped-def]
+@compiled()
+def solve_ring(stencil: Array, blocks: Array, fields: Array) -> None:
     """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
 
     stencil: (ENTRIES, m, k) entries of the cell itself, of the cells before and behind it around the ring, of those

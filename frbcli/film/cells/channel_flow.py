@@ -10,8 +10,7 @@ from one film and given to the other one, so that no oil is lost however far the
 
 from __future__ import annotations
 
-from numba import njit
-
+from frbcli.compiled import Array, Indices, compiled
 from frbcli.film.cells.balances import CHANNELS_NET, SIDES
 from frbcli.film.cells.block_cyclic import CENTRE
 from frbcli.film.cells.data import (
@@ -35,8 +34,8 @@ from frbcli.film.cells.data import (
 from frbcli.film.cells.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 
 
-@njit(cache=True, error_model="numpy")
-def exchange(cells, states, channel, stencil, right, flows):  # type: ignore[no-untyped-def]
+@compiled()
+def exchange(cells: Array, states: Array, channel: Array, stencil: Array, right: Array, flows: Array) -> None:
     """Add to the balances of a film (see balances) what channels of the pressures channel (m, k) bring to its cells."""
     m, k = channel.shape
     for i in range(m):
@@ -49,8 +48,8 @@ def exchange(cells, states, channel, stencil, right, flows):  # type: ignore[no-
                 flows[CHANNELS_NET] += brought
 
 
-@njit(cache=True, error_model="numpy")
-def ask_of_channels(cells, right):  # type: ignore[no-untyped-def]
+@compiled()
+def ask_of_channels(cells: Array, right: Array) -> None:
     """The last layers of right (m, k, k + SIDES + slots) <- derivatives of exchange by the channels' pressures."""
     m, k, layers = right.shape
     for i in range(m):
@@ -61,8 +60,8 @@ def ask_of_channels(cells, right):  # type: ignore[no-untyped-def]
                 right[i, j, k + SIDES - 1 + int(cells[FEED_HOLE, i, j])] = cells[EXCHANGE, i, j]
 
 
-@njit(cache=True, error_model="numpy")
-def feed_hole_pressure(numbers, cells, law, w, feed_hole, places):  # type: ignore[no-untyped-def]
+@compiled()
+def feed_hole_pressure(numbers: Array, cells: Array, law: Array, w: Array, feed_hole: Array, places: Indices) -> float:
     """Mean pressure of the cells of a feed hole, by their conductances."""
     total = 0.0
     for n in range(places.shape[0]):
@@ -72,14 +71,14 @@ def feed_hole_pressure(numbers, cells, law, w, feed_hole, places):  # type: igno
     return total / feed_hole[CONDUCTANCE]
 
 
-@njit(cache=True, error_model="numpy")
-def _entry(feed_hole):  # type: ignore[no-untyped-def]
+@compiled()
+def _entry(feed_hole: Array) -> float:
     """Resistance between the cells of a feed hole and the channel, Pa s / m^3."""
     return feed_hole[PRESSURE_SCALE] / (feed_hole[FLOW_SCALE] * feed_hole[CONDUCTANCE])
 
 
-@njit(cache=True, error_model="numpy")
-def channel_pressures(channels, feed_holes, spins, means):  # type: ignore[no-untyped-def]
+@compiled()
+def channel_pressures(channels: Array, feed_holes: Array, spins: Array, means: Array) -> None:
     """means (feed_holes,) of the pressures at the feed holes <- the pressures of the channels' ends, in the units of
     their films. spins: (films,) speeds of their grids."""
     for c in range(channels.shape[0]):
@@ -99,8 +98,8 @@ def channel_pressures(channels, feed_holes, spins, means):  # type: ignore[no-un
             means[outer] -= flow * _entry(feed_holes[outer]) / feed_holes[outer, PRESSURE_SCALE]
 
 
-@njit(cache=True, error_model="numpy")
-def follow_means(channels, feed_holes, matrix):  # type: ignore[no-untyped-def]
+@compiled()
+def follow_means(channels: Array, feed_holes: Array, matrix: Array) -> None:
     """matrix (feed_holes, n) of changes of the means at the feed holes <- those at the channels' ends, as
     channel_pressures."""
     for c in range(channels.shape[0]):
@@ -117,8 +116,8 @@ def follow_means(channels, feed_holes, matrix):  # type: ignore[no-untyped-def]
             matrix[inner, n] += flow * entry / scale
 
 
-@njit(cache=True, error_model="numpy")
-def mean_changes(cells, states, fields, feed_hole, places, changes):  # type: ignore[no-untyped-def]
+@compiled()
+def mean_changes(cells: Array, states: Array, fields: Array, feed_hole: Array, places: Indices, changes: Array) -> None:
     """changes (SIDES + slots,) <- those of the mean pressure of a feed hole with the layers of fields, see
     film_newton."""
     k = fields.shape[1]
@@ -132,8 +131,10 @@ def mean_changes(cells, states, fields, feed_hole, places, changes):  # type: ig
                 changes[layer] += share * fields[i, j, k + layer]
 
 
-@njit(cache=True, error_model="numpy")
-def push_of_channel(numbers, ring, width, states, fields, slot):  # type: ignore[no-untyped-def]
+@compiled()
+def push_of_channel(
+    numbers: Array, ring: Array, width: Array, states: Array, fields: Array, slot: int,
+) -> tuple[float, float]:  # fmt: skip
     """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
     m, k = states.shape[1], states.shape[2]
     clips, x, y = numbers[CLIPS] != 0.0, 0.0, 0.0

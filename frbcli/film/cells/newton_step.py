@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import balances
 from frbcli.film.cells.block_cyclic import CENTRE, solve_ring
@@ -12,8 +12,10 @@ from frbcli.film.cells.data import AREA, CAVITY, CENTRIFUGAL, CLIPS, COS, FORCE_
 from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 
 
-@njit(cache=True, error_model="numpy")
-def film_loads(numbers, ring, width, states, delta):  # type: ignore[no-untyped-def]
+@compiled()
+def film_loads(
+    numbers: Array, ring: Array, width: Array, states: Array, delta: Array,
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Force on the journal with the changes delta (m, k, k + SIDES): (x, y) after the film's own change, and its
     derivatives (xx, xy, yx, yy) by the journal's velocities, in N and N s."""
     m, k = states.shape[1], states.shape[2]
@@ -40,8 +42,8 @@ def film_loads(numbers, ring, width, states, delta):  # type: ignore[no-untyped-
     return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
 
 
-@njit(cache=True, error_model="numpy")
-def imbalance(cells, fields):  # type: ignore[no-untyped-def]
+@compiled()
+def imbalance(cells: Array, fields: Array) -> tuple[float, float]:
     """What does not balance in fields (m, k, k + SIDES), see balances, as a rate of the gap in 1/s: the mean over the
     cells, and the largest."""
     m, k = fields.shape[0], fields.shape[1]
@@ -55,8 +57,8 @@ def imbalance(cells, fields):  # type: ignore[no-untyped-def]
     return total / area, largest
 
 
-@njit(cache=True, error_model="numpy")
-def damp(cells, rate, stencil):  # type: ignore[no-untyped-def]
+@compiled()
+def damp(cells: Array, rate: float, stencil: Array) -> None:
     """Newton's equations with w stored in the cells over a pseudo-time step 1 / rate, see newton.py."""
     m, k = stencil.shape[1], stencil.shape[2]
     for i in range(m):
@@ -64,28 +66,12 @@ def damp(cells, rate, stencil):  # type: ignore[no-untyped-def]
             stencil[CENTRE, i, j] += rate * cells[UNKNOWN, i, j] * cells[AREA, i, j]
 
 
-@njit(cache=True, error_model="numpy")
-def film_newton(  # type: ignore[no-untyped-def]
-    numbers,
-    ring,
-    width,
-    cells,
-    w,
-    d_x,
-    d_y,
-    omega,
-    rate,
-    past,
-    g,
-    v_x,
-    v_y,
-    spin,
-    states,
-    stencil,
-    blocks,
-    fields,
-    flows,
-):
+@compiled()
+def film_newton(
+    numbers: Array, ring: Array, width: Array, cells: Array, w: Array, d_x: float, d_y: float, omega: float,
+    rate: float, past: Array, g: float, v_x: float, v_y: float, spin: float, states: Array, stencil: Array,
+    blocks: Array, fields: Array, flows: Array,
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """One step of Newton's method of a film from the unknowns w (m, k): fields (m, k, k + SIDES) <- its changes.
 
     See balances for the arguments; returns film_loads.
@@ -100,8 +86,11 @@ def film_newton(  # type: ignore[no-untyped-def]
     return film_loads(numbers, ring, width, states, fields)
 
 
-@njit(cache=True, error_model="numpy")
-def store_rates(ring, cells, states, d_x, d_y, g, past, fields, rates):  # type: ignore[no-untyped-def]
+@compiled()
+def store_rates(
+    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, g: float, past: Array, fields: Array,
+    rates: Array,
+) -> None:  # fmt: skip
     """rates (m, k) <- of the oil H theta of each cell, by the flows that fields hold the balance of: what cells pass to
     each other is the same for both, so that no oil is lost however far the balance is from zero."""
     m, k = rates.shape

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import ECCENTRICITY, MOTION, SPEED, WHIRL, call_cells, call_follow
 from frbcli.film.cells.data import CELLS_AT, FOLLOW_AT, GIVEN_PRESSURE, PARAMETERS, REFERENCE, SCALES_END, UNKNOWN
 
@@ -16,8 +16,8 @@ CENTRE = 1e-6  # of the clearance, squared: a journal in the centre does not whi
 WHIRL_EDGE, WHIRL_STEP = 0.3, 0.15  # distance from 0.5 where no whirl is left, and over which it fades
 
 
-@njit(cache=True, error_model="numpy")
-def whirl_share(d_x, d_y, v_x, v_y, speed):  # type: ignore[no-untyped-def]
+@compiled()
+def whirl_share(d_x: float, d_y: float, v_x: float, v_y: float, speed: float) -> float:
     """How far a journal is in half-frequency whirl, 0 to 1, by the rate of its attitude angle over omega_J + omega_S.
 
     1 between 0.35 and 0.65, 0 below 0.2 and above 0.8, a cubic step between: a synchronous orbit has 0 in the mean
@@ -28,8 +28,8 @@ def whirl_share(d_x, d_y, v_x, v_y, speed):  # type: ignore[no-untyped-def]
     return place * place * (3.0 - 2.0 * place)
 
 
-@njit(cache=True, error_model="numpy")
-def follow_law(numbers, d_x, d_y, v_x, v_y, speed, law):  # type: ignore[no-untyped-def]
+@compiled()
+def follow_law(numbers: Array, d_x: float, d_y: float, v_x: float, v_y: float, speed: float, law: Array) -> None:
     """law (LAW_NUMBERS,) <- what a film's law is at the displacement d, its rate v and the speed omega_J + omega_S."""
     motion = np.empty(MOTION)
     motion[ECCENTRICITY], motion[SPEED] = math.sqrt(d_x * d_x + d_y * d_y), speed
@@ -37,8 +37,8 @@ def follow_law(numbers, d_x, d_y, v_x, v_y, speed, law):  # type: ignore[no-unty
     call_follow(int(numbers[FOLLOW_AT]), numbers[PARAMETERS:], motion, numbers[REFERENCE:SCALES_END], law)
 
 
-@njit(cache=True, error_model="numpy")
-def cell_states(numbers, cells, law, drop, w, states):  # type: ignore[no-untyped-def]
+@compiled()
+def cell_states(numbers: Array, cells: Array, law: Array, drop: float, w: Array, states: Array) -> None:
     """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law as follow_law has it; all arrays in
     one piece. drop: by which the given pressures are lower than they were made."""
     m, k = w.shape
@@ -55,8 +55,8 @@ def cell_states(numbers, cells, law, drop, w, states):  # type: ignore[no-untype
                     states[layer, i, j] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
-def pressure_of(numbers, law, w):  # type: ignore[no-untyped-def]
+@compiled()
+def pressure_of(numbers: Array, law: Array, w: float) -> float:
     """Pressure of one cell with the unknown w."""
     unknown, state = np.empty(1), np.empty(STATES)
     unknown[0] = w

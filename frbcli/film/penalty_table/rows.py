@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import compiled_cell
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.penalty import Penalty
@@ -24,8 +24,8 @@ ABOVE_CAVITY, SOURCE, RISE, FALL, LAYERS = range(5)
 penalty_cell = compiled_cell(Penalty)
 
 
-@njit(cache=True, error_model="numpy")
-def _residual(stencil, loads, area, v_r, v_t, cells, right):  # type: ignore[no-untyped-def]
+@compiled()
+def _residual(stencil: Array, loads: Array, area: Array, v_r: float, v_t: float, cells: Array, right: Array) -> None:
     """The last layer of right (m, k, k + 1) <- minus what does not balance."""
     m, k = area.shape
     above = cells[ABOVE_CAVITY]
@@ -42,8 +42,8 @@ def _residual(stencil, loads, area, v_r, v_t, cells, right):  # type: ignore[no-
             right[i, j, k] = -off
 
 
-@njit(cache=True, error_model="numpy")
-def _matrix(stencil, area, cells, damping, newton):  # type: ignore[no-untyped-def]
+@compiled()
+def _matrix(stencil: Array, area: Array, cells: Array, damping: float, newton: Array) -> None:
     """newton (ENTRIES, m, k) <- Newton's matrix by w, which is kept back by the damping in 1/s."""
     m, k = area.shape
     rise = cells[RISE]
@@ -59,8 +59,11 @@ def _matrix(stencil, area, cells, damping, newton):  # type: ignore[no-untyped-d
                 newton[ABOVE, i, j] = stencil[ABOVE, i, j] * rise[i, j + 1]
 
 
-@njit(cache=True, error_model="numpy")
-def _settle(law, unit, stencil, loads, area, v_r, v_t, w, cells, newton, blocks, right):  # type: ignore[no-untyped-def]
+@compiled()
+def _settle(
+    law: Array, unit: float, stencil: Array, loads: Array, area: Array, v_r: float, v_t: float, w: Array,
+    cells: Array, newton: Array, blocks: Array, right: Array,
+) -> int:  # fmt: skip
     """w (m, k) <- unknowns, in units of `unit`, of the film that moves with (v_r, v_t); cells (LAYERS, m, k) <- its
     states. Returns the iterations, LIMIT if it has not settled."""
     m, k = w.shape
@@ -86,8 +89,11 @@ def _settle(law, unit, stencil, loads, area, v_r, v_t, w, cells, newton, blocks,
     return LIMIT
 
 
-@njit(cache=True, error_model="numpy")
-def row_forces(law, unit, stencil, loads, area, push, width, velocities, forces):  # type: ignore[no-untyped-def]
+@compiled()
+def row_forces(
+    law: Array, unit: float, stencil: Array, loads: Array, area: Array, push: Array, width: Array,
+    velocities: Array, forces: Array,
+) -> int:  # fmt: skip
     """forces (d, l, 2) <- integrals of the pressure above that of cavitation for the velocities (d, l, 2).
 
     law: (3,) parameters of the penalty; unit: that w counts in beside the size of the velocity, 1/s; stencil, loads,

@@ -16,8 +16,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
@@ -115,8 +115,10 @@ def _ends_odd(matrix: Array) -> None:
     matrix[0, [0, 2]] = matrix[-1, [-1, -3]] = 1.0, 1.0
 
 
-@njit(cache=True, error_model="numpy")
-def source_force(table, numbers, eccentricity, w_r, w_t, omega):  # type: ignore[no-untyped-def]
+@compiled()
+def source_force(
+    table: Array, numbers: Array, eccentricity: float, w_r: float, w_t: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Force from source_table as table_force returns it: eight numbers. omega: omega_J + omega_S in rad/s."""
     rate = max(abs(omega), 1.0) if numbers[0, RELATIVE] != 0.0 else 1.0
     step_c = numbers[0, STEP]
@@ -156,8 +158,8 @@ def source_force(table, numbers, eccentricity, w_r, w_t, omega):  # type: ignore
     )
 
 
-@njit(cache=True, error_model="numpy")
-def _basis(s):  # type: ignore[no-untyped-def]
+@compiled()
+def _basis(s: float) -> tuple[float, float, float, float, float, float, float, float]:
     """The four cubic B-splines that are not zero at s in [0, 1], and their slopes."""
     r = 1.0 - s
     return (
@@ -172,8 +174,10 @@ def _basis(s):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
-def spline(table, i, j, k, a, b, c):  # type: ignore[no-untyped-def]
+@compiled()
+def spline(
+    table: Array, i: int, j: int, k: int, a: float, b: float, c: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Of both components, one after the other: value and derivatives by the three axes, in steps, at (a, b, c) in the
     cell (i, j, k)."""
     basis_a, basis_b = _basis(a), _basis(b)

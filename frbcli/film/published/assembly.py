@@ -14,9 +14,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 from frbcli.film.published.law import Step, oil_fraction
 
@@ -67,7 +67,7 @@ class Gap(NamedTuple):
     half: float
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def artificial_diffusion(length: float, half: float, height: float, steep: float) -> tuple[float, float, float]:
     """c of (4.42), (4.43) for an element's length, and its derivatives by theta' (steep) and by H."""
     unit = abs(half) * height
@@ -80,7 +80,7 @@ def artificial_diffusion(length: float, half: float, height: float, steep: float
     return GAMMA * length * beta * share, by_beta * unit, by_height
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def assemble(
     elements: Elements,
     step: Step,
@@ -167,8 +167,8 @@ def assemble(
                 m[a, a] = 1.0
 
 
-@njit(cache=True, error_model="numpy")
-def _free_end(elements, e, place, p, m, r):  # type: ignore[no-untyped-def]
+@compiled()
+def _free_end(elements: Elements, e: int, place: int, p: Array, m: Array, r: Array) -> None:
     """Add the outflow (4.36), (4.37) through an end at the nodes 3 i + place."""
     for q in range(3):
         here = 0.0

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from numba import njit
+from frbcli.compiled import Array, compiled
 
 FOUR = 4  # rows that are subtracted at once
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def invert(a, pivot):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract"})
+def invert(a: Array, pivot: Array) -> None:
     """a (k, k) <- its inverse, by Gauss and Jordan's elimination in place; pivot (k,) is overwritten."""
     k = a.shape[0]
     for p in range(k):
@@ -25,8 +25,8 @@ def invert(a, pivot):  # type: ignore[no-untyped-def]
                     a[i, j] -= factor * pivot[j]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def subtract_product(a, b, rest):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract"})
+def subtract_product(a: Array, b: Array, rest: Array) -> None:
     """rest (m, n) <- rest - a (m, k) b (k, n), four rows of b into two rows at once."""
     rows, k = a.shape
     n, whole, paired = b.shape[1], k - k % FOUR, rows - rows % 2

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.two_phase import TwoPhase
 
 POLISHING = 2  # Newton steps after the closed form of a cubic's root
@@ -29,8 +28,8 @@ def make_step(law: TwoPhase, cavitation: float, ambient: float) -> Step:
     return Step(start, slope, linear, cavitation, cavitation + ambient)
 
 
-@njit(cache=True, error_model="numpy")
-def oil_fraction(step, pressure):  # type: ignore[no-untyped-def]
+@compiled()
+def oil_fraction(step: Step, pressure: float) -> tuple[float, float, float]:
     """theta (4.32), dtheta/dp (4.33) and d2theta/dp2 at a scaled gauge pressure."""
     y = 1.0 + (pressure - step.cavitation) / step.cavity
     s, x_0, m = step.slope, step.start, step.linear
@@ -45,8 +44,8 @@ def oil_fraction(step, pressure):  # type: ignore[no-untyped-def]
     return theta, first, height * (1.0 - m) * (6.0 - 12.0 * place) / length**2
 
 
-@njit(cache=True, error_model="numpy")
-def step_pressure(step, ratio, w):  # type: ignore[no-untyped-def]
+@compiled()
+def step_pressure(step: Step, ratio: float, w: float) -> tuple[float, float]:
     """Scaled gauge pressure with theta - 1 + ratio (y - 1) = w, y = p / p_cav, and its derivative by w."""
     s, x_0, m = step.slope, step.start, step.linear
     bottom = s * x_0 - 1.0 + (x_0 - 1.0) * ratio

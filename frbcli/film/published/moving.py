@@ -8,8 +8,9 @@ import math
 import numpy as np
 from numba import njit
 
+from frbcli.compiled import Array, compiled
 from frbcli.film.published.assembly import EDGE_VALUES, EDGE_WEIGHTS, LARGEST_EXPONENT, Elements, Gap, assemble
-from frbcli.film.published.data import BY_W, PRESSURE, RESIDUAL, RIGHTS
+from frbcli.film.published.data import BY_W, PRESSURE, RESIDUAL, RIGHTS, ElementFilm, Room
 from frbcli.film.published.law import oil_fraction
 from frbcli.film.published.ring import make_ring, solve_ring
 from frbcli.film.published.unknown import pressures_of
@@ -37,8 +38,11 @@ def set_pressures(film, room, w):  # type: ignore[no-untyped-def]
     room.nodes[PRESSURE], room.nodes[BY_W] = pressures_of(film.unknowns, film.step, w)
 
 
-@njit(cache=True, error_model="numpy")
-def residual(film, room, w, past, d_x, d_y, v_x, v_y, omega, g):  # type: ignore[no-untyped-def]
+@compiled()
+def residual(
+    film: ElementFilm, room: Room, w: Array, past: Array, d_x: float, d_y: float, v_x: float, v_y: float,
+    omega: float, g: float,
+) -> tuple[float, float]:  # fmt: skip
     """Assemble at the unknowns w (nodes,) with theta_t = theta / g - past, past (e, 9); the derivatives are by the
     velocity at the end of a stage, which moves the journal by g times itself.
 
@@ -123,8 +127,8 @@ def mean_oil_fraction(film, theta):  # type: ignore[no-untyped-def]
     return oil / area
 
 
-@njit(cache=True, error_model="numpy")
-def oil_held(film, d_x, d_y, theta):  # type: ignore[no-untyped-def]
+@compiled()
+def oil_held(film: ElementFilm, d_x: float, d_y: float, theta: Array) -> float:
     """Oil in m^3 in the film, without grooves and holes, with oil fractions (e, 9)."""
     sine, cosine, total = film.elements.sine, film.elements.cosine, 0.0
     for e in range(theta.shape[0]):
@@ -134,8 +138,11 @@ def oil_held(film, d_x, d_y, theta):  # type: ignore[no-untyped-def]
     return film.volume * total
 
 
-@njit(cache=True, error_model="numpy")
-def oil_passing(film, room, w, past, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+@compiled()
+def oil_passing(
+    film: ElementFilm, room: Room, w: Array, past: Array, d_x: float, d_y: float, v_x: float, v_y: float,
+    omega: float,
+) -> tuple[float, float]:  # fmt: skip
     """Oil in m^3/s that comes in and that leaves, as oil_flows of loads.py has it; theta_t = -past (e, 9)."""
     elements, nodes, total = film.elements, film.elements.nodes, room.nodes[RESIDUAL]
     set_pressures(film, room, w)

@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numba.extending import register_jitable
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 from frbcli.film.published.dense import invert, subtract_product
 
@@ -64,7 +64,7 @@ def _block(pivots: int, others: int, width: int) -> Block:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def solve_ring(ring: Ring, matrix: Array, right: Array, solution: Array) -> None:
     """solution (2 a, n, r) of the elements' matrices (e, 9, 9) and right-hand sides (e, 9, r), both overwritten.
 
@@ -120,8 +120,8 @@ def solve_ring(ring: Ring, matrix: Array, right: Array, solution: Array) -> None
             _substitute_centres(matrix, right, solution, i, s, m - 1)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _condense_centres(matrix, right, i, along):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"contract", "reassoc"})
+def _condense_centres(matrix: Array, right: Array, i: int, along: int) -> None:
     """The middle nodes of column i out of the equations of the others; their rows are divided by the pivots."""
     for e in range(i * along, (i + 1) * along):
         inverse = 1.0 / matrix[e, 4, 4]
@@ -138,8 +138,8 @@ def _condense_centres(matrix, right, i, along):  # type: ignore[no-untyped-def]
                     right[e, a, s] -= share * right[e, 4, s]
 
 
-@njit(cache=True, error_model="numpy")
-def _fill_column(matrix, right, i, column, m, n):  # type: ignore[no-untyped-def]
+@compiled()
+def _fill_column(matrix: Array, right: Array, i: int, column: Block, m: int, n: int) -> None:
     """The equations of column i: those of its middle line are to be eliminated from those of the lines beside it."""
     along, rights = m - 1, right.shape[2]
     column.own[:, :] = 0.0
@@ -165,8 +165,8 @@ def _fill_column(matrix, right, i, column, m, n):  # type: ignore[no-untyped-def
                 to[row, 2 * n + s] += right[e, a, s]
 
 
-@njit(cache=True, error_model="numpy")
-def _place(a, j, n):  # type: ignore[no-untyped-def]
+@compiled()
+def _place(a: int, j: int, n: int) -> int:
     """Where local node a of element j is on the middle line, or on the two lines beside it."""
     p, q = a // 3, a % 3
     if p == 1:
@@ -174,8 +174,8 @@ def _place(a, j, n):  # type: ignore[no-untyped-def]
     return (n if p == 2 else 0) + 2 * j + q
 
 
-@njit(cache=True, error_model="numpy")
-def _begin(rest, front, n):  # type: ignore[no-untyped-def]
+@compiled()
+def _begin(rest: Array, front: Block, n: int) -> None:
     """The front is line 1 between column 0 and the next one, beside the border, from the rows of column 0."""
     rights = rest.shape[1] - 2 * n
     for u in range(n):
@@ -189,8 +189,8 @@ def _begin(rest, front, n):  # type: ignore[no-untyped-def]
             front.ahead[u, 2 * n + s] = rest[n + u, 2 * n + s]
 
 
-@njit(cache=True, error_model="numpy")
-def _add(rest, front, n, closing):  # type: ignore[no-untyped-def]
+@compiled()
+def _add(rest: Array, front: Block, n: int, closing: bool) -> None:
     """Add the rows of a column, behind which the border comes where it closes the ring."""
     rights, behind = rest.shape[1] - 2 * n, n if closing else 0
     for u in range(n):
@@ -204,8 +204,8 @@ def _add(rest, front, n, closing):  # type: ignore[no-untyped-def]
             front.rest[behind + u, 2 * n + s] += rest[n + u, 2 * n + s]
 
 
-@njit(cache=True, error_model="numpy")
-def _advance(front, n):  # type: ignore[no-untyped-def]
+@compiled()
+def _advance(front: Block, n: int) -> None:
     """The next line becomes the current one."""
     width = front.rest.shape[1]
     for u in range(n):
@@ -221,8 +221,8 @@ def _advance(front, n):  # type: ignore[no-untyped-def]
             front.rest[u, c] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
-def _eliminate(block, kept, i):  # type: ignore[no-untyped-def]
+@compiled()
+def _eliminate(block: Block, kept: Array, i: int) -> None:
     """kept[i] <- own^-1 ahead, and rest less what that takes from it."""
     invert(block.own, block.pivot)
     values = kept[i]
@@ -234,8 +234,8 @@ def _eliminate(block, kept, i):  # type: ignore[no-untyped-def]
     subtract_product(block.below, values, block.rest)
 
 
-@njit(cache=True, error_model="numpy")
-def _substitute_centres(matrix, right, solution, i, s, along):  # type: ignore[no-untyped-def]
+@compiled()
+def _substitute_centres(matrix: Array, right: Array, solution: Array, i: int, s: int, along: int) -> None:
     """The values at the odd places of the middle line of column i."""
     lines = solution.shape[0]
     for j in range(along):

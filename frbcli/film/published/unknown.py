@@ -9,9 +9,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from frbcli.compiled import compiled
 from frbcli.film.cells.ends import PREFACTOR, STEEPNESS
 from frbcli.film.grid import Array
 from frbcli.film.published.law import Step, oil_fraction, step_pressure
@@ -45,7 +45,7 @@ def make_unknowns(mesh: QuadraticMesh, fixed: NDArray[np.bool_], step: Step, ref
     return Unknowns(fixed, free.ravel() & ~fixed, given, exponent, amount, reference)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def unknowns_of(unknowns: Unknowns, step: Step, pressure: Array) -> Array:
     """(nodes,) unknowns of the pressures (nodes,) of the nodes."""
     w = np.empty_like(pressure)
@@ -57,7 +57,7 @@ def unknowns_of(unknowns: Unknowns, step: Step, pressure: Array) -> Array:
     return w
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def pressures_of(unknowns: Unknowns, step: Step, w: Array) -> tuple[Array, Array]:
     """(nodes,) scaled gauge pressures of the nodes and their derivatives by the unknowns, none where they are given."""
     pressure, slope = np.empty_like(w), np.empty_like(w)
@@ -78,8 +78,8 @@ def pressures_of(unknowns: Unknowns, step: Step, w: Array) -> tuple[Array, Array
     return pressure, slope
 
 
-@njit(cache=True, error_model="numpy")
-def _wright(z):  # type: ignore[no-untyped-def]
+@compiled()
+def _wright(z: float) -> float:
     """omega with omega + log(omega) = z."""
     y = z if z < 1.0 else math.log(z)
     for _ in range(MOST):

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array, axial_modes, axial_vertices
 from frbcli.film.rectangles.clip import cut_element
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, SLOPE
@@ -83,8 +83,8 @@ def chain_table(axial: int, radius_to_width: float, profile: Callable[[Array], A
     return table[None, None]
 
 
-@njit(cache=True, error_model="numpy")
-def element_matrices(grid, d_x, d_y, along, across):  # type: ignore[no-untyped-def]
+@compiled()
+def element_matrices(grid: Array, d_x: float, d_y: float, along: Array, across: Array) -> None:
     """Element matrices of H^3 and of its derivatives by d_x and d_y, without the mode's share.
 
     Fills along and across (m, 3, 6): upper triangles of the parts with and without derivatives by phi.
@@ -105,8 +105,10 @@ def element_matrices(grid, d_x, d_y, along, across):  # type: ignore[no-untyped-
                     across[e, t, entry] += weight * length * VALUES[entry, g]
 
 
-@njit(cache=True, error_model="numpy")
-def _solve_chain(stiff, first, count, row, rows, fields, diagonal, upper):  # type: ignore[no-untyped-def]
+@compiled()
+def _solve_chain(
+    stiff: Array, first: int, count: int, row: int, rows: int, fields: Array, diagonal: Array, upper: Array,
+) -> None:  # fmt: skip
     """Solve one piece of `count` elements from `first` on for the right-hand sides fields[row : row + rows], in place.
 
     stiff: (m, 6) upper triangle of each element matrix; diagonal, upper: (m + 1,) scratch. The ends of the piece hold
@@ -152,8 +154,11 @@ def _solve_chain(stiff, first, count, row, rows, fields, diagonal, upper):  # ty
             )
 
 
-@njit(cache=True, error_model="numpy")
-def mode_fields(grid, along, across, w_x, w_y, decay, load, groove, scratch, fields):  # type: ignore[no-untyped-def]
+@compiled()
+def mode_fields(
+    grid: Array, along: Array, across: Array, w_x: float, w_y: float, decay: float, load: float, groove: float,
+    scratch: tuple[Array, Array, Array], fields: Array,
+) -> None:  # fmt: skip
     """fields (5, 2 m + 1) <- pressure, its derivatives by w_x and w_y, and by d_x and d_y, of one mode.
 
     Neighbouring pieces share the node of the groove between them: both hold its pressure there.
@@ -199,8 +204,10 @@ def mode_fields(grid, along, across, w_x, w_y, decay, load, groove, scratch, fie
             first = e + 1
 
 
-@njit(cache=True, error_model="numpy")
-def chain_force(table, grid, d_x, d_y, w_x, w_y, level, clipped):  # type: ignore[no-untyped-def]
+@compiled()
+def chain_force(
+    table: Array, grid: Array, d_x: float, d_y: float, w_x: float, w_y: float, level: float, clipped: bool,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """Integrals of P n dz dphi over the bearing, with P clipped at `level` (scaled, gauge) if clipped.
 
     Returns the force (x, y), its derivatives by w (xx, xy, yx, yy) and by d at fixed w (xx, xy, yx, yy): ten numbers.

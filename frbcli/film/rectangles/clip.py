@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, element_lengths, gauss_angles
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def force_weights(vertices: Array) -> Array:
     """(2, 3, m) integrals of each element's shape functions times cos(Theta) and sin(Theta)."""
     m = vertices.shape[0]
@@ -30,8 +30,8 @@ def force_weights(vertices: Array) -> Array:
     return weights
 
 
-@njit(cache=True, error_model="numpy")
-def _roots(p0, p1, p2):  # type: ignore[no-untyped-def]
+@compiled()
+def _roots(p0: float, p1: float, p2: float) -> tuple[float, float]:
     """The two crossing points of the quadratic through p0, p1, p2 at 0, 1/2, 1, ascending; 2.0 where there is none."""
     a, b = 2.0 * (p0 - 2.0 * p1 + p2), -3.0 * p0 + 4.0 * p1 - p2
     first = second = 2.0
@@ -53,8 +53,8 @@ def _roots(p0, p1, p2):  # type: ignore[no-untyped-def]
     return min(first, second), max(first, second)
 
 
-@njit(cache=True, error_model="numpy")
-def clipped_line(fields, level, vertices, lengths, weights, result):  # type: ignore[no-untyped-def]
+@compiled()
+def clipped_line(fields: Array, level: float, vertices: Array, lengths: Array, weights: Array, result: Array) -> None:
     """Integrals over one turn at one axial position, over the region where the pressure fields[0] exceeds the level.
 
     fields: (r, 2 m) nodal values: the pressure, then its derivatives; result (r, 2) += integrals of (fields[0] - level)
@@ -76,8 +76,11 @@ def clipped_line(fields, level, vertices, lengths, weights, result):  # type: ig
         cut_element(fields, i0, i1, i2, p0, p1, p2, vertices[e], lengths[e], result)
 
 
-@njit(cache=True, error_model="numpy")
-def cut_element(fields, i0, i1, i2, p0, p1, p2, start_angle, length, result):  # type: ignore[no-untyped-def]
+@compiled()
+def cut_element(
+    fields: Array, i0: int, i1: int, i2: int, p0: float, p1: float, p2: float, start_angle: float, length: float,
+    result: Array,
+) -> None:  # fmt: skip
     """result += integrals over the part of one element where the quadratic through p0, p1, p2 is positive."""
     first, second = _roots(p0, p1, p2)
     middle = start_angle + 0.5 * length

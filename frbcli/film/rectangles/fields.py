@@ -11,8 +11,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.clip import cut_element, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
@@ -58,8 +58,8 @@ def field_table(mesh: Mesh, radius_to_width: float) -> Array:
     return table
 
 
-@njit(cache=True, error_model="numpy")
-def _line_fields(table, eccentricity, line, unit):  # type: ignore[no-untyped-def]
+@compiled()
+def _line_fields(table: Array, eccentricity: float, line: int, unit: Array) -> None:
     """unit (4, m + 1) <- the two fields on the half ring at one axial line and their derivatives by the
     eccentricity."""
     x = -math.log(1.0 - eccentricity)
@@ -78,8 +78,8 @@ def _line_fields(table, eccentricity, line, unit):  # type: ignore[no-untyped-de
             unit[2 + f, i] = d1 * (high[i] - low[i]) + d2 * low_x[i] + d3 * high_x[i]
 
 
-@njit(cache=True, error_model="numpy")
-def _ring(unit, w_r, w_t, excess, pressure):  # type: ignore[no-untyped-def]
+@compiled()
+def _ring(unit: Array, w_r: float, w_t: float, excess: float, pressure: Array) -> float:
     """pressure (n + 1,) <- pressure over the level all around, its first node again at the end. Returns the largest."""
     half = unit.shape[1]
     n = 2 * (half - 1)
@@ -91,8 +91,11 @@ def _ring(unit, w_r, w_t, excess, pressure):  # type: ignore[no-untyped-def]
     return largest
 
 
-@njit(cache=True, error_model="numpy")
-def _sort_elements(unit, w_r, w_t, pressure, grid, weights, active, cut, part):  # type: ignore[no-untyped-def]
+@compiled()
+def _sort_elements(
+    unit: Array, w_r: float, w_t: float, pressure: Array, grid: Array, weights: Array, active: Array, cut: Array,
+    part: Array,
+) -> None:  # fmt: skip
     """active (2, n + 1) <- weights of the nodes for the elements that lie above the level as a whole; part (4, 2) +=
     the share of the elements that the level crosses. cut: (4, 3) scratch."""
     half, m = unit.shape[1], grid.shape[1]
@@ -114,8 +117,8 @@ def _sort_elements(unit, w_r, w_t, pressure, grid, weights, active, cut, part): 
     active[0, 2 * m], active[1, 2 * m] = carried_c, carried_s
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def _weighted(unit, active, sums):  # type: ignore[no-untyped-def]
+@compiled(fastmath={"reassoc", "contract"})
+def _weighted(unit: Array, active: Array, sums: Array) -> None:
     """sums (5, 2) <- the four fields (even, odd, even, odd) and one, summed with the weights of the nodes."""
     half = unit.shape[1]
     n = 2 * (half - 1)
@@ -137,8 +140,10 @@ def _weighted(unit, active, sums):  # type: ignore[no-untyped-def]
         sums[4, c] = one - middle
 
 
-@njit(cache=True, error_model="numpy")
-def fields_force(table, grid, eccentricity, w_r, w_t, sigma, level):  # type: ignore[no-untyped-def]
+@compiled()
+def fields_force(
+    table: Array, grid: Array, eccentricity: float, w_r: float, w_t: float, sigma: float, level: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Force of one section, as table_force, with the scaled gauge pressures sigma at z = 1 and `level` in the cavity.
 
     table: of field_table; grid: of field_grid.

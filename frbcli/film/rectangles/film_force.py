@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba import njit
 from numba.extending import overload
 
+from frbcli.compiled import compiled
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
 from frbcli.film.rectangles.chain import ChainFilm, chain_force
 from frbcli.film.rectangles.fields import FieldsFilm, fields_force
@@ -62,8 +62,10 @@ def _by_kind(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     return lambda film, d_x, d_y, w_x, w_y, omega: _polar(film, d_x, d_y, w_x, w_y, omega)
 
 
-@njit(cache=True, error_model="numpy")
-def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+@compiled()
+def film_force(
+    film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """Force of one whole bearing on the journal.
 
     d: displacement over the clearance (|d| < 1 is the caller's duty); v: its rate in 1/s; omega: omega_J + omega_S in
@@ -75,8 +77,10 @@ def film_force(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     return _in_frame(film, d_x, d_y, v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x, omega)
 
 
-@njit(cache=True, error_model="numpy")
-def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+@compiled()
+def _polar(
+    film: Any, d_x: float, d_y: float, w_x: float, w_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_force of a film that is solved along and across the line of centres."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     c, s = (d_x / eccentricity, d_y / eccentricity) if eccentricity > NEAR_CENTRE else (1.0, 0.0)
@@ -96,8 +100,10 @@ def _polar(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
-def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+@compiled()
+def _standing(
+    film: ChainFilm, d_x: float, d_y: float, w_x: float, w_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_force of a film whose grooves stand still: solved in the frame of the shell."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     if eccentricity > LARGEST_ECCENTRICITY:  # as in film_force
@@ -108,10 +114,11 @@ def _standing(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
     return _with_rotation(film.force_scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy)
 
 
-@njit(cache=True, error_model="numpy")
-def _with_rotation(  # type: ignore[no-untyped-def]
-    scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
-):
+@compiled()
+def _with_rotation(
+    scale: float, omega: float, f_x: float, f_y: float, d_xx: float, d_xy: float, d_yx: float, d_yy: float,
+    k_xx: float, k_xy: float, k_yx: float, k_yy: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """The ten numbers of film_force from derivatives at fixed w: dw/dd = -(omega/2) J adds to the stiffness."""
     half = 0.5 * omega
     return (
@@ -122,8 +129,8 @@ def _with_rotation(  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
-def _turned(rr, rt, tr, tt, c, s):  # type: ignore[no-untyped-def]
+@compiled()
+def _turned(rr: float, rt: float, tr: float, tt: float, c: float, s: float) -> tuple[float, float, float, float]:
     """Q [[rr, rt], [tr, tt]] Q^T with Q the rotation by the angle of (c, s)."""
     e, f = c * rr - s * tr, c * rt - s * tt
     g, h = s * rr + c * tr, s * rt + c * tt

@@ -13,8 +13,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 
 GAUSS_POINTS = np.array([0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15)])
@@ -29,7 +29,7 @@ SHAPE = np.stack(
 SLOPE = np.stack([4 * GAUSS_POINTS - 3, 4 - 8 * GAUSS_POINTS, 4 * GAUSS_POINTS - 1])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def gauss_angles(vertices: Array) -> Array:
     """(m, 3) angles of the quadrature points of the m elements between the vertices (m,) of one turn."""
     m = vertices.shape[0]
@@ -41,7 +41,7 @@ def gauss_angles(vertices: Array) -> Array:
     return angles
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def element_lengths(vertices: Array) -> Array:
     """(m,) lengths of the elements between the vertices of one turn."""
     m = vertices.shape[0]
@@ -51,8 +51,8 @@ def element_lengths(vertices: Array) -> Array:
     return lengths
 
 
-@njit(cache=True, error_model="numpy")
-def _element(length, cube, decay, local):  # type: ignore[no-untyped-def]
+@compiled()
+def _element(length: float, cube: Array, decay: float, local: Array) -> None:
     """local (3, 3) <- matrix of d/dphi(H^3 d/dphi) - decay H^3 on one element; cube: H^3 at its three points."""
     for i in range(3):
         for j in range(3):
@@ -66,8 +66,8 @@ def _element(length, cube, decay, local):  # type: ignore[no-untyped-def]
             local[i, j] = entry
 
 
-@njit(cache=True, error_model="numpy")
-def solve_ring(lengths, cube, decay, load):  # type: ignore[no-untyped-def]
+@compiled()
+def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
     """Solve -d/dphi(H^3 dP/dphi) + decay H^3 P = load on the ring of m quadratic elements.
 
     lengths: (m,); cube: (m, 3) H^3 at the quadrature points; load: (r, m, 3) r right-hand sides at the element nodes
@@ -124,8 +124,8 @@ def solve_ring(lengths, cube, decay, load):  # type: ignore[no-untyped-def]
     return pressure
 
 
-@njit(cache=True, error_model="numpy")
-def unit_fields(vertices, eccentricity, decays, mode_loads):  # type: ignore[no-untyped-def]
+@compiled()
+def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads: Array) -> Array:
     """Pressure of a unit radial and a unit tangential w, and their derivatives by the eccentricity, mode by mode.
 
     Frame of the line of centres: H = 1 + eps cos(Theta), right-hand sides cos(Theta) and sin(Theta), see (3.26).

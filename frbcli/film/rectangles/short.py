@@ -7,10 +7,11 @@ section reads P = A z (1 - z) + sigma z on 0 <= z <= 1, with sigma the scaled su
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+
+from frbcli.compiled import compiled
 
 ANGLES = 96  # points of the trapezoidal rule in Sommerfeld's angle where no closed form exists
 
@@ -34,8 +35,8 @@ class SuppliedShortFilm(NamedTuple):
     level: float
 
 
-@njit(cache=True, error_model="numpy")
-def clipped_section(a, sigma, level):  # type: ignore[no-untyped-def]
+@compiled()
+def clipped_section(a: float, sigma: float, level: float) -> tuple[float, float]:
     """Integral over 0 <= z <= 1 of max(a z (1 - z) + sigma z - level, 0), exactly, and its derivative by a.
 
     level <= 0 <= sigma: the edges themselves do not cavitate, the inside may where a is negative.
@@ -50,8 +51,10 @@ def clipped_section(a, sigma, level):  # type: ignore[no-untyped-def]
     return total, slope
 
 
-@njit(cache=True, error_model="numpy")
-def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[no-untyped-def]
+@compiled()
+def short_closed(
+    eccentricity: float, w_r: float, w_t: float, slenderness: float, clipped: Any,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Force of one section with equal pressures at both edges and in the cavity, in the frame of the line of centres.
 
     In Sommerfeld's angle gamma the integrand is a trigonometric polynomial: the classical closed form. slenderness:
@@ -96,8 +99,10 @@ def short_closed(eccentricity, w_r, w_t, slenderness, clipped):  # type: ignore[
     )
 
 
-@njit(cache=True, error_model="numpy")
-def short_general(eccentricity, w_r, w_t, slenderness, sigma, level):  # type: ignore[no-untyped-def]
+@compiled()
+def short_general(
+    eccentricity: float, w_r: float, w_t: float, slenderness: float, sigma: float, level: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """As short_closed, with the supply pressure sigma at z = 1 and the cavitation pressure `level`, both scaled,
     gauge."""
     s = math.sqrt(1.0 - eccentricity * eccentricity)

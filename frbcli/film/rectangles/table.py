@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
@@ -59,10 +59,11 @@ def ring_contraction(eccentricity: float) -> float:
     return float(max((1.0 - eccentricity) / (1.0 + eccentricity), 1e-6) ** 0.3)
 
 
-@njit(cache=True, error_model="numpy")
-def clipped_forces(  # type: ignore[no-untyped-def]
-    fields, shapes, weights_z, directions, stretch, stretch_rate, vertices, clipped
-):
+@compiled()
+def clipped_forces(
+    fields: Array, shapes: Array, weights_z: Array, directions: Array, stretch: float, stretch_rate: float,
+    vertices: Array, clipped: bool,
+) -> Array:  # fmt: skip
     """(d, 3, 2) force of unit w in each direction, its derivatives by the direction and by the eccentricity.
 
     fields: (4, k, n) of unit_fields; shapes: (k, l) modes at the axial lines with weights_z (l,); directions: (d,)
@@ -160,8 +161,10 @@ def _slopes(values: Array, step: float, parity: float) -> Array:
     return slopes
 
 
-@njit(cache=True, error_model="numpy")
-def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
+@compiled()
+def table_force(
+    table: Array, eccentricity: float, w_r: float, w_t: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """Bicubic Hermite interpolation of force_table.
 
     Returns, in the frame of the line of centres, the force (r, t), its derivatives by w (rr, rt, tr, tt) and by the
@@ -203,10 +206,11 @@ def table_force(table, eccentricity, w_r, w_t):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
-def _hermite(  # type: ignore[no-untyped-def]
-    table, i, j, c, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3
-):
+@compiled()
+def _hermite(
+    table: Array, i: int, j: int, c: int, a0: float, a1: float, a2: float, a3: float, c1: float, c2: float,
+    c3: float, b0: float, b1: float, b2: float, b3: float, d1: float, d2: float, d3: float,
+) -> tuple[float, float, float]:  # fmt: skip
     """Value, derivative by x and by psi of component c in the cell (i, j)."""
     # along psi first, at both ends of the cell in x: value and x-derivative, and the psi-slopes of both
     v0 = b0 * table[i, j, c, 0] + b1 * table[i, j + 1, c, 0] + b2 * table[i, j, c, 2] + b3 * table[i, j + 1, c, 2]

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from frbcli.compiled import compiled
 from frbcli.film.grid import Array
 
 
@@ -48,7 +48,7 @@ def plan_elimination(rows: NDArray[np.int64], columns: NDArray[np.int64], size: 
     return Elimination(order, *wide)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled()
 def eliminate(plan: Elimination, entries: Array, right: Array) -> Array:
     """(n,) solution for the entries (e,) of the matrix and its right side (n,); not finite where it is singular."""
     n = len(plan.order)

@@ -1,0 +1,79 @@
+"""The compiler of the kernels: numba's, with a cache on disk that follows all sources that a kernel is made of.
+
+numba keys its cache by the file of the function alone. A kernel holds the machine code of those that it calls as well,
+so that one of another file could change and not be seen.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Set
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from numba import njit
+from numba.core.ccallback import CFunc
+from numba.core.sigutils import normalize_signature
+from numpy.typing import NDArray
+
+_PACKAGE = Path(__file__).parent
+_IMPORTS = re.compile(r"^from frbcli\.([\w.]+) import", re.MULTILINE)
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+
+
+def compiled(inline: bool = False, fastmath: Set[str] = frozenset()) -> Callable[[Kernel], Kernel]:
+    """Decorates a function that is compiled, once for each set of types, and kept on disk; numbers that are not finite
+    follow IEEE 754 and raise nothing.
+
+    inline: put into the functions that call it before they are compiled; fastmath: LLVM's flags, e.g. {"contract"}.
+    """
+
+    def decorated(function: Kernel) -> Kernel:
+        kernel: Any = njit(
+            cache=True, error_model="numpy", inline="always" if inline else "never", fastmath=set(fastmath) or False
+        )(function)
+        _follow(kernel, Path(function.__code__.co_filename))
+        return cast("Kernel", kernel)
+
+    return decorated
+
+
+def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> Any:
+    """A function compiled for one signature, to be called by its address; kept on disk if it is made of `sources`."""
+    normalize: Any = normalize_signature  # numba gives it no types
+    made: Any = CFunc(function, normalize(signature), locals={}, options={"error_model": "numpy"})
+    if sources:
+        made.enable_caching()
+        _follow(made, *sources)
+    made.compile()
+    return made
+
+
+def _follow(made: Any, *sources: Path) -> None:
+    """Have the cache of a kernel follow its sources: what its index is compared with when it is read, to which numba
+    has no public way."""
+    made._cache._cache_file._source_stamp = sources_digest(*sources)
+
+
+def sources_digest(*files: Path) -> str:
+    """Of the contents of files of this package and of all that they import from it, directly or not."""
+    found, waiting = set[Path](), list(files)
+    while waiting:
+        found.add(one := waiting.pop())
+        waiting += [other for other in _source(one)[1] if other not in found]
+    return hashlib.sha256("".join(_source(one)[0] for one in sorted(found)).encode()).hexdigest()
+
+
+@cache
+def _source(file: Path) -> tuple[str, tuple[Path, ...]]:
+    """(digest of a file, the files of this package that it imports)."""
+    text = file.read_text(encoding="utf-8")
+    places = (_PACKAGE.joinpath(*name.split(".")) for name in _IMPORTS.findall(text))
+    imported = (place / "__init__.py" if place.is_dir() else place.with_suffix(".py") for place in places)
+    return hashlib.sha256(text.encode()).hexdigest(), tuple(path for path in imported if path.exists())
