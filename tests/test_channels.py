@@ -30,10 +30,10 @@ from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.films import OIL, PASSED, W, begin_stage, make_work
+from frbcli.solve.films import begin_stage, make_work
 from frbcli.solve.micro_step import _solve_films
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
-from frbcli.solve.state import RUNNING, State
+from frbcli.solve.state import OIL, PASSED, RUNNING, State, W
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 

@@ -21,8 +21,7 @@ from frbcli.scene.clearance_steps import case_at
 from frbcli.scene.plan import make_plan
 from frbcli.scene.segments import Segment, make_segments
 from frbcli.scene.system import make_system, run_up_profile
-from frbcli.solve.films import OIL
-from frbcli.solve.state import FINISHED, RUNNING, State
+from frbcli.solve.state import FINISHED, OIL, RUNNING, State
 
 Array = NDArray[np.float64]
 STEADY = ["speed.from=60Hz", "speed.to=60Hz", "speed.duration=0.4s", "rotor.unbalance=0 kg*m", "output.step=0.5ms"]

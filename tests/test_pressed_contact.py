@@ -20,7 +20,7 @@ from frbcli.film.cells.data import COS, GAP, SIN, VolumeFilms
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.states import FRACTION
 from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
-from frbcli.film.published.film import PublishedFilm
+from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.unknown import unknowns_of
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
@@ -31,12 +31,11 @@ from frbcli.scene.segments import Segment
 from frbcli.scene.system import System, make_system, run_up_profile
 from frbcli.solve.cell_films import EMPTY, LAW, UNSETTLED, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
-from frbcli.solve.films import WET, make_work
-from frbcli.solve.journal_newton import forces
-from frbcli.solve.published.equations import film_equations, make_room
-from frbcli.solve.published.stage import solve_stage
+from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work
+from frbcli.solve.films import make_work
+from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
-from frbcli.solve.state import FINISHED, RUNNING
+from frbcli.solve.state import FINISHED, RUNNING, WET
 
 Array = NDArray[np.float64]
 BASE = "axial-groove-two-phase"
@@ -123,7 +122,7 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
     """A film with a shell that gives way, ready for stages with this g; films with cells go on from call to call."""
     system = system_of(kind)
     data, clearances = system.films, np.array(system.clearances)
-    if isinstance(data, PublishedFilm):
+    if isinstance(data, ElementFilm):
         return _published(system, data, touches, omega, g, stiffness)
     cells = isinstance(data, VolumeFilms)
     shape = data.cells.shape[2:] if isinstance(data, VolumeFilms) else (0, 0)
@@ -144,21 +143,23 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
 
 
 def _published(
-    system: System, film: PublishedFilm, touches: float, omega: float, g: float, stiffness: float
+    system: System, data: ElementFilm, touches: float, omega: float, g: float, stiffness: float
 ) -> Pressed:
-    equations, room = film_equations(film), make_room(film)
-    near = tuple(float(x) for x in (touches - 0.006) * AHEAD)
-    start = film.steady(Motion(near, (0.0, 0.0), omega)).state
-    w = unknowns_of(equations.unknowns, equations.step, start.pressure.ravel())
+    assert system.published is not None
+    near = films.polar(touches - 0.006, -1.1)
+    start = system.published.steady(Motion((float(near[0]), float(near[1])), (0.0, 0.0), omega)).state
+    work, clearances = make_element_work(data, 2), np.array(system.clearances)
+    work.w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
+    work.past[:] = start.fraction / g
 
     def ask(d: Array, v: Array) -> Array:
-        rows = rows_of(system, d, v, omega, g)
-        solved, _, _ = solve_stage(
-            equations, room, np.zeros((2, 2)), system.clearances[0], g, touches, stiffness, 1e-8,
-            start.fraction / g, w, rows,
-        )  # fmt: skip
-        assert solved
-        return rows
+        rows, held = rows_of(system, d, v, omega, g), np.zeros((2, 2))  # a journal that no force moves
+        for iteration in range(MOST_ITERATIONS):
+            forces(data, work, clearances, touches, stiffness, g, 1, iteration, rows)
+            share, _, _, unsettled = correct(data, work, held, clearances, touches, stiffness, g, rows, held.copy())
+            if share == 1.0 and unsettled == 0:
+                return rows
+        raise AssertionError(f"the film did not settle at {d}")
 
     return ask
 

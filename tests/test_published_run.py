@@ -16,19 +16,20 @@ from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.published.data import ElementFilm, make_room
 from frbcli.film.published.film import PublishedFilm
-from frbcli.film.published.loads import published_loads
-from frbcli.film.published.unknown import unknowns_of
+from frbcli.film.published.loads import oil_flows, open_area, published_loads
+from frbcli.film.published.moving import oil_held, oil_passing, residual
+from frbcli.film.published.unknown import pressures_of, unknowns_of
 from frbcli.runs.march import control_of
+from frbcli.runs.oil import oil_created
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.system import System, make_system, run_up_profile
-from frbcli.solve.published.equations import FilmEquations, film_equations, make_room, residual
-from frbcli.solve.published.stage import solve_stage
-from frbcli.solve.published.state import film_layers, oil_created, unknowns_in
-from frbcli.solve.published.time_loop import advance_published
+from frbcli.solve.element_films import HERE, MOST_ITERATIONS, ElementWork, make_element_work
+from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
-from frbcli.solve.state import FINISHED, RUNNING, Control, State
+from frbcli.solve.state import FINISHED, OIL, RUNNING, Control, State, W
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -62,9 +63,8 @@ def run(
     out_q, out_v, out_oil = np.empty((2000, n)), np.empty((2000, n)), np.empty((2000, len(system.names)))
     status, written = RUNNING, 0
     tableau, rotor = METHODS[plan.method].tableau, rotor_data(system, profile)
-    forward = advance_published if isinstance(system.films, PublishedFilm) else advance
     while status == RUNNING:
-        status, fresh = forward(
+        status, fresh = advance(
             rotor, system.films, tableau, control or control_of(case, plan), state, budget,
             out_q[written:], out_v[written:], out_oil[written:])  # fmt: skip
         written += fresh
@@ -78,8 +78,8 @@ def fixed_steps(case: Case, plan: Plan, steps: int) -> Control:
 
 
 def film_of(system: System) -> PublishedFilm:
-    assert isinstance(system.films, PublishedFilm)
-    return system.films
+    assert system.published is not None
+    return system.published
 
 
 def test_a_full_film_is_that_of_the_other_forms() -> None:
@@ -89,8 +89,7 @@ def test_a_full_film_is_that_of_the_other_forms() -> None:
     expected, _ = run(other, *planned(replace_mesh(other)))
     assert np.max(np.abs(found)) > 0.5 * system.clearances[0]
     assert np.max(np.abs(found - expected)) < 5e-3 * system.clearances[0]
-    fraction = film_layers(state).fraction
-    assert np.all(fraction >= 1.0)
+    assert np.all(state.wet[OIL] >= 1.0)
 
 
 def replace_mesh(case: Case) -> Case:
@@ -121,35 +120,50 @@ def test_a_fed_film_starts_full() -> None:
     case = case_of("bearing.supply.pressure=2bar")
     _, system = planned(case)
     state = first_state(case.start, system, run_up_profile(case))
-    assert np.all(film_layers(state).fraction >= 1.0)
+    assert np.all(state.wet[OIL] >= 1.0)
 
 
-def stage_of(system: System, d: tuple[float, float]) -> tuple[FilmEquations, PublishedFilm, Array, Array, Array]:
-    """A settled film in its equations with the unknowns, past and journal's rows of a stage of 0.1 ms."""
-    film, g, omega = film_of(system), 1e-4, 2 * math.pi * 30.0
+def stage_of(system: System, d: tuple[float, float]) -> tuple[ElementFilm, PublishedFilm, ElementWork, Array]:
+    """A settled film with the unknowns, past and journal's rows of a stage of 0.1 ms."""
+    film, data, g, omega = film_of(system), system.films, 1e-4, 2 * math.pi * 30.0
+    assert isinstance(data, ElementFilm)
     start = film.steady(Motion(d, (0.0, 0.0), omega)).state
     rows = np.zeros((JOURNAL_ROWS, 2))
     clearance = film.section.clearance
     rows[X_0] = np.array(d) * clearance
     rows[U] = rows[U_0] = np.array([3.0, -8.0]) * clearance
     rows[OMEGA] = omega
-    equations = film_equations(film)
-    w = unknowns_of(equations.unknowns, equations.step, start.pressure.ravel())
-    return equations, film, w, start.fraction / g, rows
+    work = make_element_work(data, 2)
+    work.w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
+    work.past[:] = start.fraction / g
+    return data, film, work, rows
 
 
-@pytest.mark.parametrize("d", [(0.1, -0.5), (0.3, -0.92), (0.3, -1.05)])
+def solve_stage(
+    data: ElementFilm, work: ElementWork, clearance: float, g: float, contact: tuple[float, float],
+    compliance: Array, rows: Array,
+) -> int:  # fmt: skip
+    """Newton's method of a stage until the film has settled; the iterations."""
+    clearances, newton = np.array([clearance]), np.zeros((2, 2))
+    for iteration in range(MOST_ITERATIONS):
+        forces(data, work, clearances, *contact, g, 1, iteration, rows)
+        share, _, moved, unsettled = correct(data, work, compliance, clearances, *contact, g, rows, newton)
+        if share == 1.0 and unsettled == 0 and moved < 1e-7:
+            return iteration + 1
+    raise AssertionError("the stage did not settle")
+
+
+@pytest.mark.parametrize("d", [(0.1, -0.5), (0.3, -0.92)])
 def test_right_sides_of_a_stage_are_derivatives(d: tuple[float, float]) -> None:
-    """Also of a journal that has sunk into an elastic shell."""
     _, system = planned(case_of(SOFT))
-    equations, film, w, past, rows = stage_of(system, (0.1, -0.5))
-    room, g, omega = make_room(film), 1e-4, float(rows[OMEGA, 0])
+    data, _, work, rows = stage_of(system, (0.1, -0.5))
+    g, omega = 1e-4, float(rows[OMEGA, 0])
     v = np.array([3.0, -8.0])
 
     def missing(v: Array) -> Array:
         at = np.array(d) + g * v
-        residual(equations, room, w, past, at[0], at[1], v[0], v[1], omega, g, 0.95, 1.0)
-        return room.right.copy()
+        residual(data, work.room, work.w[HERE], work.past, at[0], at[1], v[0], v[1], omega, g)
+        return work.room.right.copy()
 
     exact, size = missing(v), 1e-3
     for k in range(2):
@@ -161,19 +175,34 @@ def test_right_sides_of_a_stage_are_derivatives(d: tuple[float, float]) -> None:
 def test_a_stage_holds_both_equations() -> None:
     """The force is that of the film alone, moved as the stage says; the journal moves as that force has it."""
     _, system = planned(case_of(SOFT))
-    equations, film, w, past, rows = stage_of(system, (0.1, -0.5))
+    data, film, work, rows = stage_of(system, (0.1, -0.5))
     g, clearance, compliance = 1e-4, film.section.clearance, 2e-4 * np.eye(2)
-    solved, _, cost = solve_stage(
-        equations, make_room(film), compliance, clearance, g, 0.99, 0.0, 1e-6, past, w, rows
-    )
-    assert solved
-    assert cost <= 8
+    assert solve_stage(data, work, clearance, g, (0.99, 0.0), compliance, rows) <= 8
     d, v = (rows[X_0] + g * rows[U]) / clearance, rows[U] / clearance
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), float(rows[OMEGA, 0]))
-    alone = film.keep(motion, film.full().pressure, 1.0 / g, past)
+    alone = film.keep(motion, film.full().pressure, 1.0 / g, work.past)
     np.testing.assert_allclose(rows[FORCE], alone.response.force, rtol=1e-4)
     assert np.hypot(*(rows[U] - rows[U_0])) > 1e-2 * np.hypot(*rows[U])  # the force does move the journal
     np.testing.assert_allclose(rows[U], rows[U_0] + compliance @ rows[FORCE], rtol=1e-9)
+
+
+@pytest.mark.parametrize("settings", [(), ("bearing.ends=oil-bath",), ("bearing.supply.pressure=2bar",)])
+def test_the_oil_of_the_loop_is_that_of_the_plain_flows(settings: tuple[str, ...]) -> None:
+    """What comes in, leaves and is held while the journal moves, with the ends free to air and in an oil bath."""
+    _, system = planned(case_of(SOFT, *settings))
+    film, data = film_of(system), system.films
+    assert isinstance(data, ElementFilm)
+    motion = Motion((0.1, -0.5), (3.0, -8.0), 2 * math.pi * 30.0)
+    start = film.steady(motion).state
+    w = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
+    pressure = pressures_of(data.unknowns, data.step, w)[0].reshape(start.pressure.shape)
+    rate = 0.7 * np.cos(film.mesh.angle)
+    plain = oil_flows(film, motion, pressure, 0.0, -rate)
+    found = oil_passing(data, make_room(data), w, -rate, *motion.d, *motion.v, motion.omega)
+    assert min(plain.inflow, plain.outflow) > 0.0
+    assert found == pytest.approx((plain.inflow, plain.outflow), rel=1e-9)
+    held = data.volume * float((open_area(film) * film.gap(motion).height * start.fraction).sum())
+    assert oil_held(data, *motion.d, start.fraction) == pytest.approx(held, rel=1e-12)
 
 
 def test_order_of_the_time_steps() -> None:
@@ -232,8 +261,7 @@ def test_the_oil_that_it_creates_is_told() -> None:
     rate = -oil.defect_relative * max(oil.in_m3_s, oil.out_m3_s)
     assert rate > 0.1 * oil.out_m3_s
     assert oil_created(end) == pytest.approx(rate * case.speed.duration, rel=2e-2)
-    w = unknowns_in(film, film_layers(end).w)
-    assert np.all(np.isfinite(w))
+    assert np.all(np.isfinite(end.wet[W]))
 
 
 def test_a_run_reports_it(tmp_path: Path) -> None:

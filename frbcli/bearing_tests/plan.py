@@ -18,6 +18,7 @@ from frbcli.film.section_faults import section_faults
 from frbcli.scene.bearing_models import chosen_model, model_decisions, model_faults
 from frbcli.scene.films import make_law
 from frbcli.scene.plan import Decision
+from frbcli.scene.published import DIFFUSIONS, ELEMENTS
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
 
@@ -31,15 +32,9 @@ STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its f
 FEWEST_CELLS = (12, 3)
 TWO_PI = 2.0 * math.pi
 
-PUBLISHED_ELEMENTS = (20, 10)
 PUBLISHED_FILM = Decision(
     "film", "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
 )
-DIFFUSIONS = {
-    "consistent": "artificial, added both around and along as published (4.42): carries oil in from the edges",
-    "streamline": "artificial (4.42), around only",
-    "none": "no artificial diffusion: the steep step may keep the film from converging",
-}
 
 
 @dataclass(frozen=True)
@@ -179,7 +174,7 @@ def _elements(case: Case) -> tuple[tuple[int, int], str]:
     if case.accuracy.mesh is not None:
         along, around = case.accuracy.mesh
         return (max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])), "of a section, set in the case"
-    return PUBLISHED_ELEMENTS, "of a section, as published"
+    return ELEMENTS, "of a section, as published"
 
 
 def _gap_decision(section: Section, bearing: SingleFilmBearing) -> Decision:

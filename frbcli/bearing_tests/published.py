@@ -18,6 +18,7 @@ from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.solution import FilmState, PublishedSolution
+from frbcli.scene.published import published_film
 
 Array = NDArray[np.float64]
 
@@ -32,22 +33,17 @@ STARTS = (0.6, 0.3, 0.85, 0.15)
 ATTITUDE = math.radians(40.0)
 
 
-def published_film(case: Case, plan: KinematicPlan, cells: tuple[int, int]) -> PublishedFilm:
-    """The film of a plan with elements around and along."""
-    two_phase = case.film.two_phase
-    return PublishedFilm(plan.section, TwoPhase(two_phase.steepness), two_phase.diffusion, *cells)
-
-
 def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: FilmState | None = None) -> FilmMoment:
     """The film for a motion that lasts, its error estimated from half as many elements each way.
 
     start: of nearly the same motion. Raises NotConverged.
     """
-    film = published_film(case, plan, plan.cells)
+    film = published_film(case, plan.section, plan.cells)
     solution = film.steady(motion, start)
     error = math.nan
     try:
-        coarse = published_film(case, plan, (max(plan.cells[0] // 2, 3), max(plan.cells[1] // 2, 1))).steady(motion)
+        half = max(plan.cells[0] // 2, 3), max(plan.cells[1] // 2, 1)
+        coarse = published_film(case, plan.section, half).steady(motion)
         error = max(estimate(_pair(solution), _pair(coarse)), solution.unsettled)
     except NotConverged:
         pass
@@ -61,7 +57,7 @@ def resting_in_published(case: Case, plan: KinematicPlan, load: float, omega: fl
 
     omega: in rad/s. Raises NotConverged if no start leads to one.
     """
-    film, side, problem = published_film(case, plan, plan.cells), math.copysign(1.0, omega), ""
+    film, side, problem = published_film(case, plan.section, plan.cells), math.copysign(1.0, omega), ""
     gentle = PublishedFilm(plan.section, TwoPhase(GENTLE), case.film.two_phase.diffusion, *plan.cells)
     for e in STARTS:
         start = e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)])

@@ -20,8 +20,7 @@ from frbcli.runs.cosimulation import in_turn
 from frbcli.runs.oil import displacement, grid_angle
 from frbcli.runs.start import FIRST_STEP, accelerations, settled_forces
 from frbcli.scene.system import System
-from frbcli.solve.films import OIL, PASSED, W_BEFORE, W
-from frbcli.solve.state import ERROR_BEFORE, STEP, STEP_BEFORE, STEP_DONE, TIME, Array, State
+from frbcli.solve.state import ERROR_BEFORE, OIL, PASSED, STEP, STEP_BEFORE, STEP_DONE, TIME, W_BEFORE, Array, State, W
 
 HALVINGS = 60  # of the interval in which the unknown of a cell with a given oil fraction lies
 

@@ -22,7 +22,7 @@ from frbcli.runs.control import control_of
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.plan import Plan
-from frbcli.scene.published import run_film
+from frbcli.scene.published import published_film
 from frbcli.scene.system import System, planned_film
 from frbcli.solve.contact import felt_motion
 from frbcli.solve.state import Array
@@ -75,14 +75,14 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     """
     if plan.form == GIVEN:  # a bearing model is what it is: nothing finer is there
         return FilmErrors(*np.zeros((3, 0)))
-    if isinstance(system.films, PublishedFilm):
-        forces = _published_forces(system.films, case)
+    if system.published is not None:
+        forces = _published_forces(system.published, case)
     elif plan.cells is not None:
         forces = _cell_forces(plan, system, case)
     else:
         forces = _source_forces(plan, system) if system.solved else _closed_forces(plan, system)
     control, n, found = control_of(case, plan), system.rotor.size, []
-    most = PUBLISHED_SAMPLES if isinstance(system.films, PublishedFilm) else CELL_SAMPLES
+    most = CELL_SAMPLES if system.published is None else PUBLISHED_SAMPLES
     every = 1 if plan.cells is None else max(1, len(samples) // most)
     for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
@@ -138,7 +138,7 @@ def _source_forces(plan: Plan, system: System) -> Forces:
 
 def _published_forces(own: PublishedFilm, case: Case) -> Forces:
     """Own force of a film in the published form, and as far from it as half as many elements each way tell."""
-    coarse = run_film(case, (max(3, own.mesh.around // 2), max(1, own.mesh.along // 2)))
+    coarse = published_film(case, own.section, (max(3, own.mesh.around // 2), max(1, own.mesh.along // 2)))
 
     def forces(_: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
         fine = published_force(own, at, rate, omega).force

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.film.published.film import PublishedFilm
 from frbcli.results.store import Run
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.runs.cell_errors import FewerCells
@@ -31,7 +30,6 @@ from frbcli.scene.remedies import advised
 from frbcli.scene.segments import Segment, make_segments
 from frbcli.scene.system import System
 from frbcli.solve.macro_step import advance_in_turn
-from frbcli.solve.published.time_loop import advance_published
 from frbcli.solve.state import (
     CONTACT,
     FINISHED,
@@ -95,8 +93,6 @@ class March:
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))
         self._advance: Callable[..., Any] = advance_in_turn if self._apart else advance
-        if isinstance(system.films, PublishedFilm):
-            self._advance = advance_published
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))

@@ -7,12 +7,11 @@ import numpy as np
 from frbcli.film.cells.balances import INFLOW, OUTFLOW
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.plain.balance import Motion
-from frbcli.film.published.film import PublishedFilm
+from frbcli.film.published.data import ElementFilm
 from frbcli.scene.supply import is_unfed
 from frbcli.scene.system import System
-from frbcli.solve.films import OIL, PASSED, W
-from frbcli.solve.published.state import created_share, published_oil
-from frbcli.solve.state import GRID, State
+from frbcli.solve.element_films import CAME, HELD, LEFT
+from frbcli.solve.state import GRID, NOW, OIL, PASSED, State, W
 
 
 def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None:
@@ -22,8 +21,9 @@ def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None
     The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with the
     pressures and oil fractions. None if none does.
     """
-    if isinstance(system.films, PublishedFilm):
-        return created_share(system.films, state)
+    if isinstance(system.films, ElementFilm):  # what it creates, per what the full film holds if less has passed
+        full = system.films.volume * float((system.films.open_area * system.films.height).sum())
+        return abs(oil_created(state)) / max(float(state.flows[PASSED, 0, [CAME, LEFT]].max()), full)
     if not system.remembers:
         return None
     worst = 0.0
@@ -54,8 +54,10 @@ def grid_angle(system: System, state: State, film: int, angle: float) -> float:
 
 def oil_passed(system: System, state: State) -> dict[str, float]:
     """Oil in m^3 that came into all films that keep theirs and that left them so far; empty if there are none."""
-    if isinstance(system.films, PublishedFilm):
-        return published_oil(state)
+    if isinstance(system.films, ElementFilm):
+        passed = state.flows[PASSED, 0]
+        created = oil_created(state)
+        return {"oil_in_m3": float(passed[CAME]), "oil_out_m3": float(passed[LEFT]), "oil_created_m3": created}
     if not system.remembers:
         return {}
     size = [
@@ -64,6 +66,13 @@ def oil_passed(system: System, state: State) -> dict[str, float]:
     ]
     came, left = (np.asarray(size) @ state.flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
     return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
+
+
+def oil_created(state: State) -> float:
+    """Oil in m^3 that the published form has created so far: what left more than came in and what the film holds
+    more."""
+    passed, now = state.flows[PASSED, 0], state.flows[NOW, 0]
+    return float(passed[LEFT] - passed[CAME] + now[HELD] - passed[HELD])
 
 
 def no_oil_comes_in(system: System) -> bool:

@@ -13,14 +13,32 @@ from frbcli.film.cells.balances import FLOWS
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.steady_force import steady_solution
+from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.film import PublishedFilm
+from frbcli.film.published.moving import oil_held
+from frbcli.film.published.unknown import unknowns_of
 from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
 from frbcli.rotor.excitation import SpeedProfile
 from frbcli.scene.system import System
 from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
-from frbcli.solve.films import OIL, W_BEFORE, WET, W
-from frbcli.solve.published.state import first_film
-from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
+from frbcli.solve.element_films import BOOKS, HELD
+from frbcli.solve.state import (
+    ERROR_SPANS,
+    HISTORY,
+    NOW,
+    NUMBERS,
+    OIL,
+    PASSED,
+    RUN_END,
+    STEP,
+    STEP_DONE,
+    W_BEFORE,
+    WET,
+    Array,
+    RotorData,
+    State,
+    W,
+)
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
 
@@ -97,9 +115,10 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
 def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tuple[Array, Array]:
     """The films' own state: settled where that is possible, else full at the ambient pressure. Its oil does not change
     at first: the journals stand still."""
-    if isinstance(system.films, PublishedFilm):
+    if isinstance(system.films, ElementFilm):
+        assert system.published is not None
         omega = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
-        return first_film(system.films, system.rotor.journals[0] @ q, float(omega[0]))
+        return _elements_at(system.published, system.films, system.rotor.journals[0] @ q, float(omega[0]))
     if not isinstance(system.films, VolumeFilms):
         return np.zeros((WET, 0, 0, 0)), np.zeros((2, 0, FLOWS))
     m, k = system.volumes[0].grid.shape
@@ -115,6 +134,24 @@ def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tupl
         wet[W, i] = wet[W_BEFORE, i] = w
         wet[OIL, i] = film.content(motion, w)
     return wet, np.zeros((2, len(system.volumes), FLOWS))
+
+
+def _elements_at(film: PublishedFilm, data: ElementFilm, displacement: Array, omega: float) -> tuple[Array, Array]:
+    """The same of a film in the published form, its journal at rest at a displacement (2,) in m."""
+    d, state = displacement / film.section.clearance, film.full()
+    moves = bool(np.any(d != 0.0)) and omega != 0.0
+    # Next to an opening of higher pressure a full film at the ambient one is none: its elements would dip below p_cav.
+    fixed = film.elements.fixed.reshape(film.mesh.phi.shape)
+    fed = bool(np.any(film.mesh.fixed_pressure[fixed] > state.pressure.min()))
+    if moves or fed:
+        with contextlib.suppress(NotConverged):
+            motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega if moves else 0.0)
+            state = film.steady(motion).state
+    wet, flows = np.zeros((WET, 1, *film.mesh.nodes.shape)), np.zeros((2, 1, BOOKS))
+    wet[W, 0] = wet[W_BEFORE, 0] = unknowns_of(data.unknowns, data.step, state.pressure.ravel())[film.mesh.nodes]
+    wet[OIL, 0] = state.fraction
+    flows[[PASSED, NOW], 0, HELD] = oil_held(data, float(d[0]), float(d[1]), state.fraction)
+    return wet, flows
 
 
 def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.gap import Section
 from frbcli.film.published.film import PublishedFilm
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
-from frbcli.scene.section import film_section
 
 PUBLISHED = "quadratic elements, two-phase model as published"  # the form of such a film
 PUBLISHED_ERROR = 2e-2  # of the force, on the published elements: what half of them change it by, over 3
@@ -68,9 +68,7 @@ def published_decisions(case: Case, elements: tuple[int, int], why: str) -> tupl
     )
 
 
-def run_film(case: Case, cells: tuple[int, int]) -> PublishedFilm:
-    """The film of a case that published_faults leaves in peace."""
-    bearing = case.bearings[0]
-    assert isinstance(bearing, SingleFilmBearing)
+def published_film(case: Case, section: Section, elements: tuple[int, int]) -> PublishedFilm:
+    """The film of a section with elements around and along."""
     two_phase = case.film.two_phase
-    return PublishedFilm(film_section(case, bearing), TwoPhase(two_phase.steepness), two_phase.diffusion, *cells)
+    return PublishedFilm(section, TwoPhase(two_phase.steepness), two_phase.diffusion, *elements)

@@ -18,6 +18,7 @@ from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.gap import AxialGroove
 from frbcli.film.grid import Array
 from frbcli.film.penalty_table.film import SourceFilm
+from frbcli.film.published.data import ElementFilm, element_film
 from frbcli.film.published.film import PublishedFilm, published_force
 from frbcli.film.rectangles.bearing import FilmForce, RectangularBearing, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
@@ -39,7 +40,8 @@ from frbcli.scene.films import (
     volume_film,
 )
 from frbcli.scene.plan import Plan
-from frbcli.scene.published import PUBLISHED, run_film
+from frbcli.scene.published import PUBLISHED, published_film
+from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTIONS
 from frbcli.scene.turbocharger import make_turbocharger
 
@@ -49,7 +51,8 @@ class System:
     """A machine as the time loop takes it.
 
     rotor: the linear system; films: ready for the time loop, with their names and clearances in m; bearings or volumes:
-    their dimensions and oil, of films without or with cells, the other one being empty.
+    their dimensions and oil, of films without or with cells, the other one being empty; published: of the one film in
+    the published form, both then being empty.
     solved: what the tables of penalty films are made of. bodies: (films, 2) what lies
     inside and outside of each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing
     in N m s, the Couette torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the
@@ -57,7 +60,7 @@ class System:
     """
 
     rotor: LinearRotor
-    films: tuple[FilmData, ...] | VolumeFilms | PublishedFilm
+    films: tuple[FilmData, ...] | VolumeFilms | ElementFilm
     names: tuple[str, ...]
     clearances: tuple[float, ...]
     bodies: NDArray[np.int64]
@@ -65,6 +68,7 @@ class System:
     drags: tuple[float, ...]
     bearings: tuple[RectangularBearing, ...] = ()
     volumes: tuple[VolumeFilm, ...] = ()
+    published: PublishedFilm | None = None
     solved: tuple[SourceFilm, ...] = ()
     ring_count: int = 0
     laws: tuple[str, ...] = ()
@@ -74,7 +78,7 @@ class System:
     @property
     def remembering(self) -> tuple[bool, ...]:
         """Which films keep oil of their own."""
-        if isinstance(self.films, PublishedFilm):
+        if self.published is not None:
             return (True,)
         if not isinstance(self.films, VolumeFilms):
             return (False,) * len(self.names)
@@ -107,8 +111,9 @@ class System:
         """As film.bearing.evaluate; a film with oil of its own is taken as settled. Raises NotConverged."""
         if isinstance(self.films, VolumeFilms):
             return steady_force(self.volumes[index], displacement, velocity, omega)
-        if isinstance(self.films, PublishedFilm):
-            return published_force(self.films, displacement, velocity, omega)
+        if isinstance(self.films, ElementFilm):
+            assert self.published is not None
+            return published_force(self.published, displacement, velocity, omega)
         return evaluate(self.films[index], self.clearances[index], displacement, velocity, omega)
 
 
@@ -131,7 +136,8 @@ def make_system(case: Case, plan: Plan) -> System:
         torque=case.film.torque,
     )
     if plan.cells is not None and plan.form == PUBLISHED:
-        return replace(system, films=run_film(case, plan.cells))
+        film = published_film(case, film_section(case, places[0].geometry), plan.cells)
+        return replace(system, films=element_film(film), published=film)
     if plan.cells is not None:
         volumes = tuple(volume_film(case, place, plan.cells) for place in places)
         data = volume_films(volumes, centrifugal_pressures(case, volumes))

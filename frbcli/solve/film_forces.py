@@ -14,7 +14,8 @@ from numba.extending import overload
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.solve.cell_films import GRID_X, GRID_Y, cell_numbers, move_cells, sheared
 from frbcli.solve.channels import follow_journals, join, set_laws, set_pressures
-from frbcli.solve.films import Work, have_cells
+from frbcli.solve.element_films import back_off, element_numbers, left_of_elements, move_elements
+from frbcli.solve.films import Work, have_cells, have_elements
 from frbcli.solve.state import Array
 
 
@@ -63,8 +64,21 @@ def follow_channels(films: Any, work: Work, correction: Array, share: float) -> 
     raise NotImplementedError
 
 
-def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, g: float) -> int:
-    """Take the film along with a correction u of the velocity that it feels, over the clearance; 1 if not settled."""
+def step_back(films: Any, work: Work, rows: Array) -> bool:
+    """After all films have been asked: whether one does not go to where the last correction led, and has taken itself
+    and U of the rows of stage.py back by some of it. It is to be asked again."""
+    raise NotImplementedError
+
+
+def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, share: float, g: float) -> int:
+    """Take the film along with a correction u of the velocity that it feels, over the clearance, the given share of
+    the full one; 1 if not settled."""
+    raise NotImplementedError
+
+
+def left_over(films: Any, work: Work, smooth: float, moved: float, unsettled: int, allowed: float) -> float:
+    """What a correction of the journals by `moved` may leave of their error, of which no more than `allowed` may be
+    left: `smooth` for forces without kinks, infinite as long as films are unsettled."""
     raise NotImplementedError
 
 
@@ -96,6 +110,10 @@ def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  
     if isinstance(films, types.UniTuple):
         return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: film_force(
             films[f], d_x, d_y, v_x, v_y, omega
+        )
+    if have_elements(films):
+        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: element_numbers(
+            films, work, d_x, d_y, v_x, v_y, omega, g, iteration
         )
     if not have_cells(films):  # of several kinds: what the compiler knows of each stands at a fixed place of the tuple
         return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: _one_of(
@@ -172,12 +190,31 @@ def _follow_channels(films, work, correction, share):  # type: ignore[no-untyped
     return volumes
 
 
-@overload(move_film, inline="always")
-def _move_film(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        return lambda films, work, f, u_x, u_y, g: 0
+@overload(step_back, inline="always")
+def _step_back(films, work, rows):  # type: ignore[no-untyped-def]
+    if have_elements(films):
+        return lambda films, work, rows: back_off(work, rows)
+    return lambda films, work, rows: False
 
-    def volumes(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
+
+@overload(left_over, inline="always")
+def _left_over(films, work, smooth, moved, unsettled, allowed):  # type: ignore[no-untyped-def]
+    if have_elements(films):
+        return lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, unsettled, allowed)
+    if not have_cells(films):
+        return lambda films, work, smooth, moved, unsettled, allowed: smooth
+    # A film with cells has kinks: no guess at what is left, but the balances themselves.
+    return lambda films, work, smooth, moved, unsettled, allowed: math.inf if unsettled > 0 else moved
+
+
+@overload(move_film, inline="always")
+def _move_film(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
+    if have_elements(films):
+        return lambda films, work, f, u_x, u_y, share, g: move_elements(films, work, u_x, u_y, share, g)
+    if not have_cells(films):
+        return lambda films, work, f, u_x, u_y, share, g: 0
+
+    def volumes(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
         return move_cells(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g, work.changes[f])
 
     return volumes

@@ -1,11 +1,12 @@
-"""The films in the time loop, compiled. Two kinds ride in it:
+"""The films in the time loop, compiled. Three kinds ride in it:
 
 - FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
-- VolumeFilms, all films together: cells with unknowns of their own, see cell_films.py.
+- VolumeFilms, all films together: cells with unknowns of their own, see cell_films.py;
+- ElementFilm, the one film of a machine: elements of the published two-phase form, see element_films.py.
 
-Which of the two a function means is decided by the type of the films when the loop is compiled. Oil is the state: a
-stage asks for rate H theta - past = -(net outflow), the rates of all stages are added up as those of the velocities
-are. What a linearised step leaves of the balance stays in the oil that is carried on, so that none is lost.
+Which of them a function means is decided by the type of the films when the loop is compiled. Of cells, oil is the
+state: a stage asks for rate H theta - past = -(net outflow), the rates of all stages are added up as those of the
+velocities are. What a linearised step leaves of the balance stays in the oil that is carried on, so that none is lost.
 
 Here is what happens at both ends of a stage and of a step; what the films say in between is in film_forces.py.
 """
@@ -21,12 +22,20 @@ from frbcli.film.cells.balances import FLOWS, SIDES
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import REMEMBERS, SLOT, VolumeFilms
 from frbcli.film.cells.states import STATES
+from frbcli.film.published.data import ElementFilm
 from frbcli.solve.cell_films import GRIDS, guess_unknowns, oil_fraction
-from frbcli.solve.state import Array
+from frbcli.solve.element_films import (
+    MOST_ITERATIONS,
+    ElementWork,
+    accept_elements,
+    begin_elements,
+    make_element_work,
+    write_element_oil,
+)
+from frbcli.solve.state import NOW, OIL, PASSED, RATE, W_BEFORE, Array, W
 
-# Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate.
-W, W_BEFORE, OIL, RATE, WET = range(5)
-PASSED, NOW = range(2)
+NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
+CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer
 
 
 class Work(NamedTuple):
@@ -65,8 +74,15 @@ def have_cells(films: Any) -> bool:
     return getattr(films, "instance_class", None) is VolumeFilms
 
 
-def make_work(films: Any, wet: Array, stages: int) -> Work | NoCells:
+def have_elements(films: Any) -> bool:
+    """Whether a type that the compiler knows is that of a film in the published form."""
+    return getattr(films, "instance_class", None) is ElementFilm
+
+
+def make_work(films: Any, wet: Array, stages: int) -> Work | ElementWork | NoCells:
     """Scratch for films and their state wet (WET, F, m, k)."""
+    if isinstance(films, ElementFilm):
+        return make_element_work(films, stages)
     if not isinstance(films, VolumeFilms):
         return NoCells(np.zeros((stages, 0, 0, 0)), np.zeros((GRIDS, 0)), np.zeros((0, 0)))
     _, count, m, k = wet.shape
@@ -89,6 +105,11 @@ def make_work(films: Any, wet: Array, stages: int) -> Work | NoCells:
         np.zeros((count, slots)),
         np.zeros((2 * coupled, 2 * coupled)),
     )
+
+
+def most_iterations(films: Any) -> int:
+    """Of Newton's method in a stage."""
+    raise NotImplementedError
 
 
 def begin_stage(
@@ -114,12 +135,20 @@ def accept_films(films: Any, work: Work, wet: Array, flows: Array, weights: Arra
 
 
 def write_oil(films: Any, work: Work, out_oil: Array, first: int, last: int) -> None:
-    """out_oil (rows, F), rows from first up to last: the mean oil fraction (4.46) of the last stage."""
+    """out_oil (rows, F), rows from first up to last: the mean oil fraction (4.46) at the end of an accepted step."""
     raise NotImplementedError
+
+
+@overload(most_iterations, inline="always")
+def _most_iterations(films):  # type: ignore[no-untyped-def]
+    most = MOST_ITERATIONS if have_elements(films) else CELL_LIMIT if have_cells(films) else NEWTON_LIMIT
+    return lambda films: most
 
 
 @overload(begin_stage)
 def _begin_stage(films, work, wet, flows, weights, s, step, g, ahead, lag):  # type: ignore[no-untyped-def]
+    if have_elements(films):
+        return begin_elements
     if not have_cells(films):
         return lambda films, work, wet, flows, weights, s, step, g, ahead, lag: None
 
@@ -148,6 +177,8 @@ def _begin_stage(films, work, wet, flows, weights, s, step, g, ahead, lag):  # t
 
 @overload(accept_films)
 def _accept_films(films, work, wet, flows, weights, step):  # type: ignore[no-untyped-def]
+    if have_elements(films):
+        return accept_elements
     if not have_cells(films):
         return lambda films, work, wet, flows, weights, step: None
 
@@ -178,6 +209,8 @@ def _accept_films(films, work, wet, flows, weights, step):  # type: ignore[no-un
 
 @overload(write_oil)
 def _write_oil(films, work, out_oil, first, last):  # type: ignore[no-untyped-def]
+    if have_elements(films):
+        return write_element_oil
     if not have_cells(films):
         return lambda films, work, out_oil, first, last: None
 

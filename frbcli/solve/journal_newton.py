@@ -12,10 +12,9 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
 from frbcli.solve.contact import push_back, shell_ahead, touches
 from frbcli.solve.dense import solve_dense
-from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film
+from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film, step_back
 from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FOLLOWS_X, FOLLOWS_Y, FORCE, OMEGA, U_0, X_0, U, norm
 
-NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
 CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction may close
 
 
@@ -42,8 +41,8 @@ def _in_contact(
     film[BY_Y, x] = (d_xx * rate_xy + d_xy * rate_yy + g * (k_xx * xy + k_xy * yy - s_xy)) / c
     film[BY_X, y] = (d_yx * rate_xx + d_yy * rate_xy + g * (k_yx * xx + k_yy * xy - s_xy)) / c
     film[BY_Y, y] = (d_yx * rate_xy + d_yy * rate_yy + g * (k_yx * xy + k_yy * yy - s_yy)) / c
-    film[FOLLOWS_X, x], film[FOLLOWS_Y, y] = xx, yy
-    film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = xy
+    film[FOLLOWS_X, x], film[FOLLOWS_Y, y] = rate_xx, rate_yy
+    film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = rate_xy
 
 
 @compiled(inline=True)
@@ -103,13 +102,15 @@ def forces(
 def correct(
     films: Any, work: Any, compliance: Array, clearances: Array, contact_at: float, contact_stiffness: float,
     g: float, film: Array, newton: Array,
-) -> tuple[float, float, float, float]:  # fmt: skip
+) -> tuple[float, float, float, int]:  # fmt: skip
     """One correction of U by Newton's method, and of the films' cells with it.
 
     Returns (share of it that was applied, what may be left of the error of a smooth force, how far the journals moved
-    over their clearances, films whose cells had not settled). What may be left is infinite for a correction that is
-    not finite.
+    over their clearances, films that had not settled). What may be left is infinite for a correction that is not
+    finite. Nothing is applied, but some of the last correction is taken back, where a film steps back.
     """
+    if step_back(films, work, film):
+        return 0.0, 0.0, 0.0, 1
     m, crossed = compliance.shape[0], work.cross.shape[0]
     for i in range(m):
         total = film[U_0, i] - film[U, i]
@@ -153,5 +154,5 @@ def correct(
         c_x, c_y = share * film[CORRECTION, x] / clearances[f], share * film[CORRECTION, y] / clearances[f]
         felt_x = film[FOLLOWS_X, x] * c_x + film[FOLLOWS_Y, x] * c_y
         felt_y = film[FOLLOWS_X, y] * c_x + film[FOLLOWS_Y, y] * c_y
-        unsettled += move_film(films, work, f, felt_x, felt_y, g)
+        unsettled += move_film(films, work, f, felt_x, felt_y, share, g)
     return share, min(left, moved), moved, unsettled

@@ -11,8 +11,8 @@ from typing import Any
 from frbcli.compiled import Array, compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import move_film
-from frbcli.solve.films import accept_films, begin_stage
-from frbcli.solve.journal_newton import NEWTON_LIMIT, forces
+from frbcli.solve.films import NEWTON_LIMIT, accept_films, begin_stage
+from frbcli.solve.journal_newton import forces
 from frbcli.solve.ring_spin import set_speeds
 from frbcli.solve.stage import FORCE, X_0, U, lagrange
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE
@@ -62,7 +62,7 @@ def _solve_films(
         for f in range(clearances.shape[0]):
             if not math.isfinite(film[FORCE, 2 * f] + film[FORCE, 2 * f + 1]):
                 return 0
-            unsettled += move_film(films, work, f, 0.0, 0.0, g)
+            unsettled += move_film(films, work, f, 0.0, 0.0, 1.0, g)
         if unsettled == 0:
             return iteration + 1
     return 0

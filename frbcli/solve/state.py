@@ -58,14 +58,18 @@ class Control(NamedTuple):
  INVERSE_G, INVERSE_SPEED, STEP_BEFORE, STEP_DONE, RUN_END, NUMBERS) = range(18)
 ERRORS_LARGEST, ERRORS_SUM = range(2)
 ERROR_SPANS = 256  # equal ones of the time of a run
+# Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate.
+W, W_BEFORE, OIL, RATE, WET = range(5)
+PASSED, NOW = range(2)  # layers of their oil: what has passed so far, and passes now
 HISTORY = 3  # points of the step before that help to predict the stages of the next
 
 
 class State(NamedTuple):
     """Everything that changes. numbers: (NUMBERS,); q, v, a: (n,) displacement, velocity, acceleration;
     past: (HISTORY, 1 + 2 films) time and journals' velocities at the start, the first stage and the end of the last
-    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see films.py;
-    errors: (2, ERROR_SPANS) largest fading sum and plain sum of the local errors of the steps that end in each span."""
+    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see films.py, and
+    element_films.py for the published form; errors: (2, ERROR_SPANS) largest fading sum and plain sum of the local
+    errors of the steps that end in each span."""
 
     numbers: Array
     q: Array

@@ -13,9 +13,10 @@ import numpy as np
 
 from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
-from frbcli.solve.films import accept_films, begin_stage, make_work, write_oil
+from frbcli.solve.film_forces import left_over
+from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterations, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
-from frbcli.solve.journal_newton import NEWTON_LIMIT, correct, forces
+from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, start_stage
@@ -37,7 +38,6 @@ from frbcli.solve.step import (
 )
 from frbcli.solve.tableau import Tableau
 
-CELL_LIMIT = 24  # as NEWTON_LIMIT, for films with cells, whose kinks take longer
 NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
 
 
@@ -73,7 +73,7 @@ def advance(
     """Advance the state until the output buffers are full, `budget` steps are done, or the run ends.
 
     out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more
-    than one step can write; out_oil: (rows, films) for the oil fraction of films with cells. Returns (status,
+    than one step can write; out_oil: (rows, films) for the oil fraction of films that keep theirs. Returns (status,
     rows written). The course of the steps does not depend on how often this is called.
     """
     stages, m, bodies = tableau.times.shape[0], 2 * rotor.clearances.shape[0], 1 + rotor.spins.shape[0]
@@ -108,7 +108,6 @@ def _advance(
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
     newton, past, q_new, bodies, angles_now, torque = own
-    has_cells = wet.shape[1] > 0
     written, done = 0, 0
 
     while done < budget:
@@ -134,15 +133,14 @@ def _advance(
             # counts of references to their arrays, which take a quarter of the time.
             lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             solved = False
-            for iteration in range(CELL_LIMIT if has_cells else NEWTON_LIMIT):
+            for iteration in range(most_iterations(films)):
                 forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
                 numbers[SOLVES] += m // 2
                 share, left, moved, unsettled = correct(films, work, compliance, clearances, contact_at,
                                                          contact_stiffness, g, film, newton)
                 if left == math.inf:
                     break
-                if has_cells:  # a film with cells has kinks: no guess at what is left, but the balances themselves
-                    left = math.inf if unsettled > 0 else moved
+                left = left_over(films, work, left, moved, unsettled, NEWTON_SHARE * tolerance)
                 if share == 1.0:
                     accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
                     if spins.shape[0] > 0:
@@ -169,8 +167,8 @@ def _advance(
         displace(weights[stages - 1], stage_v, step, q, q_new)
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
-        write_oil(films, work, out_oil, before, written)
         accept_films(films, work, wet, flows, weights, step)
+        write_oil(films, work, out_oil, before, written)
         numbers[STEP_DONE] = step
         move_on(q, v, a, q_new, stage_v, stage_a)
         keep_past(past, past_now)

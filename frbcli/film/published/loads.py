@@ -106,14 +106,6 @@ def oil_flows(film: PublishedFilm, motion: Motion, pressure: Array, rate: float,
     )
 
 
-def oil_content(film: PublishedFilm, d: tuple[float, float], fraction: Array) -> float:
-    """Oil in m^3 in the film, without grooves and holes, at a displacement over the clearance and oil fractions (e, 9)
-    of the points."""
-    scale = film.section.copies * film.section.radius * film.section.width * film.section.clearance
-    height = film.gap(Motion(d, (0.0, 0.0), 0.0)).height
-    return scale * float((open_area(film) * height * fraction).sum())
-
-
 def _at_ends(film: PublishedFilm) -> NDArray[np.bool_]:
     """(nodes,) whether a node lies at an end in an oil bath, and in no groove."""
     section, mesh = film.section, film.mesh

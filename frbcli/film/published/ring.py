@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numba.extending import register_jitable
 
 from frbcli.compiled import compiled
 from frbcli.film.grid import Array
@@ -43,6 +44,7 @@ class Ring(NamedTuple):
     front: Block
 
 
+@register_jitable
 def make_ring(around: int, along: int, rights: int) -> Ring:
     """Room for around (>= 3) x along elements and a number of right-hand sides."""
     n, m = 2 * along + 1, along + 1
@@ -51,6 +53,7 @@ def make_ring(around: int, along: int, rights: int) -> Ring:
     return Ring(np.zeros((around, m, width)), np.zeros((around, n, width)), column, front)
 
 
+@register_jitable
 def _block(pivots: int, others: int, width: int) -> Block:
     return Block(
         np.zeros((pivots, pivots)),

@@ -1,0 +1,78 @@
+"""A film in the published two-phase form as arrays for the compiled kernels, and the room that it is solved in."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.grid import Array
+from frbcli.film.published.assembly import DIRECTIONS, Elements
+from frbcli.film.published.film import PublishedFilm
+from frbcli.film.published.law import Step
+from frbcli.film.published.newton import REFERENCES
+from frbcli.film.published.unknown import Unknowns, make_unknowns
+
+PRESSURE, BY_W, RESIDUAL = range(3)
+RIGHTS = 3  # what is missing, and its derivatives by both velocities
+
+
+class ElementFilm(NamedTuple):
+    """What does not change in a run. unknowns: of the nodes; weights (nodes, 2): force on the journal in N per scaled
+    pressure; height, slope (e, 9): H and dH/dphi of the centred journal at the points; open_area (e, 9): of the
+    points outside of grooves and holes; volume: R b C of the whole bearing in m^3; along: elements."""
+
+    elements: Elements
+    step: Step
+    unknowns: Unknowns
+    weights: Array
+    height: Array
+    slope: Array
+    open_area: Array
+    volume: float
+    along: int
+
+
+class Room(NamedTuple):
+    """Scratch of the equations. matrix (e, 9, 9) and derived (e, 9, 5), as assembled; right (e, 9, RIGHTS), solution
+    (2 a, 2 k + 1, RIGHTS); gap (3, e, 9): H, its slope, its rate; nodes (3, nodes): PRESSURE, its derivative BY_W by
+    the unknown, and the RESIDUAL there. In few arrays: each of them costs compilation wherever it is handed on."""
+
+    matrix: Array
+    derived: Array
+    right: Array
+    solution: Array
+    gap: Array
+    nodes: Array
+
+
+def element_film(film: PublishedFilm) -> ElementFilm:
+    """A film as the time loop takes it."""
+    section, elements, step = film.section, film.elements, film.step_law
+    centred = film.gap(Motion((0.0, 0.0), (0.0, 0.0), 0.0))
+    return ElementFilm(
+        elements,
+        step,
+        make_unknowns(film.mesh, elements.fixed, step, REFERENCES[0] * step.cavity),
+        np.ascontiguousarray(film.weights.reshape(-1, 2)),
+        centred.height,
+        centred.slope,
+        np.where(elements.solid[:, None], 0.0, elements.area),
+        section.copies * section.radius * section.width * section.clearance,
+        film.mesh.along,
+    )
+
+
+def make_room(film: ElementFilm) -> Room:
+    """Room for a film."""
+    size, nodes, along = film.height.shape[0], film.weights.shape[0], film.along
+    around = size // along
+    return Room(
+        np.zeros((size, 9, 9)),
+        np.zeros((size, 9, 1 + DIRECTIONS)),
+        np.zeros((size, 9, RIGHTS)),
+        np.zeros((2 * around, 2 * along + 1, RIGHTS)),
+        np.zeros((3, size, 9)),
+        np.zeros((3, nodes)),
+    )

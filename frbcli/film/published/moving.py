@@ -1,0 +1,201 @@
+"""A film in the published two-phase form under a moving journal, compiled: what is missing in its equations, its force,
+its oil. The journal's motion is over the clearance: displacement d, velocity v in 1/s."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from frbcli.compiled import Array, compiled
+from frbcli.film.published.assembly import EDGE_VALUES, EDGE_WEIGHTS, LARGEST_EXPONENT, Elements, Gap, assemble
+from frbcli.film.published.data import BY_W, PRESSURE, RESIDUAL, RIGHTS, ElementFilm, Room
+from frbcli.film.published.law import oil_fraction
+from frbcli.film.published.ring import make_ring, solve_ring
+from frbcli.film.published.unknown import pressures_of
+
+# Of kernels that only kernels call: to be callable from Python, with a film in so many arrays, costs a fifth of all
+# compilation.
+INTERNAL = njit(cache=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)  # type: ignore[call-overload]
+
+
+@INTERNAL
+def _set_gap(film, room, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+    sine, cosine = film.elements.sine, film.elements.cosine
+    height, slope, rate = room.gap[0], room.gap[1], room.gap[2]
+    for e in range(sine.shape[0]):
+        for q in range(9):
+            height[e, q] = film.height[e, q] + d_x * sine[e, q] - d_y * cosine[e, q]
+            slope[e, q] = film.slope[e, q] + d_x * cosine[e, q] + d_y * sine[e, q]
+            rate[e, q] = v_x * sine[e, q] - v_y * cosine[e, q]
+    return Gap(height, slope, rate, 0.5 * omega)
+
+
+@INTERNAL
+def set_pressures(film, room, w):  # type: ignore[no-untyped-def]
+    """PRESSURE and BY_W of the room <- of the unknowns w (nodes,)."""
+    room.nodes[PRESSURE], room.nodes[BY_W] = pressures_of(film.unknowns, film.step, w)
+
+
+@compiled()
+def residual(
+    film: ElementFilm, room: Room, w: Array, past: Array, d_x: float, d_y: float, v_x: float, v_y: float,
+    omega: float, g: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Assemble at the unknowns w (nodes,) with theta_t = theta / g - past, past (e, 9); the derivatives are by the
+    velocity at the end of a stage, which moves the journal by g times itself.
+
+    Returns the size of the residual, and its share of the sum of its terms.
+    """
+    elements, pressure, by_w, total = film.elements, room.nodes[PRESSURE], room.nodes[BY_W], room.nodes[RESIDUAL]
+    set_pressures(film, room, w)
+    gap = _set_gap(film, room, d_x, d_y, v_x, v_y, omega)
+    assemble(elements, film.step, gap, pressure, by_w, 1.0 / g, past, room.matrix, room.derived)
+    terms = 1e-300
+    total[:] = 0.0
+    for e in range(elements.nodes.shape[0]):
+        for a in range(9):
+            r = room.derived[e, a]
+            room.right[e, a, 0] = r[0]
+            room.right[e, a, 1], room.right[e, a, 2] = g * r[1] + r[3], g * r[2] + r[4]
+            total[elements.nodes[e, a]] += r[0]
+            terms += abs(r[0])
+    size, left = 0.0, 0.0
+    for i in range(len(w)):
+        size += total[i] ** 2
+        left += abs(total[i])
+    return math.sqrt(size), left / terms
+
+
+@INTERNAL
+def force(film, room):  # type: ignore[no-untyped-def]
+    """On the journal, by the PRESSURE of the room."""
+    f_x, f_y, pressure = 0.0, 0.0, room.nodes[PRESSURE]
+    for i in range(len(pressure)):
+        f_x += film.weights[i, 0] * pressure[i]
+        f_y += film.weights[i, 1] * pressure[i]
+    return f_x, f_y
+
+
+@INTERNAL
+def solve(film, room):  # type: ignore[no-untyped-def]
+    """room.solution <- correction of the unknowns, and what the velocities do to them, from what residual has
+    assembled. Returns the force after the correction and its derivatives by the velocity (xx, xy, yx, yy); the
+    first is no number if a pivot has vanished."""
+    ring = make_ring(room.solution.shape[0] // 2, room.solution.shape[1] // 2, RIGHTS)
+    solve_ring(ring, room.matrix, room.right, room.solution)
+    solution = room.solution.reshape(-1, RIGHTS)
+    f_x, f_y = force(film, room)
+    xx, xy, yx, yy, check = 0.0, 0.0, 0.0, 0.0, 0.0
+    by_w = room.nodes[BY_W]
+    for i in range(len(by_w)):
+        x, y = film.weights[i, 0] * by_w[i], film.weights[i, 1] * by_w[i]
+        f_x += x * solution[i, 0]
+        f_y += y * solution[i, 0]
+        xx += x * solution[i, 1]
+        xy += x * solution[i, 2]
+        yx += y * solution[i, 1]
+        yy += y * solution[i, 2]
+        check += abs(solution[i, 0]) + abs(solution[i, 1]) + abs(solution[i, 2])
+    if not math.isfinite(check):
+        f_x = math.nan
+    return f_x, f_y, xx, xy, yx, yy
+
+
+@INTERNAL
+def set_oil_fraction(film, room, w, theta):  # type: ignore[no-untyped-def]
+    """theta (e, 9) <- at the points, by the unknowns w (nodes,)."""
+    set_pressures(film, room, w)
+    nodes, values = film.elements.nodes, film.elements.values
+    for e in range(nodes.shape[0]):
+        for q in range(9):
+            here = 0.0
+            for a in range(9):
+                here += values[q, a] * room.nodes[PRESSURE, nodes[e, a]]
+            theta[e, q] = oil_fraction(film.step, here)[0]
+
+
+@INTERNAL
+def mean_oil_fraction(film, theta):  # type: ignore[no-untyped-def]
+    """The factor (4.46) of oil fractions (e, 9)."""
+    area, oil = 0.0, 0.0
+    for e in range(theta.shape[0]):
+        for q in range(9):
+            area += film.open_area[e, q]
+            oil += film.open_area[e, q] * theta[e, q]
+    return oil / area
+
+
+@compiled()
+def oil_held(film: ElementFilm, d_x: float, d_y: float, theta: Array) -> float:
+    """Oil in m^3 in the film, without grooves and holes, with oil fractions (e, 9)."""
+    sine, cosine, total = film.elements.sine, film.elements.cosine, 0.0
+    for e in range(theta.shape[0]):
+        for q in range(9):
+            height = film.height[e, q] + d_x * sine[e, q] - d_y * cosine[e, q]
+            total += film.open_area[e, q] * height * theta[e, q]
+    return film.volume * total
+
+
+@compiled()
+def oil_passing(
+    film: ElementFilm, room: Room, w: Array, past: Array, d_x: float, d_y: float, v_x: float, v_y: float,
+    omega: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Oil in m^3/s that comes in and that leaves, as oil_flows of loads.py has it; theta_t = -past (e, 9)."""
+    elements, nodes, total = film.elements, film.elements.nodes, room.nodes[RESIDUAL]
+    set_pressures(film, room, w)
+    gap = _set_gap(film, room, d_x, d_y, v_x, v_y, omega)
+    # Without artificial diffusion and given pressures, the residual at a node is what enters there.
+    undiffused = Elements(
+        nodes, elements.values, elements.slopes, elements.area, elements.sine, elements.cosine, elements.length,
+        np.zeros_like(elements.fixed), elements.solid, elements.near, elements.far, elements.aspect, -1.0,
+        elements.prefactor, elements.exponent,
+    )  # fmt: skip
+    pressure, by_w = room.nodes[PRESSURE], room.nodes[BY_W]
+    assemble(undiffused, film.step, gap, pressure, by_w, 0.0, past, room.matrix, room.derived)
+    total[:] = 0.0
+    through, out = 0.0, 0.0
+    for e in range(nodes.shape[0]):
+        for a in range(9):
+            total[nodes[e, a]] -= room.derived[e, a, 0]
+        if elements.solid[e]:
+            through += _carried(elements, film.step, pressure, e, gap)
+        if elements.near[e]:
+            out += _through_end(elements, pressure, e, 0)
+        if elements.far[e]:
+            out += _through_end(elements, pressure, e, 2)
+    came, left = max(through, 0.0), out - min(through, 0.0)
+    for n in range(len(w)):
+        if elements.fixed[n]:
+            came += max(total[n], 0.0)
+            left -= min(total[n], 0.0)
+    return film.volume * came, film.volume * left
+
+
+@INTERNAL
+def _carried(elements, step, pressure, e, gap):  # type: ignore[no-untyped-def]
+    """What the surfaces carry out of a groove or hole in element e, net."""
+    total = 0.0
+    for q in range(9):
+        here, around = 0.0, 0.0
+        for a in range(9):
+            p = pressure[elements.nodes[e, a]]
+            here += elements.values[q, a] * p
+            around += elements.slopes[e, q, a, 0] * p
+        theta, steep, _ = oil_fraction(step, here)
+        total += elements.area[e, q] * gap.half * (gap.height[e, q] * steep * around + theta * gap.slope[e, q])
+    return total
+
+
+@INTERNAL
+def _through_end(elements, pressure, e, place):  # type: ignore[no-untyped-def]
+    """The outflow (4.36), (4.37) of element e through an end at its nodes 3 i + place."""
+    total = 0.0
+    for q in range(3):
+        here = 0.0
+        for a in range(3):
+            here += EDGE_VALUES[q, a] * pressure[elements.nodes[e, 3 * a + place]]
+        total += EDGE_WEIGHTS[q] * elements.prefactor * math.exp(min(elements.exponent * here, LARGEST_EXPONENT))
+    return elements.length[e] * total

@@ -1,1 +1,0 @@
-"""The time loop of a film in the published two-phase form."""
