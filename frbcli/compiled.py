@@ -27,16 +27,25 @@ Indices = NDArray[np.int64]
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 
-def compiled(inline: bool = False, fastmath: Set[str] = frozenset()) -> Callable[[Kernel], Kernel]:
+def compiled(
+    inline: bool = False, internal: bool = False, fastmath: Set[str] = frozenset()
+) -> Callable[[Kernel], Kernel]:
     """Decorates a function that is compiled, once for each set of types, and kept on disk; numbers that are not finite
     follow IEEE 754 and raise nothing.
 
-    inline: put into the functions that call it before they are compiled; fastmath: LLVM's flags, e.g. {"contract"}.
+    inline: put into the functions that call it before they are compiled. internal: for kernels that only kernels call,
+    Python must not: a call from there has to take records of many arrays apart, whose code costs up to a fifth of all
+    compilation. fastmath: LLVM's flags, e.g. {"contract"}.
     """
 
     def decorated(function: Kernel) -> Kernel:
+        options: Any = {"no_cpython_wrapper": internal, "no_cfunc_wrapper": True}  # of these numba tells no types
         kernel: Any = njit(
-            cache=True, error_model="numpy", inline="always" if inline else "never", fastmath=set(fastmath) or False
+            cache=True,
+            error_model="numpy",
+            inline="always" if inline else "never",
+            fastmath=set(fastmath) or False,
+            **options,
         )(function)
         _follow(kernel, Path(function.__code__.co_filename))
         return cast("Kernel", kernel)

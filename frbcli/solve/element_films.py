@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.compiled import compiled
 from frbcli.film.published.data import RIGHTS, ElementFilm, Room, make_room
 from frbcli.film.published.moving import (
-    INTERNAL,
     force,
     mean_oil_fraction,
     oil_held,
@@ -106,15 +106,18 @@ def begin_elements(films, work, wet, flows, weights, s, step, g, ahead, lag):  #
     w[:] = guess
 
 
-@INTERNAL
-def _keep_rates(film, work, s, g):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def _keep_rates(film: ElementFilm, work: ElementWork, s: int, g: float) -> None:
     """Oil fraction and rate of stage s, which is solved."""
     set_oil_fraction(film, work.room, work.w[HERE], work.thetas[s])
     work.rates[s] = work.thetas[s] / g - work.past
 
 
-@INTERNAL
-def element_numbers(film, work, d_x, d_y, v_x, v_y, omega, g, iteration):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def element_numbers(
+    film: ElementFilm, work: ElementWork, d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float,
+    iteration: int,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """film_numbers of film_forces.py. Where the last correction is to be shortened, or the film to be held, the numbers
     are of no meaning: step_back then takes the correction back."""
     notes = work.notes
@@ -139,8 +142,8 @@ def element_numbers(film, work, d_x, d_y, v_x, v_y, omega, g, iteration):  # typ
     return f_x, f_y, 0.0, 0.0, 0.0, 0.0, xx, xy, yx, yy
 
 
-@INTERNAL
-def _takes_place(film, work, g, iteration):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def _takes_place(film: ElementFilm, work: ElementWork, g: float, iteration: int) -> bool:
     """Assemble at where the film is; whether its residual is no reason to shorten the last correction."""
     notes, sizes = work.notes, work.notes[SIZES:]
     size, notes[TERMS] = residual(
@@ -160,8 +163,8 @@ def _takes_place(film, work, g, iteration):  # type: ignore[no-untyped-def]
     return True
 
 
-@INTERNAL
-def back_off(work, rows):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def back_off(work: ElementWork, rows: Array) -> bool:
     """step_back of film_forces.py; rows: of stage.py."""
     notes, w, best_u = work.notes, work.w, work.notes[BEST_U:SIZES]
     if notes[IS_BEST] != 0.0:
@@ -180,8 +183,8 @@ def back_off(work, rows):  # type: ignore[no-untyped-def]
     return True
 
 
-@INTERNAL
-def move_elements(film, work, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def move_elements(film: ElementFilm, work: ElementWork, u_x: float, u_y: float, share: float, g: float) -> int:
     """move_film of film_forces.py."""
     notes, w, change, largest = work.notes, work.w[HERE], work.w[CHANGE], 0.0
     notes[D_X] += g * u_x
@@ -200,8 +203,8 @@ def move_elements(film, work, u_x, u_y, share, g):  # type: ignore[no-untyped-de
     return 0 if largest < FILM_SETTLED else 1
 
 
-@INTERNAL
-def left_of_elements(work, moved, unsettled, allowed):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def left_of_elements(work: ElementWork, moved: float, unsettled: int, allowed: float) -> float:
     """left_over of film_forces.py."""
     notes = work.notes
     if notes[HOLD] != FREE:

@@ -4,24 +4,20 @@ its oil. The journal's motion is over the clearance: displacement d, velocity v 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
-from numba import njit
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.published.assembly import EDGE_VALUES, EDGE_WEIGHTS, LARGEST_EXPONENT, Elements, Gap, assemble
 from frbcli.film.published.data import BY_W, PRESSURE, RESIDUAL, RIGHTS, ElementFilm, Room
-from frbcli.film.published.law import oil_fraction
+from frbcli.film.published.law import Step, oil_fraction
 from frbcli.film.published.ring import make_ring, solve_ring
 from frbcli.film.published.unknown import pressures_of
 
-# Of kernels that only kernels call: to be callable from Python, with a film in so many arrays, costs a fifth of all
-# compilation.
-INTERNAL = njit(cache=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)  # type: ignore[call-overload]
 
-
-@INTERNAL
-def _set_gap(film, room, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def _set_gap(film: ElementFilm, room: Room, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Gap:
     sine, cosine = film.elements.sine, film.elements.cosine
     height, slope, rate = room.gap[0], room.gap[1], room.gap[2]
     for e in range(sine.shape[0]):
@@ -32,8 +28,8 @@ def _set_gap(film, room, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-
     return Gap(height, slope, rate, 0.5 * omega)
 
 
-@INTERNAL
-def set_pressures(film, room, w):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def set_pressures(film: ElementFilm, room: Room, w: Array) -> None:
     """PRESSURE and BY_W of the room <- of the unknowns w (nodes,)."""
     room.nodes[PRESSURE], room.nodes[BY_W] = pressures_of(film.unknowns, film.step, w)
 
@@ -68,8 +64,8 @@ def residual(
     return math.sqrt(size), left / terms
 
 
-@INTERNAL
-def force(film, room):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def force(film: ElementFilm, room: Room) -> tuple[float, float]:
     """On the journal, by the PRESSURE of the room."""
     f_x, f_y, pressure = 0.0, 0.0, room.nodes[PRESSURE]
     for i in range(len(pressure)):
@@ -78,8 +74,8 @@ def force(film, room):  # type: ignore[no-untyped-def]
     return f_x, f_y
 
 
-@INTERNAL
-def solve(film, room):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def solve(film: ElementFilm, room: Room) -> tuple[float, float, float, float, float, float]:
     """room.solution <- correction of the unknowns, and what the velocities do to them, from what residual has
     assembled. Returns the force after the correction and its derivatives by the velocity (xx, xy, yx, yy); the
     first is no number if a pivot has vanished."""
@@ -103,8 +99,8 @@ def solve(film, room):  # type: ignore[no-untyped-def]
     return f_x, f_y, xx, xy, yx, yy
 
 
-@INTERNAL
-def set_oil_fraction(film, room, w, theta):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def set_oil_fraction(film: ElementFilm, room: Room, w: Array, theta: Array) -> None:
     """theta (e, 9) <- at the points, by the unknowns w (nodes,)."""
     set_pressures(film, room, w)
     nodes, values = film.elements.nodes, film.elements.values
@@ -116,8 +112,8 @@ def set_oil_fraction(film, room, w, theta):  # type: ignore[no-untyped-def]
             theta[e, q] = oil_fraction(film.step, here)[0]
 
 
-@INTERNAL
-def mean_oil_fraction(film, theta):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def mean_oil_fraction(film: ElementFilm, theta: Array) -> float:
     """The factor (4.46) of oil fractions (e, 9)."""
     area, oil = 0.0, 0.0
     for e in range(theta.shape[0]):
@@ -174,8 +170,8 @@ def oil_passing(
     return film.volume * came, film.volume * left
 
 
-@INTERNAL
-def _carried(elements, step, pressure, e, gap):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def _carried(elements: Elements, step: Step, pressure: Any, e: int, gap: Gap) -> float:
     """What the surfaces carry out of a groove or hole in element e, net."""
     total = 0.0
     for q in range(9):
@@ -189,8 +185,8 @@ def _carried(elements, step, pressure, e, gap):  # type: ignore[no-untyped-def]
     return total
 
 
-@INTERNAL
-def _through_end(elements, pressure, e, place):  # type: ignore[no-untyped-def]
+@compiled(internal=True)
+def _through_end(elements: Elements, pressure: Any, e: int, place: int) -> float:
     """The outflow (4.36), (4.37) of element e through an end at its nodes 3 i + place."""
     total = 0.0
     for q in range(3):
@@ -198,4 +194,4 @@ def _through_end(elements, pressure, e, place):  # type: ignore[no-untyped-def]
         for a in range(3):
             here += EDGE_VALUES[q, a] * pressure[elements.nodes[e, 3 * a + place]]
         total += EDGE_WEIGHTS[q] * elements.prefactor * math.exp(min(elements.exponent * here, LARGEST_EXPONENT))
-    return elements.length[e] * total
+    return float(elements.length[e] * total)
