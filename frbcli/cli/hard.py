@@ -68,7 +68,7 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
 def write_page(found: HardResults, page: Path, introduction: str) -> None:
     """The results as a page of the documentation."""
     rows = "".join(f"| {' | '.join(cells)} |\n" for cells in map(_page_cells, found.results))
-    head = "| case | what is hard | has to end | ended | error | certain to | stated | CPU s | cause |\n"
+    head = "| case | difficulty | expected | ended | error | reference uncertainty | stated error | CPU s | cause |\n"
     head += "| --- " * 9 + "|\n"
     page.write_text(f"{introduction}\n{head}{rows}", encoding="utf-8")
 
