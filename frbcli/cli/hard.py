@@ -14,7 +14,7 @@ from frbcli.errors import INTERRUPTED
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
-COLUMNS = ("case", "what is hard", "end", "error", "stated", "CPU s")
+COLUMNS = ("case", "difficulty", "end", "error", "stated", "CPU s")
 WIDTH = 80
 EXPLANATION = """\
 error: largest deviation of the eccentricities from a fine reference until a
@@ -26,7 +26,7 @@ case."""
 def list_hard(terminal: Terminal) -> None:
     """The table of all hard cases."""
     found = hard_cases()
-    terminal.table("hard cases", ("case", "what is hard", "ends"), [(h.name, h.hard, h.end) for h in found])
+    terminal.table("hard cases", ("case", "difficulty", "ends"), [(h.name, h.hard, h.end) for h in found])
     terminal.remark("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
     terminal.emit({"command": "cases", "hard": [_entry(hard) for hard in found]})
 
