@@ -51,7 +51,7 @@ def show(result: HardResult, done: int, whole: int) -> None:
 
 
 def doubtful(found: HardResults) -> str:
-    """References whose uncertainty is not far below the error, and where error and uncertainty exceed what is stated."""
+    """Cases whose reference uncertainty is close to the error, and cases whose stated error does not bound both."""
     known = [r for r in found.results if r.error is not None and r.certain is not None and r.reported is not None]
     vague = [r.hard.name for r in known if r.certain > SURE * r.error]
     open_ones = [r.hard.name for r in known if r.error + r.certain > r.reported]

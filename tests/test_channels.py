@@ -235,9 +235,9 @@ def test_a_groove_around_the_feed_holes_holds_their_pressure(tmp_path: Path) -> 
 @pytest.mark.parametrize(("settings", "words"), [
     (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no bores"),
     (("bearing.inner.supply.on=journal",), "in the journal"),
-    (('bearing.outer.supply={kind="none"}',), "without oil"),
-    (("bearing.inner.supply.axial_position=0.3",), "beside a groove"),
-    (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the bores"),
+    (('bearing.outer.supply={kind="none"}',), "without a supply"),
+    (("bearing.inner.supply.axial_position=0.3",), "beside a central groove"),
+    (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the feed holes"),
     ((*AT_END, "bearing.outer.lobes={count=3, preload=0.5}"), "lobes in the housing"),
     ((*AT_END, "bearing.inner.supply.axial_position=0.07", "bearing.outer.width=10 mm"), "out of the film"),
 ])  # fmt: skip

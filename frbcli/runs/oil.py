@@ -1,4 +1,4 @@
-"""The oil that has passed through the films of a run, and whether all of it is accounted for."""
+"""The oil that has passed through the films of a run, and its balance."""
 
 from __future__ import annotations
 
@@ -67,6 +67,6 @@ def oil_passed(system: System, state: State) -> dict[str, float]:
 
 
 def no_oil_comes_in(system: System) -> bool:
-    """Whether no oil is pushed into a film that keeps its oil, so that what it carries falls, if not to nothing."""
+    """Whether a mass-conserving film has no pressurised supply, so that its force decays."""
     films = zip(system.volumes, system.remembering, system.laws, strict=True) if system.volumes else ()
     return any(keeps and is_unfed(film.section, law) for film, keeps, law in films)

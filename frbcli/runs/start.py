@@ -1,4 +1,4 @@
-"""What a run starts with: the arrays of its rotor; displacement, velocity and consistent acceleration."""
+"""The initial state of a run: arrays of the rotor; displacement, velocity and consistent acceleration."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
 
 
 def _factor(system: System) -> int:
-    """How missing oil lowers the torque."""
+    """Reduction of the torque by missing oil."""
     if system.torque == "simple":
         return SIMPLE_FACTOR
     return {"none": NO_FACTOR, "global": GLOBAL_FACTOR, "local": LOCAL_FACTOR}[system.cavitation_factor]
@@ -95,8 +95,8 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
 
 
 def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tuple[Array, Array]:
-    """The films' own state: settled where that is possible, else full at the ambient pressure. Its oil does not change
-    at first: the journals stand still."""
+    """The state of the films: steady where possible, else full at the ambient pressure. Its oil does not change at
+    first, since the journals are at rest."""
     if isinstance(system.films, PublishedFilm):
         omega = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
         return first_film(system.films, system.rotor.journals[0] @ q, float(omega[0]))

@@ -62,7 +62,10 @@ def _finite(found: Ladder) -> list[Rung]:
 
 
 def _error_table(ladders: dict[str, Ladder]) -> Iterator[str]:
-    yield "| case | until | reference uncertainty | true | stated | plan: bounded, overstated | all: bounded, overstated |"
+    yield (
+        "| case | until | reference uncertainty | true | stated | plan: bounded, overstated "
+        "| all: bounded, overstated |"
+    )
     yield "| --- | --- | --- | --- | --- | --- | --- |"
     for name, found in ladders.items():
         plan, every = shares([found.planned]), shares(_finite(found))
@@ -127,7 +130,8 @@ def _summary(ladders: dict[str, Ladder], costs: dict[str, Cost]) -> str:
         ("plan over the front", f"<= {ABOVE_FRONT:g}", f"{on_front} of {len(fronts)} cases, worst {max(fronts):.2f}"),
         ("predicted cost", f"factor {COST_FACTOR:g}", f"{in_cost} of {len(factors)} cases, worst {max(factors):.1f}"),
     ]
-    return "\n".join(["| | required | measured |", "| --- | --- | --- |", *(f"| {a} | {b} | {c} |" for a, b, c in rows)])
+    table = ["| | required | measured |", "| --- | --- | --- |", *(f"| {a} | {b} | {c} |" for a, b, c in rows)]
+    return "\n".join(table)
 
 
 if __name__ == "__main__":
