@@ -33,9 +33,9 @@ SIDE_LOBES = 0.05  # share of the strongest ridge: less than that is its side lo
 DRIFT = 0.6  # lines of the spectrum by which a ridge may move from one window to the next
 PAUSE = 5  # windows that a ridge may miss
 BEGINNING = 20  # windows in which a combination of two whirls shows what it is
-FAINT = 0.12  # share of all others that a whirl exceeds at some time: nonlinear films leave traces everywhere
+FAINT = 0.12  # share of all others that a whirl exceeds at some time: nonlinear films also cause small lines
 SAME_LINE = 0.5  # lines of the spectrum between two frequencies that are taken for one
-SHORTEST_s = 0.15  # a ridge that dies sooner is a transient
+SHORTEST_s = 0.15  # a shorter ridge is a transient
 SHORTEST_REVOLUTIONS = 20.0
 
 OUTER_UP_TO = 1.4  # times omega_F/2: inner films whirl with a multiple of it, whips included

@@ -1,4 +1,4 @@
-"""The hard cases on the terminal: the list of them, and how they ended."""
+"""The hard cases on the terminal: their list, and their results."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ COLUMNS = ("case", "difficulty", "end", "error", "stated", "CPU s")
 WIDTH = 80
 EXPLANATION = """\
 error: largest deviation of the eccentricities from a fine reference until a
-whirl begins or the run ends, of a force the relative one; stated: what the
-program itself says that it may be off by. `frb cases --hard NAME` prints a
-case."""
+whirl begins or the run ends; relative deviation of a force; stated: error that
+the run or test states. `frb cases --hard NAME` prints a case."""
 
 
 def list_hard(terminal: Terminal) -> None:
@@ -33,7 +32,7 @@ def list_hard(terminal: Terminal) -> None:
 
 def hard_text(name: str) -> str:
     """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
-    a case that has to be refused is given as its base, and its settings are told."""
+    a case that has to be refused is given as its base and its settings."""
     (hard,) = hard_cases([name])
     settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
     head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
@@ -82,7 +81,7 @@ def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callabl
 
 
 def _cause(result: HardResult) -> str:
-    """Why a case ended early: its message, and what the list knows of it."""
+    """Why a case ended early: its message, and the cause from the list."""
     return "; ".join(text.rstrip(".") for text in (result.message, result.hard.why) if text)
 
 
@@ -97,7 +96,6 @@ def _page_cells(result: HardResult) -> tuple[str, ...]:
     name, what, _, error, stated, cpu_s = _cells(result)
     notes = "; ".join(filter(None, (_cause(result), *result.problems))).replace("|", "\\|")
     return f"`{name}`", what, hard.end, result.status, error, short_number(result.certain), stated, cpu_s, notes
-
 
 
 def _entry(hard: HardCase) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""Too little memory: told in one line, however the libraries put it.
+"""Too little memory: reported in one line, whatever error a library raises.
 
 Where a process may use little memory (`ulimit -v`), libraries do not load, the compiler aborts, and linear algebra
 waits forever for its buffers. So what takes less than a usual run is told before any of them is loaded; what happens

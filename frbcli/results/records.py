@@ -1,4 +1,4 @@
-"""What a run file must say: the forms of its texts and records, and its signals with their names, units and values.
+"""The content of a run file: the forms of its texts and records, and its signals with their names, units and values.
 
 Whatever reads a run relies on this: what is printed is printable, what is computed with is finite and no larger than
 any machine needs, and there is never more of it than a picture or a table can show.
@@ -67,11 +67,12 @@ def wrong_record(records: Mapping[str, Any]) -> str:
         "versions": lambda record: _is_table(record, lambda _, value: _is_label(value)),
         "references": lambda record: _is_table(record, _is_reference),
         "cost": lambda record: _is_table(record, lambda _, value: _is_number(value)) and _is_complete(record),
-        "error": lambda record: _is_table(record, lambda _, value: value is None or _is_number(value))
-        and _is_complete(record),
-        "events": lambda record: isinstance(record, list)
-        and len(record) <= MOST_EVENTS
-        and all(map(_is_event, record)),
+        "error": lambda record: (
+            _is_table(record, lambda _, value: value is None or _is_number(value)) and _is_complete(record)
+        ),
+        "events": lambda record: (
+            isinstance(record, list) and len(record) <= MOST_EVENTS and all(map(_is_event, record))
+        ),
     }
     return next((name for name, holds in forms.items() if not holds(records[name])), "")
 

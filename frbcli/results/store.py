@@ -67,7 +67,7 @@ class Header:
 
 @dataclass(frozen=True)
 class Run:
-    """A run as its file tells it. `run["eccentricity"]` gives the values (n,) of a signal, in the unit of its name.
+    """A run from its file. `run["eccentricity"]` gives the values (n,) of a signal, in the unit of its name.
 
     Of a run that was read from a file they are read when they are asked for, and a long run is better read in pieces:
     `run.read("eccentricity", 0, 1000)`. checkpoint: the state from which the run can go on, or None;
@@ -272,9 +272,9 @@ def read_run(path: str | Path) -> Run:
             with h5py.File(content, "r") as file:
                 return _read(path, file, Place.of(path, content))
         except parts.WrongPart as error:
-            raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from None
+            raise refuse(path, f"is not a complete run: {error}.", "Run the case again.") from None
         except UNREADABLE as error:
-            raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from error
+            raise refuse(path, f"is not a complete run: {error}.", "Run the case again.") from error
 
 
 def _read(path: Path, file: h5py.File, place: Place) -> Run:
@@ -285,7 +285,7 @@ def _read(path: Path, file: h5py.File, place: Place) -> Run:
     state, samples = _checkpoint(file, place)
     rest = parts.rest([*columns.values(), *({} if state is None else state).values()], place.size - USER_BLOCK)
     if not 0 <= rest <= LARGEST_REST:
-        raise parts.WrongPart("the sizes of its parts do not make up that of the file")
+        raise parts.WrongPart("the sizes of its parts do not add up to that of the file")
     if sum(array.bytes for array in ({} if state is None else state).values()) > LARGEST_STATE:
         raise parts.WrongPart("its checkpoint is too large")
     texts: dict[str, Any] = {name: parts.text(file, name) for name in TEXTS}

@@ -1,4 +1,4 @@
-"""What a ladder of speed against error holds: ways to compute a run, what each costs and errs, Pareto's front."""
+"""A ladder of speed against error: ways to compute a run, cost and error of each, Pareto's front."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ class RungError:
 
 @dataclass(frozen=True)
 class RungResult:
-    """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: what the program
-    chooses on its own; signals: largest error of each signal, see Difference; stated: what the run itself says of its
-    error; work_s: CPU time by the count of its film solves and the table of scene/cost.py, whatever else the machine
-    does."""
+    """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: the choice
+    of the plan; signals: largest error of each signal, see Difference; stated: stated error of the run;
+    work_s: CPU time from the number of its film solves and the table of scene/cost.py, which does not depend on the
+    load of the machine."""
 
     rung: Rung
     status: str
@@ -64,7 +64,7 @@ class RungResult:
 
 @dataclass(frozen=True)
 class AccuracyLadder:
-    """until_s: how long the runs are; reference: its error is how far a run on the rung `coarser` is from it; ladder:
+    """until_s: length of the runs; reference: its error is the difference to a run on the rung `coarser`; ladder:
     in the order of their cost; complete: not interrupted."""
 
     case: Case
@@ -76,7 +76,7 @@ class AccuracyLadder:
 
     @property
     def front(self) -> tuple[RungResult, ...]:
-        """Pareto's: the rungs that nothing cheaper comes closer than."""
+        """Pareto's front: the rungs for which no cheaper rung has a smaller error."""
         best, found = math.inf, []
         for result in sorted(self.ladder, key=lambda item: item.cpu_s):
             if result.error.eccentricity_largest < best:
@@ -85,8 +85,8 @@ class AccuracyLadder:
         return tuple(found)
 
     def above_front(self, quiet: bool = False) -> float:
-        """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
-        quiet: by the counted work in place of the measured CPU time."""
+        """Cost of the choice of the plan over the cost of the cheapest rung with the same or a smaller error; 1 on the
+        front. quiet: by the counted work in place of the measured CPU time."""
         planned = next(item for item in self.ladder if item.planned)
         error = planned.error.eccentricity_largest
         costs = {item.rung: item.work_s if quiet else item.cpu_s for item in self.ladder}
@@ -97,9 +97,18 @@ class AccuracyLadder:
         """One row per rung."""
         import pandas as pd
 
-        return pd.DataFrame([
-            {**vars(item.rung), "status": item.status, "cpu_s": item.cpu_s, **vars(item.error),
-             "stated": item.stated.get("eccentricity"), "work_s": item.work_s,
-             "planned": item.planned, "on_front": item in self.front}
-            for item in self.ladder
-        ])
+        return pd.DataFrame(
+            [
+                {
+                    **vars(item.rung),
+                    "status": item.status,
+                    "cpu_s": item.cpu_s,
+                    **vars(item.error),
+                    "stated": item.stated.get("eccentricity"),
+                    "work_s": item.work_s,
+                    "planned": item.planned,
+                    "on_front": item in self.front,
+                }
+                for item in self.ladder
+            ]
+        )
