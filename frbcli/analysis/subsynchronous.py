@@ -22,7 +22,7 @@ from frbcli.analysis.windows import fast_length, hann
 
 Side = Literal["inner", "outer"]
 
-WINDOW_s = 0.1  # tells frequencies 20 Hz apart, and is short against a run-up of some seconds
+WINDOW_s = 0.1  # separates frequencies 20 Hz apart, and is short against a run-up of some seconds
 HOP_s = 0.01
 PADDING = 4
 SLOWEST = 2.0  # periods per window: what is slower is the journal that moves to its place

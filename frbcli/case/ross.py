@@ -29,7 +29,7 @@ UNMODELLED = ("axial_force", "torque")
 # What a case file demands of the same quantities.
 QUANTITIES = {"L": Length, "odl": Length, "odr": Length, "idl": InnerDiameter, "idr": InnerDiameter, "rho": Density,
               "E": Modulus, "G_s": Modulus, "m": Mass, "Ip": Inertia, "Id": Inertia}  # fmt: skip
-MOST_POISSON = 0.5 + 1e-6  # of a material that keeps its volume
+MOST_POISSON = 0.5 + 1e-6  # of an incompressible material
 
 KEY = ("rotor", "file")
 UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m^3", "youngs_modulus": "Pa",

@@ -19,7 +19,7 @@ EVERY_s = 10.0  # between two lines where no line moves on the screen
 def compiling_told(terminal: Terminal, case: Case, show: Callable[[str], None] | None = None) -> Iterator[None]:
     """Within it, the terminal shows the progress of the compilation.
 
-    case: tells how many kernels there are; show: see Terminal.progress.
+    case: determines the number of kernels; show: see Terminal.progress.
     """
     from numba.core.event import Listener, install_listener  # heavy: only where kernels are used
 

@@ -70,7 +70,7 @@ def take_streams() -> tuple[Output, Output]:
 
 
 def closing_code(code: int, out: Output, err: Output, only_json: bool) -> int:
-    """The exit code of a command that ended with `code`; a stream that took not all of it is told on the other one.
+    """The exit code of a command that ended with `code`; a stream that was not written is reported on the other.
 
     only_json: stdout is for one JSON document alone. A code that is not 0 stands: it says more.
     """

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from frbcli.errors import Fault, InputError, printable
 from frbcli.results.place import remove_part, wrong_place
 
-# Okabe and Ito: told apart by the colour-blind too
+# Okabe and Ito: distinguishable also for the colour-blind
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 SKY, PURPLE, BLACK, GREY = "#56B4E9", "#CC79A7", "#000000", "#707070"
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)

@@ -96,7 +96,7 @@ def _marks(found: list[dict[str, Any]]) -> list[tuple[float, str]]:
 
 
 def _words(event: dict[str, Any]) -> str:
-    """An event for people: what, at which speed, with which frequency."""
+    """Label of an event: kind, speed, frequency."""
     name = NAMES.get(event["kind"], event["kind"])
     film = f" {event['film'].replace('_', ' ')}" if event.get("film") else ""
     ratio = event.get("frequency_ratio")

@@ -37,7 +37,7 @@ def seal(content: memoryview) -> bytes:
 
 
 def write_whole(path: Path, content: memoryview) -> None:
-    """Put `content` in place of `path` in one step: whoever opens `path` finds the old file or the new one, whole.
+    """Put `content` in place of `path` in one step: a reader of `path` finds either the complete old or new file.
 
     Raises RunFileError if the disk or the directory does not take it.
     """

@@ -28,7 +28,7 @@ def wrong_place(path: Path) -> tuple[str, str] | None:
 
 
 def remove_part(path: Path) -> None:
-    """Remove a file that could be written in part only, so that nobody takes it for whole; devices stay."""
+    """Remove a file that was written in part only; devices stay."""
     with suppress(OSError):
         if path.is_file():
             path.unlink()

@@ -30,7 +30,7 @@ UNEVEN = 1e-3  # share of a time step by which a sample may be off: round-off is
 EVENT_NUMBERS = ("t_s", "speed_Hz")  # every event has them
 EVENT_OPTIONAL = ("frequency_Hz", "frequency_ratio")  # or None
 EVENT_KEYS = ("kind", "film", *EVENT_NUMBERS, *EVENT_OPTIONAL)
-# What is told of every run that has ended, and what comes together.
+# Records of every run that has ended, and those that come together.
 COST_OF_ALL = ("cpu_s", "steps", "rejected_steps", "steps_per_revolution", "film_solves", "ms_per_film_solve",
                "simulated_ms_per_hour")  # fmt: skip
 ERROR_OF_ALL = ("time_integration",)
@@ -78,7 +78,7 @@ def wrong_record(records: Mapping[str, Any]) -> str:
 
 
 def untold(cost: Mapping[str, Any], error: Mapping[str, Any]) -> str:
-    """What a run that has ended does not tell of its cost and its error, "" if it tells all that every run does."""
+    """The missing record of cost or error of a run that has ended, "" if it has all."""
     numbers = [(cost, name) for name in COST_OF_ALL] + [(error, name) for name in ERROR_OF_ALL]
     return next((name for record, name in numbers if not _is_number(record.get(name))), "")
 

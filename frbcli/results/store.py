@@ -264,7 +264,7 @@ def _plain(value: Any) -> Any:
 def read_run(path: str | Path) -> Run:
     """Read a run file. Its signals and its checkpoint stay in the file until they are asked for.
 
-    Raises RunFileError for anything that is not a whole run, whoever wrote it: see parts.py, records.py.
+    Raises RunFileError for anything that is not a complete run: see parts.py, records.py.
     """
     path = Path(path)
     with open_whole(path) as content:
@@ -278,7 +278,7 @@ def read_run(path: str | Path) -> Run:
 
 
 def _read(path: Path, file: h5py.File, place: Place) -> Run:
-    """The run in a file that is as frb wrote it, or as somebody did who knows how frb seals it."""
+    """The run in a file with a valid checksum."""
     group = parts.group(file, "signals")
     columns = {name: parts.array(group, name, place, dimensions=1) for name in parts.names(group, "signals")}
     units = {name: parts.text_attribute(group[name], "unit") for name in columns}

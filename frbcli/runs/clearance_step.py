@@ -1,6 +1,6 @@
 """The state of a run when clearances change: displacements and velocities of the rotor and the oil stay the same.
 
-The oil of a film is in the new gap at once: a wider gap has a smaller oil fraction, and from a narrower gap the surplus
+The oil of a film stays in the new gap: a wider gap has a smaller oil fraction, and from a narrower gap the surplus
 leaves through the ends.
 """
 

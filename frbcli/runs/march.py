@@ -59,7 +59,8 @@ RUNAWAY, FEWEST_STEPS = 100, 2_000_000
 @dataclass(frozen=True)
 class Progress:
     """The progress of a run. Times in s, speed in Hz; eccentricity: the largest of all films now; cpu_s: so
-    far, and over_plan: over what the plan expected until now; for_error: of the same run again, to tell its error."""
+    far, and over_plan: over what the plan expected until now; for_error: of the second run,
+    from which the error follows."""
 
     t_s: float
     end_s: float
@@ -261,7 +262,7 @@ class March:
         return film_error_s(self._case, self._plan)
 
     def progress(self, until: float | None = None) -> Progress:
-        """For people who wait. until: s, of a run that is made again to tell the error of another one."""
+        """The progress of the run. until: end in s of a run that is repeated for its error."""
         numbers = self._state.numbers
         t, end = self.time, self._profile.end if until is None else until
         here = self._system.rotor.journals @ self._state.q / np.array(self._system.clearances)[:, None]

@@ -16,8 +16,8 @@ from frbcli.solve.state import GRID, State
 
 
 def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None:
-    """Oil in the cells that their unknowns do not account for, over what has passed through; the largest of all films
-    that keep theirs. angle: of the rotor in rad, with which films with bores in the journal turn.
+    """Oil in the cells that their unknowns do not account for, over what has passed through; the largest of all
+    mass-conserving films. angle: of the rotor in rad, with which films with feed holes in the journal turn.
 
     The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with the
     pressures and oil fractions. None if none does.
@@ -53,7 +53,7 @@ def grid_angle(system: System, state: State, film: int, angle: float) -> float:
 
 
 def oil_passed(system: System, state: State) -> dict[str, float]:
-    """Oil in m^3 that came into all films that keep theirs and that left them so far; empty if there are none."""
+    """Oil in m^3 that has entered and left all mass-conserving films so far; empty if there are none."""
     if isinstance(system.films, PublishedFilm):
         return published_oil(state)
     if not system.remembers:

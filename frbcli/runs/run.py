@@ -132,8 +132,7 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
 
 
 def is_interrupted(path: Path) -> bool:
-    """Whether a file is an interrupted run with samples. One that is damaged is none: nothing can go on from it, and
-    whoever reads it is told to run the case again."""
+    """Whether a file is an interrupted run with samples. A damaged file is not one, since it cannot be resumed."""
     if not path.exists():
         return False
     try:

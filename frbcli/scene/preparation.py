@@ -24,7 +24,10 @@ from frbcli.scene.tabulated import SOLUTION_MESH, SOLUTIONS
 
 FINER = 2  # factor of the elements in each direction for the error of the forces
 SAMPLES, CELL_SAMPLES = 48, 8  # states at which that is done
-TABLE_s, TABLE_MODES = 3.2e-5, 14  # per element around and mode along; modes that the evaluation at the lines is worth
+TABLE_s, TABLE_MODES = (
+    3.2e-5,
+    14,
+)  # per element around and mode along; modes that cost as much as the evaluation at the lines
 MODES_s = 3e-9  # of the axial modes, per cube of the elements along
 DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
 SOLUTIONS_s = 0.65  # of a table of solutions on cells, on SOLUTION_MESH

@@ -73,7 +73,7 @@ class System:
 
     @property
     def remembering(self) -> tuple[bool, ...]:
-        """Which films keep oil of their own."""
+        """Which films are mass-conserving."""
         if isinstance(self.films, PublishedFilm):
             return (True,)
         if not isinstance(self.films, VolumeFilms):
@@ -82,7 +82,7 @@ class System:
 
     @property
     def remembers(self) -> bool:
-        """Whether any film keeps oil of its own."""
+        """Whether any film is mass-conserving."""
         return any(self.remembering)
 
     @property
@@ -104,7 +104,7 @@ class System:
         return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
 
     def film_force(self, index: int, displacement: Array, velocity: Array, omega: float) -> FilmForce:
-        """As film.bearing.evaluate; a film with oil of its own is taken as settled. Raises NotConverged."""
+        """As film.bearing.evaluate; a mass-conserving film is steady. Raises NotConverged."""
         if isinstance(self.films, VolumeFilms):
             return steady_force(self.volumes[index], displacement, velocity, omega)
         if isinstance(self.films, PublishedFilm):

@@ -16,7 +16,7 @@ from frbcli.scene.plan import make_plan
 from frbcli.studies.accuracy import planned_rung
 from frbcli.studies.hard.cases import RUNS, Outcome, apart, outcome
 
-MOMENTS = 48  # times at which a run is held to its reference
+MOMENTS = 48  # times at which a run is compared with its reference
 DIGITS = 7  # of the numbers that a reference keeps
 LESS, LOOSER = 2 / 3, 2.0  # second reference: factors of the mesh in each direction and of the tolerance
 
