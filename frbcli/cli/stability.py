@@ -88,7 +88,7 @@ def command(
         tell_modes(terminal, modes)
     if len(natural) == 1 and found.points[-1].films:
         at = f"{found.points[-1].speed_Hz:.4g} Hz"
-        terminal.result(f"No natural frequencies on the films at {at}: one has no direct stiffness there.")
+        terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
     terminal.emit(
         {
             "command": "stability",
