@@ -330,7 +330,7 @@ mesh = [1, 2.5]
         ("[oil]", '[oil]\ntemperature = "95 degC"', "oil.temperature", "no effect: the viscosity is constant"),
         ("[oil]", '[oil]\ncavitation_pressure = "2 bar"', "oil.cavitation_pressure", "above the ambient"),
         ("[oil]", "[oil]\nambient_pressure = -1", "oil.ambient_pressure", "greater than"),
-        ('clearance = "35 um"', "clearance = 35", "bearing.clearance", "no film"),
+        ('clearance = "35 um"', "clearance = 35", "bearing.clearance", "too large for a film"),
         ('clearance = "35 um"', 'clearance = "1e-30 m"', "bearing.clearance", "out of range"),
         ('clearance = "35 um"', 'clearance = "35 um"\ntemperature = 350', "bearing.temperature", "no effect"),
         ('clearance = "35 um"', 'clearance = 35e-6\ntemperature = 350\nviscosity = 0.01', "bearing.temperature", "own"),

@@ -105,7 +105,7 @@ def test_the_case_chooses_the_coupling() -> None:
 
 @pytest.mark.parametrize("coupling", ["dynamic-static", "dynamic-static-semi-implicit"])
 def test_oil_that_is_kept_is_no_static_film(coupling: str) -> None:
-    with pytest.raises(InputError, match="keeps its oil"):
+    with pytest.raises(InputError, match="is mass-conserving"):
         make_plan(load_case("jeffcott", ["film.cavitation=two-phase", f"film.coupling={coupling}"]))
 
 

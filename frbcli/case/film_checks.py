@@ -46,7 +46,7 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
 
 
 def _too_thick(path: Path, clearance: float, diameter: float) -> Breach:
-    problem = f"is {display(clearance, 'm')}, no film at a diameter of {display(diameter, 'm')}."
+    problem = f"is {display(clearance, 'm')}, too large for a film at a diameter of {display(diameter, 'm')}."
     return Breach(path, problem, "It is the radial gap, about a thousandth of the radius.")
 
 
@@ -74,7 +74,7 @@ def _lobes(path: Path, lobes: Mapping[str, Any], clearance: float, diameter: flo
         return
     machined = clearance / (1.0 - preload)
     if machined >= THICKEST_MACHINED * diameter / 2:
-        problem = f"makes a machined clearance of {display(machined, 'm')}, no thin film."
+        problem = f"makes a machined clearance of {display(machined, 'm')}, too large for a thin film."
         yield Breach((*path, "preload"), problem, "It is 1 - c_b / c_p, with the assembled clearance c_b.")
 
 
