@@ -254,4 +254,4 @@ def test_coupled_films_have_no_coefficients_of_their_own() -> None:
 def test_the_plan_tells_of_coupled_channels() -> None:
     (told,) = [decision for decision in make_plan(ringed(*AT_END)).decisions if decision.choice == "channels"]
     assert told.value == "coupled"
-    assert "the outer film; 9.39e+07 Pa s/m^3" in told.reason
+    assert "the outer film; resistance 9.39e+07 Pa s/m^3" in told.reason

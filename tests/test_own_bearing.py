@@ -370,7 +370,7 @@ def test_a_wrong_key_of_a_model_is_told(settings: list[str], told: str) -> None:
         (["film.cavitation=elrod"], "film.cavitation = elrod: has no effect with film.theory = short-pi"),
         (["film.solution=cells"], "film.solution = cells: has no effect"),
         (["film.coupling=monolithic"], "Write dynamic-static or auto"),
-        (["film.grid=half-speed"], "film.grid = half-speed: is not for"),
+        (["film.grid=half-speed"], "film.grid = half-speed: has no effect"),
         (["bearing.lobes={ count = 3, preload = 0.5 }"], "lobes = 3 lobes: are a shape"),
         (["bearing.supply={ kind = 'pocket', position = '0 deg', opening_angle = '20 deg', width = '5 mm', "
           "pressure = '2 bar' }"], "is a supply that a bearing model cannot represent"),
