@@ -23,8 +23,9 @@ COLUMNS = ("", "film", "tol.", "CPU", "max", "rms", "onset", "thr.", "force")
 EXPLANATION = (
     "* choice of the plan, + on Pareto's front; film: short bearing, or elements of a\n"
     "finite one; tol.: local error of a step; CPU: time in s; max, rms: error of the\n"
-    "eccentricity; onset: error of the rotor speed at the onset of whirl, in Hz; thr.:\n"
-    "error of the linear threshold, in Hz; force: relative error of the film forces."
+    "eccentricity; onset: error of the rotor speed at the onset of whirl, in Hz;\n"
+    "thr.: error of the linear threshold, in Hz; force: relative error of the\n"
+    "film forces."
 )
 RESOLVED = 0.01  # Hz; resolution of the table
 
