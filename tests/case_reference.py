@@ -12,27 +12,27 @@ PAGE = Path(__file__).parent.parent / "docs" / "case-file.md"
 
 HEAD = """# The case file
 
-A case is one TOML file: rotor, bearings, oil, how the film is computed, the speed profile. `frb cases jeffcott` prints
-a whole one, `frb cases jeffcott -o my.toml` copies it, `frb check my.toml` says what is wrong with it and what will be
-modelled, `frb schema > case.schema.json` gives editors the same knowledge.
+A case is one TOML file: rotor, bearings, oil, solution of the films, speed profile. `frb cases jeffcott` prints
+a complete one, `frb cases jeffcott -o my.toml` copies it, `frb check my.toml` lists its faults and what will be
+modelled, and `frb schema > case.schema.json` writes a schema for editors.
 
 - A quantity is a text of number and unit, `"35 um"`; a bare number is in the unit of the table below, and `frb check`
-  tells which numbers are bare. Any unit of the same kind will do: `"12 mPa*s"`, `"5000 N/mm"`, `"3 g*mm"`,
+  lists the bare numbers. Any unit of the same kind is accepted: `"12 mPa*s"`, `"5000 N/mm"`, `"3 g*mm"`,
   `"18000 rpm"`, `"15 deg"`, `"100 degC"`.
-- What no usual rotor has is mostly a slip of a unit, and is refused unless the list `confirm` names it:
+- Values outside the usual range, mostly by a wrong unit, are refused unless the list `confirm` names them:
   `confirm = ["clearance"]` above all tables, or `--set confirm='["clearance"]'`.
-- Rotor speeds and frequencies are revolutions per second. Pressures are absolute. Angles phi are 0 at the top and count
-  counter-clockwise; angles of a displacement count from the x-axis (see [conventions](conventions.md)).
-- `--set bearing.clearance="40 um"` sets one key for one call of any command that takes a case; repeat it for more.
-  `bearing.1.width` reaches into the second `[[bearing]]`.
-- An unknown key is a fault, not a remark: every fault of a file is reported at once, with its line and a remedy.
+- Rotor speeds and frequencies are in Hz, revolutions or periods per second. Pressures are absolute. Angles phi are 0 at
+  the top and count counter-clockwise; angles of a displacement count from the x-axis (see
+  [conventions](conventions.md)).
+- `--set bearing.clearance="40 um"` sets one key for one call of any command that takes a case, and can be repeated.
+  `bearing.1.width` is a key of the second `[[bearing]]`.
+- An unknown key is a fault. All faults of a file are reported together, each with its line and a remedy. Combinations
+  that are not modelled are refused before anything is computed.
 
-What a run cannot have together is said before anything is computed, with what can be had in its place.
+From Python, `frbcli.case_from_dict` takes the same tables as nested dicts with the same checks. `case.source_text` is
+the TOML text of any case, also of one that was made or changed in Python; a run file contains it.
 
-From Python, `frbcli.case_from_dict` takes the same tables as nested dicts and checks them as a file is checked.
-`case.source_text` is the TOML text of any case, also of one that was made or changed in Python; a run keeps it.
-
-This page is written from the schema by `cd tests && python -m case_reference`, and a test keeps it so.
+This page is written from the schema by `cd tests && python -m case_reference`; a test checks that it is up to date.
 """
 
 # table of the file: name of its model in the schema

@@ -10,49 +10,56 @@ from frbcli.cli.hard import write_page
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 PAGE = Path(__file__).parents[1] / "docs" / "hard-cases.md"
-SURE = 0.3  # of an error that a reference may be off by itself, for the error to be well known
+SURE = 0.3  # reference uncertainty over error, below which the error is well known
 INTRODUCTION = """\
 # Hard cases
 
-Shipped cases with settings that bring a program to its limits, and how each ended. Written by
+Shipped cases with settings at the limits of the models and of the numerics, and how each ended. The page is written by
 `cd tests && python -m hard_cases_page`; the list is `cases/hard/hard-cases.toml`.
 
 ```sh
 frb cases --hard                      # lists them
 frb cases --hard reversed             # prints one as a case file; -o FILE copies it
-frb cases --run-hard                  # runs them all, each within its time, and says how each ended
+frb cases --run-hard                  # runs them all, each with a time limit, and reports how each ended
 frb cases --run-hard reversed no-speed --json
 ```
 
-The command ends with 0 if every case ended as the list says, else with 1. A case is as listed if it
+The exit code of the command is 0 if every case ended as listed, else 1. A case ended as listed if
 
-- ended with the status that it has to end with, within its time, and with the events that it has to have;
-- has no signal, force or pressure that is not a finite number, and less than 0.1 % of its oil unaccounted for;
-- is off by no more than the program itself states, where it has a reference.
+- it has the expected status and events, within its time limit;
+- all signals, forces and pressures are finite, and less than 0.1 % of its oil is unaccounted for;
+- its error is not larger than the error that it states, where it has a reference.
 
-**error**: largest deviation of the eccentricities from those of the same case with a finer mesh and a tighter tolerance
-(`fine` in the list, kept in `cases/hard/references.json`, made anew by `cd tests && python -m hard_references`), until
-a whirl begins or the run ends; of a kinematic test, that of the force, relative. **certain to**: how far that reference
-may itself be off, told by a second one with two thirds of its mesh each way and twice its tolerance; with cells and in
-kinematic tests 3.3 times the distance of the two, as if errors fell with the power 0.66 of the mesh. **stated**: the
-error that the run or the test itself reports, of the eccentricity or the force. No reference have the cases that whirl
-from the start or end early, `pressed-into-the-shell`, and journals that are moved over time (squeeze and whirl).
+Columns:
+
+- **error**: largest deviation of the eccentricities from the reference until a whirl begins or the run ends; of a
+  kinematic test, relative deviation of the force. The reference is the same case with a finer mesh and a smaller
+  tolerance (`fine` in the list; kept in `cases/hard/references.json`, written by
+  `cd tests && python -m hard_references`).
+- **reference uncertainty**: estimated error of the reference, from a second reference with two thirds of its mesh in
+  each direction and twice its tolerance. For finite-volume films and kinematic tests it is 3.3 times the difference of
+  the two, which assumes an order of 0.66 in the mesh; for other films it is the difference.
+- **stated error**: error that the run or the test reports, of the eccentricity or the force.
+
+There is no reference for cases that whirl from the start or end early, for `pressed-into-the-shell`, and for squeeze
+and whirl.
 """
 
 
-def tell(result: HardResult, done: int, whole: int) -> None:
+def show(result: HardResult, done: int, whole: int) -> None:
     sys.stderr.write(f"{done}/{whole} {result.hard.name}: {result.status} {'; '.join(result.problems)}\n")
 
 
 def doubtful(found: HardResults) -> str:
-    """Which references are not certain to much less than the errors that they tell, and where that matters."""
+    """Cases whose reference uncertainty is close to the error, and cases whose stated error does not bound both."""
     known = [r for r in found.results if r.error is not None and r.certain is not None and r.reported is not None]
     vague = [r.hard.name for r in known if r.certain > SURE * r.error]
     open_ones = [r.hard.name for r in known if r.error + r.certain > r.reported]
     said = [
-        f"Not certain to less than {SURE:g} of the errors that they tell are the references of {_list(vague)}: there "
-        "the error is known within a factor only.",
-        f"The stated error bounds error and uncertainty of the reference together, but in {_list(open_ones)}.",
+        f"The reference uncertainty is larger than {SURE:g} times the error for {_list(vague)}: their errors are known "
+        "to within a factor only.",
+        "The stated error is larger than the sum of error and reference uncertainty for all cases except "
+        f"{_list(open_ones)}.",
     ]
     return "\n\n".join(fill(text, 120, break_long_words=False, break_on_hyphens=False) for text in said) + "\n"
 
@@ -62,5 +69,5 @@ def _list(names: list[str]) -> str:
 
 
 if __name__ == "__main__":
-    results = run_hard_cases(observe=tell)
+    results = run_hard_cases(observe=show)
     write_page(results, PAGE, f"{INTRODUCTION}\n{doubtful(results)}")

@@ -189,4 +189,4 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert sum(item["planned"] for item in document["ladder"]) == 1
     assert "Pareto" in out.err
     assert document["ladder"][0]["stated"]["eccentricity"] > 0.0
-    assert "times the front" in out.err
+    assert "times Pareto's front" in out.err

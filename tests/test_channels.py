@@ -236,9 +236,9 @@ def test_a_groove_around_the_feed_holes_holds_their_pressure(tmp_path: Path) -> 
 @pytest.mark.parametrize(("settings", "words"), [
     (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no bores"),
     (("bearing.inner.supply.on=journal",), "in the journal"),
-    (('bearing.outer.supply={kind="none"}',), "without oil"),
-    (("bearing.inner.supply.axial_position=0.3",), "beside a groove"),
-    (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the bores"),
+    (('bearing.outer.supply={kind="none"}',), "without a supply"),
+    (("bearing.inner.supply.axial_position=0.3",), "beside a central groove"),
+    (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the feed holes"),
     ((*AT_END, "bearing.outer.lobes={count=3, preload=0.5}"), "lobes in the housing"),
     ((*AT_END, "bearing.inner.supply.axial_position=0.07", "bearing.outer.width=10 mm"), "out of the film"),
 ])  # fmt: skip
@@ -255,4 +255,4 @@ def test_coupled_films_have_no_coefficients_of_their_own() -> None:
 def test_the_plan_tells_of_coupled_channels() -> None:
     (told,) = [decision for decision in make_plan(ringed(*AT_END)).decisions if decision.choice == "channels"]
     assert told.value == "coupled"
-    assert "the outer film; 9.39e+07 Pa s/m^3" in told.reason
+    assert "the outer film; resistance 9.39e+07 Pa s/m^3" in told.reason

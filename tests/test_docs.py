@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
 import case_reference
+import hard_cases_page
 import pytest
 
+from frbcli.case.hard import hard_cases
 from frbcli.cli.main import COMMANDS
 
 ROOT = Path(__file__).parent.parent
@@ -44,6 +47,29 @@ def test_files_and_functions_that_are_named_exist(page: Path) -> None:
 def test_readme_tours_every_command() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert [command for command in COMMANDS if f"frb {command}" not in text] == []
+
+
+def test_readme_shows_the_shipped_case_and_its_keys_in_the_sketch() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    shown, sketch = re.findall(r"```toml\n(.*?)```.*?```\n(.*?)```", text, re.DOTALL)[0]
+    case = tomllib.loads(shown)
+    assert case == tomllib.loads((ROOT / "cases" / "jeffcott.toml").read_text(encoding="utf-8"))
+    keys = re.findall(r"\b([a-z]+)\.([a-z_]+)", sketch)
+    assert len(keys) >= 10
+    assert [f"{table}.{key}" for table, key in keys if key not in case[table]] == []
+    assert [line for line in sketch.splitlines() if len(line) > 80] == []
+
+
+def test_page_of_hard_cases_has_the_words_of_its_generator() -> None:
+    text = (ROOT / "docs" / "hard-cases.md").read_text(encoding="utf-8")
+    assert text.startswith(hard_cases_page.INTRODUCTION)
+    assert [hard.name for hard in hard_cases() if f"| `{hard.name}` | {hard.hard} | {hard.end} |" not in text] == []
+
+
+def test_page_of_accuracy_has_the_words_of_its_template() -> None:
+    template = (ROOT / "tests" / "accuracy" / "page.md").read_text(encoding="utf-8")
+    words = ".*?".join(re.escape(text) for text in re.split(r"@[A-Z]+@", template))
+    assert re.fullmatch(words, (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8"), re.DOTALL)
 
 
 def test_every_page_is_in_the_index() -> None:

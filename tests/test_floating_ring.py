@@ -325,5 +325,5 @@ def test_a_model_of_one_film_is_felt_in_that_film(tmp_path: Path) -> None:
 
 
 def test_models_cannot_be_compared_where_films_have_their_own() -> None:
-    with pytest.raises(InputError, match="some name a model of their own"):
+    with pytest.raises(InputError, match="some have a model of their own"):
         compare(ringed(*MIXED), ("penalty", "half-sommerfeld"))

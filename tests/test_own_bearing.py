@@ -331,7 +331,7 @@ def test_keys_and_plan_of_a_model_are_those_of_a_case(capsys: pytest.CaptureFixt
     assert keys["film.theory"].value == "damper"
     assert frbcli.load_case_text(case.source_text, name="damper") == case
     decisions = {decision.choice: decision for decision in kinematic_plan(case).decisions}
-    assert "not a model of this program" in decisions["theory"].reason
+    assert "added from Python" in decisions["theory"].reason
     path = tmp_path / "damper.toml"
     path.write_text(case.source_text, encoding="utf-8")
     assert frb(["check", str(path)]) == 0
@@ -367,13 +367,13 @@ def test_a_wrong_key_of_a_model_is_told(settings: list[str], told: str) -> None:
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        (["film.cavitation=elrod"], "film.cavitation = elrod: is not for film.theory = short-pi"),
-        (["film.solution=cells"], "film.solution = cells: is not for"),
+        (["film.cavitation=elrod"], "film.cavitation = elrod: has no effect with film.theory = short-pi"),
+        (["film.solution=cells"], "film.solution = cells: has no effect"),
         (["film.coupling=monolithic"], "Write dynamic-static or auto"),
-        (["film.grid=half-speed"], "film.grid = half-speed: is not for"),
+        (["film.grid=half-speed"], "film.grid = half-speed: has no effect"),
         (["bearing.lobes={ count = 3, preload = 0.5 }"], "lobes = 3 lobes: are a shape"),
         (["bearing.supply={ kind = 'pocket', position = '0 deg', opening_angle = '20 deg', width = '5 mm', "
-          "pressure = '2 bar' }"], "is a supply that a bearing model is not told of"),
+          "pressure = '2 bar' }"], "is a supply that a bearing model cannot represent"),
     ],
 )  # fmt: skip
 def test_what_a_model_is_not_told_of_is_refused(settings: list[str], told: str) -> None:
@@ -384,7 +384,7 @@ def test_what_a_model_is_not_told_of_is_refused(settings: list[str], told: str) 
 def test_a_ring_between_bearing_models_must_be_blocked() -> None:
     settings = ["film.theory=short-pi", "film.cavitation=half-sommerfeld", "bearing.inner.supply={ kind = 'none' }",
                 "bearing.outer.supply={ kind = 'none' }"]  # fmt: skip
-    with pytest.raises(InputError, match="needs the torques of its films"):
+    with pytest.raises(InputError, match="needs the torques of the films"):
         frbcli.make_plan(frbcli.load_case("floating-ring", settings))
     case = frbcli.load_case("floating-ring", [*settings, "bearing.ring.spin=blocked"])
     assert len(make_system(case, frbcli.make_plan(case)).films) == 2
@@ -394,7 +394,7 @@ def test_a_case_that_was_read_before_its_model_is_told_to_be_read_again() -> Non
     case = frbcli.load_case("rigid", ["film.theory=damper"])
     with_more = (*CHOSEN.keys, frbcli.BearingKey("gain", 1.0))
     frbcli.add_bearing(BearingModel("damper", "damper", chosen, keys=with_more))
-    with pytest.raises(InputError, match="the case was read before that was added"):
+    with pytest.raises(InputError, match="the case was read before the model was added"):
         frbcli.make_plan(case)
 
 
@@ -447,7 +447,7 @@ def wrong_slopes(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, b
         (BearingModel("two-phase", "mine", spring), "name: is that of a key or model of the program"),
         (BearingModel("My Bearing", "mine", spring), "name: is not made of small letters"),
         (BearingModel("mine", "mine", spring, keys=(frbcli.BearingKey("width", 1.0),)), "keys.width: is a name that"),
-        ("mine", "is no BearingModel"),
+        ("mine", "is not a BearingModel"),
     ],
 )
 def test_what_is_no_model_is_refused(model: BearingModel, told: str) -> None:

@@ -185,7 +185,7 @@ def test_ring_speed_is_drawn_over_the_torque_balance(ringed: Run) -> None:
 def test_ring_speed_and_oil_content_need_their_signals(run: Run, ringed: Run) -> None:
     with pytest.raises(RunFileError, match="no ring that turns"):
         ring_speed_figure([run])
-    with pytest.raises(RunFileError, match="how full"):
+    with pytest.raises(RunFileError, match="no oil fraction"):
         oil_content_figure([run])
     (curve,) = oil_content_figure([ringed]).axes[0].get_lines()
     assert np.min(curve.get_ydata()) == np.min(ringed["oil_fraction_inner"])

@@ -328,7 +328,7 @@ def test_output_in_no_directory_is_refused(tmp_path: Path) -> None:
 def test_a_foreign_file_is_left_alone(tmp_path: Path, resume: bool) -> None:
     path = tmp_path / "notes.h5"
     path.write_text("years of work")
-    with pytest.raises(InputError, match="left alone"):
+    with pytest.raises(InputError, match="not replaced"):
         runup(short_case(), path, resume=resume)
     assert path.read_text() == "years of work"
 

@@ -305,7 +305,7 @@ def test_a_text_that_cannot_be_found_is_refused_at_once(run_path: Path) -> None:
         for at, byte in change.items():
             broken[heap + at] = byte
         write_whole(run_path, memoryview(broken))
-        with pytest.raises(RunFileError, match="not a whole run"):
+        with pytest.raises(RunFileError, match="not a complete run"):
             read_run(run_path)
     crowded = bytes(content) + b"GCOL\x01\0\0\0" * 20_000
     write_whole(run_path, memoryview(crowded))

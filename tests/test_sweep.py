@@ -320,7 +320,7 @@ def test_a_cluster_that_is_not_there_is_wrong_input(
 
 def test_parquet_needs_its_library(case: Case, tmp_path: Path) -> None:
     found = sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, "stability", workers=TWO)
-    with pytest.raises(InputError, match="no format"):
+    with pytest.raises(InputError, match="not a format"):
         write_table(found, tmp_path / "t.xls", "xls")
     if find_spec("pyarrow") is None:
         with pytest.raises(InputError, match="pyarrow"):
@@ -407,7 +407,7 @@ def test_the_command_takes_a_list_and_tells_of_failures(elsewhere: Path, capsys:
         (["--set", "speed.to=1,2", "--set", "speed.to=3,4"], "second time"),
         (["--set", "rotor.massive=1,2"], "massive"),
         (["--list", "nowhere.csv"], "nowhere.csv"),
-        (["--set", "speed.to=1 Hz,2 Hz", "--format", "xls"], "no format"),
+        (["--set", "speed.to=1 Hz,2 Hz", "--format", "xls"], "not a format"),
         (["--set", "speed.to=1 Hz,2 Hz", "--backend", "dask"], "--scheduler"),
     ],
 )

@@ -1,1 +1,1 @@
-"""What the signals of a run say: spectra, orders, events. Computes no film and launches no run."""
+"""Analysis of the signals of a run: spectra, orders, events. Computes no film and launches no run."""

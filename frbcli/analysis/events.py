@@ -36,7 +36,7 @@ WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one 
 SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies sooner is a transient
 
 CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact begins
-CONTACT_PAUSE_s = 0.1  # a journal that bounces touches many times in one contact
+CONTACT_PAUSE_s = 0.1  # a bouncing journal touches several times in one contact
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     touching = max(named, key=lambda film: float(last[film]), default="")
     for film in named:
         events += _contacts(run, film, run.status == "contact" and film == touching)
-    changes = _clearance_steps(run)  # before what they bring about at the same time
+    changes = _clearance_steps(run)  # before their consequences at the same time
     return tuple(sorted([*changes, *events], key=lambda event: event.t_s))
 
 
@@ -114,7 +114,7 @@ def _near_the_speed(
 
 
 def _clearance_steps(run: RunLike) -> Iterator[Event]:
-    """Changes of a clearance that the run has reached: what follows may be owed to them."""
+    """Changes of a clearance that the run has reached, as possible causes of later events."""
     count = len(run)
     for t in signals.clearance_steps(run):
         if t <= signals.piece(run, "time_s", count - 1, count)[0]:

@@ -1,4 +1,4 @@
-"""Amplitudes by order: how far a journal or a disk moves with a multiple of the rotor speed, exact also in a ramp."""
+"""Amplitudes by order: motion of a journal or a disk at a multiple of the rotor speed, exact also in a ramp."""
 
 from __future__ import annotations
 
@@ -53,15 +53,13 @@ class OrderTrack:
         return np.asarray(np.degrees(np.unwrap(np.angle(self.along(direction)))))
 
 
-def order_track(
-    run: RunLike, order: float, signal: str = "journal", revolutions: int = REVOLUTIONS
-) -> OrderTrack:
+def order_track(run: RunLike, order: float, signal: str = "journal", revolutions: int = REVOLUTIONS) -> OrderTrack:
     """The motion of a point of a run with a multiple of the rotor speed (revolutions.py), however fast that changes.
 
     signal: "journal", "disk" or "journal_NAME" of a bearing, "disk_NAME" of a wheel; revolutions: of the windows, the
     squares of Hann windows, which part orders that are 3/revolutions from each other. The run is read in pieces.
 
-    Raises InputError for an order or window that there is not, a point that the run does not have, or a run that is
+    Raises InputError for an invalid order or window, a point that the run does not have, or a run that is
     shorter than a window.
     """
     return order_tracks(run, (order,), signal, revolutions)[0]
@@ -77,18 +75,18 @@ def order_tracks(
         raise _fault("order", value, f"is not between 0 and {HIGHEST:g}.", "Use e.g. 1 or 0.5.")
     if not FEWEST <= revolutions <= MOST or int(revolutions) != revolutions:
         limits = f"Use {FEWEST} to {MOST} whole revolutions."
-        raise _fault("revolutions", f"{revolutions:g}", "is no length of a window.", limits)
+        raise _fault("revolutions", f"{revolutions:g}", "is not a valid window length.", limits)
     kind, name = located(run, signal)
     if name not in points(run.signals, kind):
         known = ", ".join(joined(each, point) for each in ("journal", "disk") for point in points(run.signals, each))
-        raise _fault("signal", signal, "is no point of the run.", f"Use one of {known}.")
+        raise _fault("signal", signal, "is not a point of the run.", f"Use one of {known}.")
     signs = [sign * order for order in orders for sign in (1.0, -1.0)]
     wanted = [Tracked(kind, name, order, int(revolutions), power=2) for order in signs]
     turns, motions = track(run, wanted)
     if len(motions[0]) == 0:
         turned = f"{turns.revolution[-1]:.3g}" if len(turns.revolution) else "no"
         problem = f"of {revolutions} revolutions is longer than the run, which makes {turned}."
-        raise _fault("window", "", problem, "Let the run go on, or take a shorter one.")
+        raise _fault("window", "", problem, "Resume the run, or take a shorter window.")
     inside = slice(wanted[0].half, -wanted[0].half)
     return tuple(
         OrderTrack(order, signal, int(revolutions), turns.time_s[inside], turns.speed_Hz[inside], forward, backward)

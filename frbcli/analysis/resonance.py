@@ -1,8 +1,8 @@
-"""Vibrations near the rotor speed: critical speeds, and vibrations that films drive by themselves.
+"""Vibrations near the rotor speed: critical speeds and self-excited vibrations.
 
 At a critical speed unbalance excites a mode of the rotor in its films: the synchronous motion has a peak there and
-turns its phase. A film that starves lets the journal vibrate with a frequency of its own beside the rotor speed, which
-stays where it is while the rotor speed moves on: that is no critical speed, though it may begin as one.
+turns its phase. In a starved film the journal may vibrate with a frequency of its own near the rotor speed, which
+stays constant while the rotor speed changes: this is not a critical speed, though it may begin as one.
 """
 
 from __future__ import annotations
@@ -115,8 +115,8 @@ def vibrations_beside(
 ) -> Iterator[Vibration]:
     """Vibrations of a disk or journal with frequencies of their own near the rotor speed, before the first whirl.
 
-    tracked: those of `beside` in m; clearance: m. What rings on with the frequency of a mode of the machine, see
-    critical_step, is the end of a resonance.
+    tracked: those of `beside` in m; clearance: m. A vibration with the frequency of a mode of the machine, see
+    critical_step, is the decay of a resonance.
     """
     half, more = NARROW * STEPS // 2, (NARROW - WIDE) * STEPS // 2
     if len(tracked[1]) < 2:

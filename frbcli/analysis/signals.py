@@ -1,4 +1,4 @@
-"""How the signals of a run are called, for all that read them."""
+"""Names of the signals of a run, and access to them."""
 
 from __future__ import annotations
 

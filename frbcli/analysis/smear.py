@@ -1,4 +1,4 @@
-"""What a Hann window makes of a motion whose frequency changes."""
+"""Height of a spectral line whose frequency changes within a Hann window."""
 
 from __future__ import annotations
 

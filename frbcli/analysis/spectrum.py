@@ -1,9 +1,8 @@
-"""Spectra over time: which frequencies a journal or a disk moves with, and how far.
+"""Spectra over time of the motion of a journal or a disk.
 
-A window reads a motion low whose frequency changes while it looks: the line is smeared. Without a length of their own
-windows are as short as the ramp of the rotor speed asks for, yet long enough to part the lines that an engineer looks
-for; what is still lost of the synchronous line is known (smear.py) and told. Amplitudes that no ramp
-smears are those of order_tracking.py.
+A frequency that changes within a window lowers and widens its line. By default the length of the windows follows from
+the ramp of the rotor speed, with enough resolution to separate the lines of interest; the remaining loss of the
+synchronous line is computed (smear.py) and stated. Amplitudes of order_tracking.py do not depend on the ramp.
 """
 
 from __future__ import annotations
@@ -32,9 +31,9 @@ WINDOWS = 4  # a run shorter than this many windows gets shorter ones
 FEWEST = 8  # samples of a window
 PADDING = 4  # a sinusoid between two lines of the padded spectrum loses less than 1 % of its height under a Hann window
 BLOCK = 2**20  # values of padded windows that are in memory at a time
-FLOOR_dB = -200.0  # what silence is shown as
+FLOOR_dB = -200.0  # level of no motion
 UNEVEN = 1e-3  # relative deviation of a sample's time that is more than round-off
-CORNERS = 400  # stretches of a run in which its ramp is taken
+CORNERS = 400  # intervals of a run in which its ramp is determined
 
 
 @dataclass(frozen=True)
@@ -159,7 +158,7 @@ def _step(time_s: Column) -> float:
     """The time between two samples in s; raises InputError if there is no such thing."""
     count = len(time_s)
     if count < 2:
-        raise _fault("time_s", "", "has fewer than two samples.", "Let the run go on.")
+        raise _fault("time_s", "", "has fewer than two samples.", "Resume the run.")
     begin, end = float(time_s[0:1][0]), float(time_s[count - 1 : count][0])
     step = (end - begin) / (count - 1)
     pieces = ((first, time_s[first : first + PIECE]) for first in range(0, count, PIECE))

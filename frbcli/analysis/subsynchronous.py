@@ -22,7 +22,7 @@ from frbcli.analysis.windows import fast_length, hann
 
 Side = Literal["inner", "outer"]
 
-WINDOW_s = 0.1  # tells frequencies 20 Hz apart, and is short against a run-up of some seconds
+WINDOW_s = 0.1  # separates frequencies 20 Hz apart, and is short against a run-up of some seconds
 HOP_s = 0.01
 PADDING = 4
 SLOWEST = 2.0  # periods per window: what is slower is the journal that moves to its place
@@ -33,9 +33,9 @@ SIDE_LOBES = 0.05  # share of the strongest ridge: less than that is its side lo
 DRIFT = 0.6  # lines of the spectrum by which a ridge may move from one window to the next
 PAUSE = 5  # windows that a ridge may miss
 BEGINNING = 20  # windows in which a combination of two whirls shows what it is
-FAINT = 0.12  # share of all others that a whirl exceeds at some time: nonlinear films leave traces everywhere
+FAINT = 0.12  # share of all others that a whirl exceeds at some time: nonlinear films also cause small lines
 SAME_LINE = 0.5  # lines of the spectrum between two frequencies that are taken for one
-SHORTEST_s = 0.15  # a ridge that dies sooner is a transient
+SHORTEST_s = 0.15  # a shorter ridge is a transient
 SHORTEST_REVOLUTIONS = 20.0
 
 OUTER_UP_TO = 1.4  # times omega_F/2: inner films whirl with a multiple of it, whips included

@@ -1,1 +1,1 @@
-"""What the user wrote, frozen, in SI: the models, the loader, the cases that come along."""
+"""What the user wrote, frozen, in SI: the models, the loader, the shipped cases."""

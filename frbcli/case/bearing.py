@@ -1,4 +1,4 @@
-"""The bearings of a case: one film, or a floating ring between two films; how oil comes in and leaves.
+"""The bearings of a case: one film, or a floating ring between two films; supply and ends.
 
 Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are those of the
 whole bearing, both symmetric halves.
@@ -41,13 +41,13 @@ Ramp = Annotated[
 
 
 class NoSupply(Model):
-    """Oil comes from the ends only."""
+    """No supply: oil enters at the ends only."""
 
     kind: Literal["none"] = "none"
 
 
 class CircumferentialGroove(Model):
-    """A groove around the bearing: in its middle, where it makes two films of half the width, or at one end."""
+    """A groove around the bearing: in the middle, between two lands of half the width, or at one end."""
 
     kind: Literal["circumferential-groove"]
     axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
@@ -56,25 +56,25 @@ class CircumferentialGroove(Model):
 
 
 class AxialGrooves(Model):
-    """Grooves along the axis in the shell, evenly spaced."""
+    """Axial grooves in the shell, evenly spaced."""
 
     kind: Literal["axial-grooves"]
     count: Annotated[int, Count(1, 24, 1)] = 1
     position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
-    opening_angle: OpeningAngle = Field(description="angle that one groove takes")
+    opening_angle: OpeningAngle = Field(description="angle of one groove")
     pressure: Pressure
     ramp: Ramp = 0.0
 
 
 class Bores(Model):
-    """Holes of one diameter around the shell or the journal, evenly spaced."""
+    """Feed holes of equal diameter in the shell or the journal, evenly spaced around it."""
 
     kind: Literal["bores"]
     count: Annotated[int, Count(1, 100, 6)]
     diameter: Length
     axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
-    position: Angle = Field(default=0.0, description="phi of the first bore")
-    on: Literal["shell", "journal"] = Field(default="shell", description="the surface that the bores are in")
+    position: Angle = Field(default=0.0, description="phi of the first feed hole")
+    on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
     pressure: Pressure
     ramp: Ramp = 0.0
 
@@ -94,10 +94,10 @@ Supply = Annotated[NoSupply | CircumferentialGroove | AxialGrooves | Bores | Poc
 
 
 class ColdClearance(Model):
-    """A clearance at the reference temperature and what widens or narrows it when warm, equation (4.24)."""
+    """A clearance at the reference temperature and its change by thermal expansion, equation (4.24)."""
 
     cold: Clearance = Field(description="radial clearance at the reference temperature")
-    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="where `cold` was measured")
+    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="temperature of `cold`")
     shell_temperature: Temperature
     journal_temperature: Temperature
     shell_expansion: Expansion
@@ -111,10 +111,10 @@ class ColdClearance(Model):
 
 
 class ClearanceStep(Model):
-    """A clearance from some time of a run on: the gap widens or narrows at once, and the oil in it stays."""
+    """A clearance from a given time of a run on: the gap changes suddenly, and the oil in it stays."""
 
     time: Duration
-    clearance: Clearance = Field(description="radial, warm, from then on")
+    clearance: Clearance = Field(description="radial, warm, from this time on")
 
 
 def _clearance_form(given: object) -> str:
@@ -127,29 +127,29 @@ AnyClearance = Annotated[
 
 
 class Lobes(Model):
-    """Equal lobes of the shell, whose bores have a larger radius than the journal needs (preload)."""
+    """Equal lobes of the shell, machined with a larger radius than the assembled clearance (preload)."""
 
     count: Annotated[int, Count(2, 12, 3)]
     preload: Preload = Field(
-        description="1 - c_b / c_p: `clearance` gives c_b, that of the assembled bearing where a lobe is narrowest; "
-        "c_p is the machined one of a lobe's bore"
+        description="1 - c_b / c_p: `clearance` is c_b, the assembled clearance at the narrowest place of a lobe; "
+        "c_p is the machined clearance of a lobe"
     )
     position: Angle = Field(default=0.0, description="phi of the middle of the first lobe")
     offset: Fraction = Field(
-        default=0.5, description="where a lobe is narrowest, as a share of its arc from its start, counter-clockwise"
+        default=0.5, description="narrowest place of a lobe, as a share of its arc from its start, counter-clockwise"
     )
 
 
 class FilmGeometry(Model):
-    """The geometry of one film and what surrounds it."""
+    """The geometry of one film, its supply and its ends."""
 
     width: Length = Field(description="axial width of the whole bearing")
     diameter: Length
     given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
-    clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="of a run, in the order of their times")
+    clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
     ends: Literal["free-to-air", "oil-bath"] = "free-to-air"
     supply: Supply = NoSupply()
-    lobes: Lobes | None = Field(default=None, description="of the shell, which is a plain cylinder if not given")
+    lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
     viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
     temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
 
@@ -194,12 +194,12 @@ class FloatingRingBearing(Model):
     inner: RingFilm
     outer: RingFilm
     centrifugal_pressure: bool = Field(
-        default=True, description="whether oil in the channels of the ring is thrown outwards, (4.27) to (4.29)"
+        default=True, description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)"
     )
     channels: Literal["pressure", "coupled"] = Field(
         default="pressure",
-        description="the inner film's bores in the ring: held at their pressure, or coupled to the outer film, so that "
-        "oil that leaves one film enters the other one",
+        description="feed holes of the inner film in the ring: at given pressure, or coupled to the outer film: "
+        "oil that leaves one film enters the other",
     )
 
 
@@ -207,7 +207,7 @@ Bearing = Annotated[SingleFilmBearing | FloatingRingBearing, Field(discriminator
 
 
 class _OneOrMany:
-    """Lets editors know that [bearing] and [[bearing]] are both fine."""
+    """The schema of [bearing] or [[bearing]], for editors."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return handler(source)

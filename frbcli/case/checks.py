@@ -1,7 +1,7 @@
 """Rules that tie several keys of a case together.
 
-They read the tables as the user wrote them, so that they also speak when some other key is at fault: a value that is
-absent or cannot be read is simply not there, and the rules that need it are silent.
+They read the tables as the user wrote them, so that they also work when another key is at fault. A rule is skipped if
+one of its values is absent or cannot be read.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
 def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     inner, outer = (number(table(bearing, side), "diameter", "m") for side in ("inner", "outer"))
     if inner and outer and inner >= outer:
-        problem = f"is {display(inner, 'm')}, not inside of the outer film's {display(outer, 'm')}."
+        problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
         yield Breach((*path, "inner", "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
 
 
@@ -75,7 +75,7 @@ def _names(what: str, named: list[tuple[Path, dict[str, Any]]]) -> Iterator[Brea
     for place, (path, part) in enumerate(named, start=1):
         name = part.get("name", str(place))
         if isinstance(name, str) and name in seen:
-            yield Breach((*path, "name"), f"is the name of another {what}, too.", f"Give each {what} its own name.")
+            yield Breach((*path, "name"), f"is also the name of another {what}.", f"Give each {what} its own name.")
         seen.add(str(name) if isinstance(name, str) else "")
 
 
@@ -87,7 +87,7 @@ def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]])
         if {"modes", "cutoff"} <= set(table(data, "rotor")):
             yield Breach(("rotor", "cutoff"), "is given beside modes.", "Keep one of the two.")
         if len(bearings) < 2:
-            yield Breach(("bearing",), "is there once; a turbocharger's rotor needs two.", "Write [[bearing]] twice.")
+            yield Breach(("bearing",), "is given once; a turbocharger rotor needs two.", "Write [[bearing]] twice.")
         for path, bearing in bearings:
             if "position" not in bearing:
                 yield Breach((*path, "position"), "is missing.", 'Add e.g. position = "80 mm".')
@@ -106,7 +106,7 @@ def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]
     for path, disk in tables(data, "disk"):
         polar, diametral = (number(disk, f"{axis}_inertia", "kg*m^2", 0.0) for axis in ("polar", "diametral"))
         if polar and diametral is not None and polar > 2 * diametral * (1 + 1e-9):
-            problem = "is more than twice the diametral inertia; no body has that."
+            problem = "is more than twice the diametral inertia, which is not possible."
             yield Breach((*path, "polar_inertia"), problem, "Exchange or correct the two.")
     lengths = [number(section, "length", "m") for _, section in tables(data, "shaft")]
     if not lengths or None in lengths:
@@ -127,7 +127,7 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
     if isinstance(displacement, list) and len(displacement) == 2:
         x, y = (number({"": item}, "", NUMBER) for item in displacement)
         if x is not None and y is not None and math.hypot(x, y) >= 1:
-            yield Breach(("start", "displacement"), "is outside of the clearance.", "Its length must be below 1.")
+            yield Breach(("start", "displacement"), "is outside the clearance.", "Its length must be below 1.")
     if "displacement" in start and "position" in start:
         yield Breach(("start", "position"), "is given beside a displacement.", "Keep one of the two.")
     duration, step = number(speed, "duration", "s"), number(table(data, "output"), "step", "s", OUTPUT_STEP)
@@ -140,7 +140,7 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
     whole += number(speed, "down_duration", "s", duration) or 0.0
     if whole / step > MOST_SAMPLES:
         problem = f"makes {whole / step:.3g} samples of one run."
-        yield Breach(("output", "step"), problem, "Lengthen it, or run shorter.")
+        yield Breach(("output", "step"), problem, "Lengthen it, or shorten the run.")
 
 
 def _motion(motion: Mapping[str, Any]) -> Iterator[Breach]:

@@ -1,4 +1,4 @@
-"""What the models object to, in words of somebody who designs machines."""
+"""Validation errors of the models, as faults with a remedy in the terms of the case file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FORMS = {
     "model_attributes_type": ("is not a table.", "Write its keys below a header in brackets."),
     "tuple_type": ("is not a list.", "Write it in brackets: [ , ]."),
     "too_short": ("has too few entries.", "Add what is missing."),
-    "too_long": ("has too many entries.", "Remove what is too much."),
+    "too_long": ("has too many entries.", "Remove the surplus."),
 }
 
 
@@ -35,14 +35,14 @@ OWN: dict[Path, str] = {("film", "theory"): "frbcli.add_bearing", ("film", "cavi
 
 @dataclass(frozen=True)
 class _Place:
-    """Where an objection belongs: the model that owns the key, and the key's field if there is one."""
+    """Where an error belongs: the model that owns the key, and the field of the key if there is one."""
 
     models: tuple[type[Model], ...]
     field: FieldInfo | None
 
 
 def objections(error: ValidationError, data: dict[str, Any]) -> Iterator[Breach]:
-    """Each objection of the models to `data`, with the path of its key in the file."""
+    """Each error of the models in `data`, with the path of its key in the file."""
     for detail in error.errors(include_url=False):
         path = _path(detail["loc"], data)
         if detail["type"] != "missing" and not is_present(path, data):

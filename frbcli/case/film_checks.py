@@ -41,12 +41,12 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     if supply.get("kind") == "bores":
         yield from _bores((*path, "supply"), supply, diameter, width)
     if supply.get("on") == "journal" and "lobes" in film:
-        problem = "are in the shell, the bores in the journal: the film stands still in neither."
+        problem = "are in the shell, and the feed holes in the journal: no frame has both at rest."
         yield Breach((*path, "lobes"), problem, 'Remove them, or write supply.on = "shell".')
 
 
 def _too_thick(path: Path, clearance: float, diameter: float) -> Breach:
-    problem = f"is {display(clearance, 'm')}, no film at a diameter of {display(diameter, 'm')}."
+    problem = f"is {display(clearance, 'm')}, too large for a film at a diameter of {display(diameter, 'm')}."
     return Breach(path, problem, "It is the radial gap, about a thousandth of the radius.")
 
 
@@ -74,7 +74,7 @@ def _lobes(path: Path, lobes: Mapping[str, Any], clearance: float, diameter: flo
         return
     machined = clearance / (1.0 - preload)
     if machined >= THICKEST_MACHINED * diameter / 2:
-        problem = f"makes a machined clearance of {display(machined, 'm')}, no thin film."
+        problem = f"makes a machined clearance of {display(machined, 'm')}, too large for a thin film."
         yield Breach((*path, "preload"), problem, "It is 1 - c_b / c_p, with the assembled clearance c_b.")
 
 
@@ -85,27 +85,25 @@ def _supply(path: Path, supply: Mapping[str, Any], width: float | None, ambient:
         yield Breach((*path, "pressure"), problem, "Pressures are absolute: ambient plus gauge pressure.")
     count, angle = number(supply, "count", NUMBER, 1.0), number(supply, "opening_angle", "rad")
     if count and angle and count * angle >= 2 * math.pi:
-        yield Breach((*path, "opening_angle"), f"leaves no film between {count:.0f} grooves.", "Make it smaller.")
+        yield Breach((*path, "opening_angle"), f"leaves no land between {count:.0f} grooves.", "Make it smaller.")
     for key in ("width", "diameter"):  # of a pocket, of a bore
         size = number(supply, key, "m")
         if size and width and size > width:
             yield Breach((*path, key), f"is wider than the bearing ({display(width, 'm')}).", "Make it narrower.")
 
 
-def _bores(
-    path: Path, supply: Mapping[str, Any], diameter: float | None, width: float | None
-) -> Iterator[Breach]:
+def _bores(path: Path, supply: Mapping[str, Any], diameter: float | None, width: float | None) -> Iterator[Breach]:
     count, bore = number(supply, "count", NUMBER, 1.0), number(supply, "diameter", "m")
     place = number(supply, "axial_position", NUMBER, 0.5)
     if count and bore and diameter and count * bore >= math.pi * diameter:
-        problem = f"makes {count:.0f} bores overlap on a circumference of {display(math.pi * diameter, 'm')}."
-        yield Breach((*path, "diameter"), problem, "Make it smaller, or take fewer bores.")
+        problem = f"makes {count:.0f} feed holes overlap on a circumference of {display(math.pi * diameter, 'm')}."
+        yield Breach((*path, "diameter"), problem, "Make it smaller, or take fewer feed holes.")
     if bore and width and bore <= width and place is not None and 0 <= place <= 1:
         over = 0.5 * bore - width * min(place, 1.0 - place)
         if over > 0.0:
-            problem = f"puts the bores {display(over, 'm')} outside of the film."
+            problem = f"places the feed holes {display(over, 'm')} outside the film."
             least = 0.5 * bore / width
-            remedy = f"Take a value from {least:.3g} to {1.0 - least:.3g}, or smaller bores."
+            remedy = f"Take a value from {least:.3g} to {1.0 - least:.3g}, or smaller feed holes."
             yield Breach((*path, "axial_position"), problem, remedy)
 
 

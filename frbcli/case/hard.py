@@ -1,4 +1,4 @@
-"""The list of hard cases that comes along: shipped cases with settings that bring a program to its limits."""
+"""The list of hard cases: shipped cases with settings at the limits of models and numerics."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ WITHIN_s = 600.0  # compilation included, where nothing is compiled yet
 class HardCase:
     """One hard case and how it ends.
 
-    topic: the group that it belongs to; hard: what is hard about it; command: "runup", "rundown", "rotation", "squeeze"
-    or "whirl"; base: a shipped case; settings: KEY=VALUE each. end: status that it has to end with, "input-error" for a
-    case that is refused; why: the cause, where the end is an early one; says: words that its message must have;
+    topic: the group that it belongs to; hard: its difficulty; command: "runup", "rundown", "rotation", "squeeze"
+    or "whirl"; base: a shipped case; settings: KEY=VALUE each. end: expected status, "input-error" for a
+    case that is refused; why: the cause of an early end; says: words that its message must have;
     events: the kinds of all events in their order, with the film's name if there are several, None if they do not
-    matter; fine: settings that make it the reference, () for none; quick: whether it takes a moment only; within_s:
-    wall time after which it counts as hanging.
+    matter; fine: settings of the reference, () for none; quick: whether it takes a second or so; within_s:
+    limit of the wall time.
     """
 
     name: str
@@ -48,7 +48,7 @@ class HardCase:
 
     @property
     def words(self) -> str:
-        """The command line that does the same."""
+        """The equivalent command line."""
         return shlex.join(["frb", self.command, self.base, *(w for text in self.settings for w in ("--set", text))])
 
     def case(self, fine: bool = False) -> Case:
@@ -58,9 +58,9 @@ class HardCase:
 
 @dataclass(frozen=True)
 class Reference:
-    """What the fine case gave. values: by name, at times_s of a run, and one number each of a kinematic test; until_s:
-    how far a run can be compared; cpu_s: what it cost; change: how far it may be off itself, told by a second one on
-    less of a mesh."""
+    """The result of the fine case. values: by name, at times_s of a run, one number each of a kinematic test; until_s:
+    end of the comparison of a run; cpu_s: CPU time; change: reference uncertainty, from a second reference on a coarser
+    mesh."""
 
     status: str
     values: dict[str, list[float]]
@@ -71,7 +71,7 @@ class Reference:
 
 
 def hard_cases(names: Sequence[str] = ()) -> tuple[HardCase, ...]:
-    """The hard cases of these names, all of them for (). Raises InputError for names that there are not."""
+    """The hard cases of these names, all of them for (). Raises InputError for unknown names."""
     entries = tomllib.loads(_folder().joinpath(LIST).read_text(encoding="utf-8"))["case"]
     found = {entry["name"]: _hard_case(entry) for entry in entries}
     unknown = [name for name in names if name not in found]

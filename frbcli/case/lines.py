@@ -1,4 +1,4 @@
-"""Where the keys of a TOML text stand: its parser does not say, and a fault without its line is hard to find."""
+"""The lines of the keys of a TOML text, which its parser does not report and faults need."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def key_lines(text: str) -> dict[Path, int]:
 
 @dataclass
 class _Scanner:
-    """Walks once over a text that is known to be valid; knows just enough of TOML to see keys."""
+    """Reads a text that is known to be valid once, for its keys alone."""
 
     text: str
     at: int = 0

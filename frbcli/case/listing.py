@@ -1,4 +1,4 @@
-"""A case as a flat list of its values, for people and for tables."""
+"""A case as a flat list of its values, for tables."""
 
 from __future__ import annotations
 

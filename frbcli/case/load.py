@@ -1,4 +1,4 @@
-"""From a file to a Case, or to every fault of the file at once."""
+"""From a file to a Case, or to all faults of the file."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def load_case_text(
 ) -> Case:
     """The case in the TOML `text` with `settings` applied.
 
-    name: what the case is called if the text does not say; source: what errors call the text, `name` if not given;
-    folder: where a rotor file is sought. Raises InputError with every fault of text and settings.
+    name: of the case, if the text has none; source: name of the text in errors, `name` if not given;
+    folder: of a rotor file. Raises InputError with every fault of text and settings.
     """
     source = source or name
     try:
@@ -63,15 +63,15 @@ def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Pa
     """The case in tables that have the keys of a case file, checked as a file is.
 
     data: nested mappings and sequences; quantities are numbers in SI or text with a unit; a table may also be a model
-    of `frbcli.case`; what is None is not given. name: what the case is called if the data do not say; folder: where a
-    rotor file is sought. Raises InputError with every fault of the data.
+    of `frbcli.case`; None stands for a key that is not given. name: of the case, if the data have none; folder: of a
+    rotor file. Raises InputError with every fault of the data.
     """
     try:
         tables = _plain(data)
     except TomlFault as error:
         raise InputError(name, (error.fault,)) from None
     if not isinstance(tables, dict):
-        raise InputError(name, (Fault("data", "", None, "is no dict.", "Give a table of the case's tables."),))
+        raise InputError(name, (Fault("data", "", None, "is not a dict.", "Give a table of the case's tables."),))
     case, tables, found = _checked(tables, name, folder)
     if found or case is None:
         raise _refused(name, _located(found, tables, (), ""))
@@ -87,7 +87,7 @@ def describes(text: str, case: Case) -> bool:
 
 
 def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case | None, dict[str, Any], list[Breach]]:
-    """The case in `data`, None if there is none; its tables, with name and rotor file; everything that is wrong."""
+    """The case in `data`, None if there is none; its tables, with name and rotor file; all faults."""
     data = data if "name" in data else {"name": _printable(name), **data}
     data, unread = with_rotor_file(data, Path(folder))
     case, found = _validate(data)
@@ -146,7 +146,7 @@ def _unreadable(source: str | Path, problem: str, remedy: str) -> InputError:
 
 
 def _apply(data: dict[str, Any], settings: Sequence[str]) -> tuple[dict[str, Any], list[lines.Path], list[Fault]]:
-    """`data` with the settings, the paths they set, and the faults of the settings themselves."""
+    """`data` with the settings, their paths, and their faults."""
     overridden: list[lines.Path] = []
     faults: list[Fault] = []
     for setting in settings:
@@ -159,7 +159,7 @@ def _apply(data: dict[str, Any], settings: Sequence[str]) -> tuple[dict[str, Any
 
 
 def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
-    """The case in `data`, None if the models object to it, and everything that is wrong."""
+    """The case in `data`, None if the models reject it, and all faults."""
     case, guess = None, data
     found: dict[lines.Path, Breach] = {}  # one per key: the first says why the value cannot be taken at all
     try:

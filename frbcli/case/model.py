@@ -1,4 +1,4 @@
-"""The base of all models of a case: frozen, no unknown keys, no values from nowhere."""
+"""The base of all models of a case: frozen, without unknown keys."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values that no usual rotor has: mostly a slip of a unit, and refused unless the case confirms them by `confirm`."""
+"""Values outside the usual range, mostly by a wrong unit: refused unless the case confirms them by `confirm`."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from frbcli.case.tables import Breach, number, table, tables
 from frbcli.film.operating import BRASS, RING_SPEED, STEEL, ring_rotation_strains, shaft_rotation_strain
 from frbcli.units import SPEED, display, readable
 
-FASTEST_SURFACE = 500.0  # m/s; steel shafts do not bear more
-LARGEST_GROWTH = 0.5  # of the clearance; growth by turning is left out of the films
-THINNEST_FILM = 1e-6  # m; surfaces are as rough as that
-THICKEST_FILM = 0.1  # of the radius; the Reynolds equation is the limit of a thin film
+FASTEST_SURFACE = 500.0  # m/s; limit of the strength of steel shafts
+LARGEST_GROWTH = 0.5  # of the clearance; centrifugal growth is not modelled
+THINNEST_FILM = 1e-6  # m; the roughness of surfaces
+THICKEST_FILM = 0.1  # of the radius; the Reynolds equation is for thin films
 
 
 @dataclass(frozen=True)
 class _Doubt:
-    """What has to be confirmed: the key that is probably wrong, the name of the confirmation, and what is odd."""
+    """A value to be confirmed: the key that is probably wrong, the name of the confirmation, and the problem."""
 
     path: Path
     name: str
@@ -43,7 +43,7 @@ class _Speed:
 
 
 def implausible(data: Mapping[str, Any]) -> Iterator[Breach]:
-    """Every value of a case's tables that is odd and not confirmed."""
+    """Every implausible value of the tables of a case that is not confirmed."""
     given = data.get("confirm")
     confirmed = given if isinstance(given, list) else []
     doubts: dict[Path, list[_Doubt]] = {}
@@ -57,7 +57,7 @@ def implausible(data: Mapping[str, Any]) -> Iterator[Breach]:
 def _remedy(found: list[_Doubt], value: object) -> str:
     names = ", ".join(f'"{doubt.name}"' for doubt in found)
     bare = "" if isinstance(value, str | dict) else f" A number without a unit is in {readable(found[0].unit)}."
-    return f"Correct speed, diameter or clearance, or confirm it above all tables: confirm = [{names}].{bare}"
+    return f"Correct speed, diameter or clearance, or confirm it at the top of the file: confirm = [{names}].{bare}"
 
 
 def _doubts(data: Mapping[str, Any]) -> Iterator[_Doubt]:
@@ -73,12 +73,12 @@ def _doubts(data: Mapping[str, Any]) -> Iterator[_Doubt]:
         for side, growth in growths.items():
             yield from _film((*path, side) if side else path, table(bearing, side) if side else bearing, growth, top)
     if top is not None and fastest > FASTEST_SURFACE:
-        problem = f"turns the surface of a journal with {fastest:.4g} m/s, beyond {FASTEST_SURFACE:g} m/s"
+        problem = f"gives a surface speed of the journal of {fastest:.4g} m/s, above {FASTEST_SURFACE:g} m/s"
         yield _Doubt(top.path, "surface-speed", problem, SPEED)
 
 
 def _film(path: Path, film: Mapping[str, Any], growth: float, top: _Speed | None) -> Iterator[_Doubt]:
-    """growth: what turning adds to the clearance, in m."""
+    """growth: change of the clearance by centrifugal growth, in m."""
     diameter = _size(film, "diameter", "m")
     clearances = [((*path, "clearance"), warm_clearance(film, diameter))]
     clearances += [((*path, *at, "clearance"), _size(step, "clearance", "m"))
@@ -90,15 +90,15 @@ def _film(path: Path, film: Mapping[str, Any], growth: float, top: _Speed | None
             problem = f"is {display(clearance, 'm')}, below {display(THINNEST_FILM, 'm')}"
             yield _Doubt(where, "clearance", problem, "m")
         if diameter and clearance > THICKEST_FILM * diameter / 2:
-            problem = f"is {display(clearance, 'm')}, above a tenth of the radius: no thin film"
+            problem = f"is {display(clearance, 'm')}, above a tenth of the radius, too large for a thin film"
             yield _Doubt(where, "clearance", problem, "m")
         if top is not None and abs(growth) > LARGEST_GROWTH * clearance:
-            problem = f"changes by {growth / clearance:+.0%} as shafts and rings grow at {display(top.value, SPEED)}"
+            problem = f"changes by {growth / clearance:+.0%} by centrifugal growth at {display(top.value, SPEED)}"
             yield _Doubt(where, "gap-growth", problem, "m")
 
 
 def _journal_growth(bearing: Mapping[str, Any], top: _Speed | None) -> dict[str, float]:
-    """What turning adds to the clearance of a bearing with one film."""
+    """Change of the clearance of a bearing with one film by centrifugal growth."""
     diameter = _size(bearing, "diameter", "m")
     if top is None or not diameter:
         return {"": 0.0}
@@ -106,7 +106,7 @@ def _journal_growth(bearing: Mapping[str, Any], top: _Speed | None) -> dict[str,
 
 
 def _ring_growths(bearing: Mapping[str, Any], top: _Speed | None) -> dict[str, float]:
-    """What turning adds to the clearances inside and outside of a floating ring."""
+    """Changes of the clearances inside and outside of a floating ring by centrifugal growth."""
     inner, outer = (_size(table(bearing, side), "diameter", "m") for side in ("inner", "outer"))
     if top is None or not inner or not outer:
         return {"inner": 0.0, "outer": 0.0}
@@ -123,7 +123,7 @@ def _top_speed(data: Mapping[str, Any]) -> _Speed | None:
 
 
 def _size(values: Mapping[str, Any], key: str, unit: str) -> float | None:
-    """How large a value is; None where it is no quantity, and the models refuse it."""
+    """The absolute value; None where it is no quantity and the models refuse it."""
     value = number(values, key, unit)
     return abs(value) if value is not None and abs(value) <= LARGEST else None
 

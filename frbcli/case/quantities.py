@@ -1,6 +1,6 @@
 """The kinds of values a case is made of. Each reads what the user wrote and holds SI.
 
-A value that does not fit raises ValueFault, which says what is wrong and what to write.
+A value that does not fit raises ValueFault with problem and remedy.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFaul
 _NUMBER_AND_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*\S.*$"
 _NUMBER_ONLY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*%?\s*$"
 LABEL_LENGTH = 200
-# No length, mass or viscosity in SI is outside of this; a slip of the unit prefix by far is, and overflows later.
+# Limit of any quantity in SI; larger values come from a wrong unit and would overflow.
 LARGEST = 1e15
 SMALLEST = 1e-15
 
@@ -43,7 +43,7 @@ class Quantity:
         """The SI value of `given`. Raises ValueFault if it is no such quantity or out of bounds."""
         value = quantity(given, self.unit, self.example)
         if value and not SMALLEST <= abs(value) <= LARGEST:
-            raise ValueFault(f"is {display(value, self.unit)}, beyond what any machine has.", self.as_remedy())
+            raise ValueFault(f"is {display(value, self.unit)}, which is out of range.", self.as_remedy())
         for bad, words, bound in (
             (self.above is not None and value <= self.above, "greater than", self.above),
             (self.least is not None and value < self.least, "at least", self.least),
@@ -56,7 +56,7 @@ class Quantity:
         return value
 
     def as_remedy(self) -> str:
-        """What to write instead, by example."""
+        """The remedy, with an example."""
         return f"Write e.g. {self.written_example()}."
 
     def written_example(self) -> str:
@@ -126,7 +126,7 @@ def _printable(text: str) -> str:
 
 def _identifier(text: str) -> str:
     if not re.fullmatch(r"[A-Za-z0-9_-]{0,40}", text):
-        raise ValueFault("is no name for a column.", "Use letters, digits, - and _, 40 at most.")
+        raise ValueFault("is not a valid name.", "Use letters, digits, - and _, 40 at most.")
     return text
 
 

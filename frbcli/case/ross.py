@@ -29,7 +29,7 @@ UNMODELLED = ("axial_force", "torque")
 # What a case file demands of the same quantities.
 QUANTITIES = {"L": Length, "odl": Length, "odr": Length, "idl": InnerDiameter, "idr": InnerDiameter, "rho": Density,
               "E": Modulus, "G_s": Modulus, "m": Mass, "Ip": Inertia, "Id": Inertia}  # fmt: skip
-MOST_POISSON = 0.5 + 1e-6  # of a material that keeps its volume
+MOST_POISSON = 0.5 + 1e-6  # of an incompressible material
 
 KEY = ("rotor", "file")
 UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m^3", "youngs_modulus": "Pa",
@@ -39,14 +39,14 @@ WRITE = "Write it with Rotor.save of ROSS."
 
 
 class _Fault(Exception):
-    """What keeps a file from being read: problem and remedy."""
+    """Problem and remedy of a file that cannot be read."""
 
 
 def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with shaft and disks of its rotor.file in place of that key, and what is wrong with it.
+    """The tables of a case with shaft and disks of its rotor.file in place of that key, and its faults.
 
     folder: that a relative path counts from. A [[disk]] of the case with the name of one of the file's completes it,
-    e.g. by an unbalance; others come in addition. Where something is wrong the tables are returned as they are.
+    e.g. by an unbalance; others come in addition. With faults the tables are returned unchanged.
     """
     rotor = table(data, "rotor")
     name = rotor.get("file")
@@ -96,7 +96,7 @@ def _rotor(data: Mapping[str, Any]) -> tuple[list[dict[str, Any]], list[dict[str
     elements = [(name, name.split("_")[0], element) for name, element in data.items() if isinstance(element, dict)]
     for name, kind, _ in elements:
         if kind in HEAVY:
-            raise _Fault(f'has the element "{name}", which frb does not model.', "Turn it into a disk in ROSS.")
+            raise _Fault(f'has the element "{name}", which frb does not model.', "Replace it by a disk in ROSS.")
     shaft = sorted((_Element(name, element) for name, kind, element in elements if kind in SHAFT), key=_node)
     if not shaft:
         raise _Fault("has no shaft elements.", WRITE)
@@ -112,7 +112,7 @@ def _rotor(data: Mapping[str, Any]) -> tuple[list[dict[str, Any]], list[dict[str
 
 
 def _with_units(found: dict[str, Any]) -> dict[str, Any]:
-    """A table as people write it: what the file has in SI is told from a number whose unit was forgotten."""
+    """A table with units, so that SI values of the file do not look like numbers without a unit."""
     return {key: f"{value!r} {UNITS[key]}" if key in UNITS else value for key, value in found.items()}
 
 
@@ -153,7 +153,7 @@ def _cylinders(element: _Element) -> Iterator[dict[str, Any]]:
     outer, inner = element.number("odl"), element.number("idl")
     growth = element.number("odr", outer) - outer, element.number("idr", inner) - inner
     if inner >= outer or inner + growth[1] >= outer + growth[0]:
-        raise _Fault(f'has no wall in "{element.name}": the inner diameter is not below the outer one.', REMEDY)
+        raise _Fault(f'has no thickness in "{element.name}": the inner diameter is not below the outer one.', REMEDY)
     material = _Element(f"{element.name}.material", table(element.values, "material"))
     modulus = material.number("E")
     poisson = modulus / (2 * material.number("G_s")) - 1
@@ -189,7 +189,7 @@ def _disk(element: _Element, positions: list[float]) -> dict[str, Any]:
     tag = element.values.get("tag") or element.name
     polar, diametral = element.number("Ip"), element.number("Id")
     if polar > 2 * diametral * (1 + 1e-9):
-        raise _Fault(f'has an Ip in "{element.name}" of more than twice Id; no body has that.', REMEDY)
+        raise _Fault(f'has an Ip in "{element.name}" of more than twice Id, which is not possible.', REMEDY)
     return {
         "name": re.sub(r"[^A-Za-z0-9_-]", "-", str(tag))[:40],
         "position": positions[int(node)],

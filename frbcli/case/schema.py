@@ -1,4 +1,4 @@
-"""A case: everything that a user says about a machine and a run, frozen, in SI.
+"""A case: one machine and one run as the user describes them, frozen, in SI.
 
 Keys of the file that are no Python words have other attribute names: `from` and `to` of [speed] are `start` and `end`,
 `two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `bearings`, [[disk]] is `disks`. `clearance` and
@@ -52,7 +52,7 @@ from frbcli.units import NUMBER
 ATMOSPHERE = 1e5
 DEFAULT_HOLD = 0.5
 OUTPUT_STEP = 5e-5  # resolves 10 kHz
-CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; the films are computed up to here
+CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; limit of the films
 STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
 
@@ -80,7 +80,7 @@ class Oil(Model):
 
     given_viscosity: Viscosity | None = Field(default=None, alias="viscosity", description="dynamic viscosity, warm")
     vogel: Vogel | None = None
-    temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law alone")
+    temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law")
     density: Density = 850.0
     ambient_pressure: Pressure = ATMOSPHERE
     cavitation_pressure: Pressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
@@ -108,17 +108,18 @@ class FilmModel(Model):
     )
     cavitation: Cavitation = "half-sommerfeld"
     cavitation_factor: Literal["global", "local", "none"] = Field(
-        default="global", description="how missing oil lowers the torque: by its mean (4.46), place by place, or not"
+        default="global",
+        description="torque of missing oil: reduced by the mean oil fraction (4.46), the local one, or not",
     )
     torque: Literal["all", "couette", "simple"] = Field(
-        default="all", description="on floating rings: both terms of (3.17), the first one, or formula (4.6)"
+        default="all", description="on floating rings: both terms of (3.17), the first term, or formula (4.6)"
     )
-    coupling: Coupling = Field(default="auto", description="how rotor and films are advanced together")
+    coupling: Coupling = Field(default="auto", description="coupling of rotor and films in the time integration")
     grid: Literal["fixed", "half-speed"] = Field(
-        default="fixed", description="cells stand still, or turn with the mean speed of journal and shell (plain gaps)"
+        default="fixed", description="cells at rest, or turning with the mean speed of journal and shell (plain gaps)"
     )
     solution: Literal["auto", "table", "cells"] = Field(
-        default="auto", description="in runs: tabulated before them where that is possible, or solved on cells"
+        default="auto", description="in runs: tabulated before the run where possible, or solved on cells"
     )
 
     if TYPE_CHECKING:  # the tables of the laws, which these declare
@@ -127,7 +128,7 @@ class FilmModel(Model):
 
     @property
     def bearing_model(self) -> str:
-        """The name of the bearing model that `theory` chooses, "" for a theory of the program."""
+        """The name of the bearing model in `theory`, "" for a theory of the program."""
         return "" if self.theory in THEORIES else self.theory
 
     def given(self, cavitation: str) -> Any:
@@ -155,27 +156,27 @@ class SpeedProfile(Model):
 
 
 class Motion(Model):
-    """A kinematic bearing test: the journal is moved as given here."""
+    """A kinematic test of a bearing: the motion of the journal is given."""
 
     eccentricity: Eccentricity | None = None
     angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
     load: Force | None = Field(default=None, description="in place of the displacement: a resting position")
     speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is at rest")
-    eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: how fast the eccentricity grows")
-    whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: how fast the displacement turns")
+    eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: rate of the eccentricity")
+    whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: whirl speed of the displacement")
     frequency: Speed | None = Field(default=None, description="of squeeze or whirl")
     periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = 3.0
 
 
 class Start(Model):
-    """Where the journal is when a run starts."""
+    """Position of the journal at the start of a run."""
 
     position: Literal["centre", "resting"] = "centre"
     displacement: tuple[Displacement, Displacement] | None = Field(default=None, description="x, y over clearance")
 
 
 class Contact(Model):
-    """What happens when the journal reaches the shell."""
+    """Contact of journal and shell."""
 
     policy: Literal["stop", "elastic"] = "stop"
     eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = CONTACT_BEGINS
@@ -183,7 +184,7 @@ class Contact(Model):
 
 
 class Accuracy(Model):
-    """How exact the answer has to be: one target, or mesh and tolerance by hand."""
+    """Accuracy of the result: one target, or mesh and tolerance."""
 
     target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = 1e-3
     mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
@@ -194,12 +195,12 @@ class Accuracy(Model):
     )
     steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = STEPS_PER_REVOLUTION
     macro_step: Annotated[float, Quantity("s", "1e-6 s", above=0)] = Field(
-        default=MACRO_STEP, description="of a co-simulation, the longest"
+        default=MACRO_STEP, description="longest one of a co-simulation"
     )
 
 
 class Output(Model):
-    """What a run writes."""
+    """Output of a run."""
 
     step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = OUTPUT_STEP
 
@@ -208,14 +209,14 @@ _UNCOMPUTED = {"name": "", "title": "", "confirm": ()}
 
 
 class Case(Model):
-    """One machine and one run, as the user wrote them."""
+    """One machine and one run, as the user describes them."""
 
     name: Label = Field(default="", description="short name for results; the file's name if not given")
     title: Label = ""
     confirm: tuple[Confirmation, ...] = Field(
         default=(),
-        description="what is meant although no usual rotor has it, and refused if not confirmed: the surface of a "
-        "journal faster than 500 m/s, a clearance that changes by more than half as turning parts grow, one below 1 um "
+        description="values outside the usual range that are intended; refused if not confirmed: a surface speed of a "
+        "journal above 500 m/s, a clearance that changes by more than half by centrifugal growth, one below 1 um "
         "or above a tenth of the radius",
     )
     given_rotor: Rotor | None = Field(
@@ -240,8 +241,7 @@ class Case(Model):
     def source_text(self) -> str:
         """The case as TOML text, all overrides included; loading it gives this case again.
 
-        It is the text that the case was read from, as long as that describes it: one made or changed in Python has a
-        text made from its values.
+        It is the text that the case was read from; a case made or changed in Python has a text made from its values.
         """
         if self._read is not None and self._read[1] == self.__dict__:
             return self._read[0]
@@ -254,11 +254,11 @@ class Case(Model):
         return case
 
     def __eq__(self, other: object) -> bool:
-        """Whether all values are equal, wherever they came from."""
+        """Whether all values are equal."""
         return isinstance(other, Case) and self.__dict__ == other.__dict__
 
     def same_run(self, other: Case) -> bool:
-        """Whether `other` is the same machine and run: equal in all that is computed from, so not in its labels."""
+        """Whether `other` is the same machine and run; labels may differ."""
         return self.model_copy(update=_UNCOMPUTED) == other.model_copy(update=_UNCOMPUTED)
 
     @property
@@ -276,7 +276,7 @@ class Case(Model):
         return self.given_speed
 
     def _without(self, key: str) -> InputError:
-        problem = "is missing: the case is one of kinematic tests, with [motion]."
+        problem = "is missing: the case is for kinematic tests, with [motion]."
         remedy = f"Add the table [{key}], or call `frb rotation`, `frb squeeze` or `frb whirl`."
         return InputError(self.name or "case", (Fault(key, "", None, problem, remedy),))
 

@@ -60,7 +60,7 @@ def _insert(table: dict[str, Any], parts: list[str], value: Any, above: Path) ->
         return _insert(inner[index], rest[1:], value, (*path, index))
     if not isinstance(inner, dict):
         whole = ".".join(map(str, path))
-        raise _refuse(f"{whole}.{'.'.join(rest)}", f"is set inside of {whole}, which is no table.", f"Set {whole}.")
+        raise _refuse(f"{whole}.{'.'.join(rest)}", f"is set inside {whole}, which is not a table.", f"Set {whole}.")
     table[head] = inner = dict(inner)
     return _insert(inner, rest[1:] if rest[0] == "0" and len(rest) > 1 else rest, value, path)
 

@@ -1,4 +1,4 @@
-"""The cases that come along with frb."""
+"""The shipped cases."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def shipped_cases() -> dict[str, str]:
 def find_shipped(name: str) -> str:
     """The text of the shipped case `name`. Raises InputError, which suggests the nearest name, if there is none."""
     if name not in shipped_names():
-        raise InputError(name, (Fault("CASE", name, None, "is no shipped case.", nearest(name)),))
+        raise InputError(name, (Fault("CASE", name, None, "is not a shipped case.", nearest(name)),))
     return _text(name)
 
 
@@ -30,7 +30,7 @@ def shipped_names() -> tuple[str, ...]:
 
 
 def nearest(name: str) -> str:
-    """A remedy for a name that is not there."""
+    """A remedy for an unknown name."""
     close = difflib.get_close_matches(name, shipped_names(), n=1, cutoff=0.5)
     return f'Did you mean the shipped case "{close[0]}"?' if close else "`frb cases` lists the shipped cases."
 
@@ -40,7 +40,7 @@ def _text(name: str) -> str:
 
 
 def shipped_folder() -> Traversable:
-    """Where they are: inside of an installed package; beside the package in a checkout or an editable installation."""
+    """Their directory: inside an installed package; beside the package in a checkout or an editable installation."""
     package = files("frbcli")
     installed = package.joinpath("shipped_cases")
     return installed if installed.is_dir() else Path(str(package)).parent / "cases"

@@ -1,4 +1,4 @@
-"""The tables of a case file as the user wrote them, for the rules that read them; and what such a rule finds."""
+"""The tables of a case file as the user wrote them, and the breaches that the rules find in them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from frbcli.units import ValueFault, quantity
 
 @dataclass(frozen=True)
 class Breach:
-    """A rule that is broken: the key to change, what is wrong, and the remedy."""
+    """A rule that is broken: the key to change, the problem, and the remedy."""
 
     path: Path
     problem: str

@@ -53,6 +53,6 @@ def _written(value: Any, unit: str | None) -> Any:
 
 
 def _with_unit(value: float, unit: str) -> str:
-    """As people write it where that is exact, else in SI with all digits."""
+    """With a usual unit where that is exact, else in SI with all digits."""
     shown = display(value, unit)
     return shown if quantity(shown, unit) == value else f"{value!r} {readable(unit)}"

@@ -53,10 +53,12 @@ def adopt_models(film: type[Model]) -> None:
 def check_model(model: BearingModel, film: type[Model]) -> None:
     """Raises InputError unless a bearing model can be added; its functions are compiled here."""
     if not isinstance(model, BearingModel):
-        fault = Fault("model", repr(model)[:80], None, "is no BearingModel.", "Make one of frbcli.BearingModel.")
+        fault = Fault("model", repr(model)[:80], None, "is not a BearingModel.", "Make one of frbcli.BearingModel.")
         raise InputError("bearing model", (fault,))
     if not (isinstance(model.name, str) and _NAME.fullmatch(model.name)):
-        raise wrong(model, "name", "is not made of small letters and -.", 'Write e.g. name = "squeeze-film-damper".')
+        raise wrong(
+            model, "name", "has other characters than small letters and -.", 'Write e.g. name = "squeeze-film-damper".'
+        )
     others = {
         name: field
         for name, field in film.__pydantic_fields__.items()
@@ -66,7 +68,7 @@ def check_model(model: BearingModel, film: type[Model]) -> None:
     if {model.name, attribute(model)} & taken:
         raise wrong(model, "name", "is that of a key or model of the program.", "Choose another one.")
     if not isinstance(model.label, str) or not model.label.isprintable():
-        raise wrong(model, "label", "is no text.", "Write what pictures call the model.")
+        raise wrong(model, "label", "is not text.", "Write the name of the model in pictures.")
     _check_keys(model)
     from frbcli.film.bearing_model.compiled import compiled_model  # numba takes longer to import than a case to read
 
@@ -77,10 +79,10 @@ def _check_keys(model: BearingModel) -> None:
     seen = set(DIMENSIONS)
     for key in model.keys:
         if not (isinstance(key, Key) and _PARAMETER.fullmatch(key.name)):
-            raise wrong(model, "keys", "are no BearingKeys with names.", 'Write e.g. BearingKey("depth", 1.0).')
+            raise wrong(model, "keys", "are not BearingKeys with names.", 'Write e.g. BearingKey("depth", 1.0).')
         if key.name in seen:
-            remedy = "Choose another one: the functions take it beside those of the bearing and of other keys."
-            raise wrong(model, f"keys.{key.name}", "is a name that is there already.", remedy)
+            remedy = "Choose another one: the record of the bearing has one field for each name."
+            raise wrong(model, f"keys.{key.name}", "is already the name of another field.", remedy)
         seen.add(key.name)
 
 
@@ -93,7 +95,7 @@ def values_of(model: BearingModel, film: Any) -> tuple[float, ...]:
         given = getattr(film, attribute(model))
         return tuple(_number(key, getattr(given, key.name)) for key in model.keys)
     except (AttributeError, ValueError):
-        problem = "has not the keys of the bearing model: the case was read before that was added."
+        problem = "does not have the keys of the bearing model: the case was read before the model was added."
         raise InputError("case", (Fault(f"film.{model.name}", "", None, problem, "Read the case again."),)) from None
 
 

@@ -1,4 +1,4 @@
-"""TOML in and out: parse with a fault for what is no TOML, and write tables as text again."""
+"""Read TOML, with a fault for text that is not TOML, and write tables as TOML."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LONGEST_KEY = DEEPEST  # dots; a case has three, and tomllib takes minutes for s
 
 
 class TomlFault(Exception):
-    """A text or a setting that cannot be read; carries its one fault."""
+    """A text or a setting that cannot be read, with its fault."""
 
     def __init__(self, fault: Fault) -> None:
         self.fault = fault
@@ -30,14 +30,14 @@ def parse(text: str) -> dict[str, Any]:
     """The tables of `text`. Raises TomlFault."""
     for line, content in enumerate(text.split("\n"), 1):
         if content.count(".") > LONGEST_KEY and _has_long_key(content):
-            raise TomlFault(Fault("text", "", line, "has a key of very many parts.", "Lines read: key = value."))
+            raise TomlFault(Fault("text", "", line, "has a key with too many dots.", "Write: key = value."))
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         found = _LINE.search(str(error))
         line = int(found.group(1)) if found else text.count("\n") + 1
         problem = f"is not TOML: {_LINE.sub('', str(error)).replace(' (at end of document)', ' at the end')}."
-        raise TomlFault(Fault("text", "", line, problem, 'Lines read: key = value; text stands in "quotes".')) from None
+        raise TomlFault(Fault("text", "", line, problem, 'Write: key = value, with text in "quotes".')) from None
     except RecursionError:
         raise _too_deep() from None
     except ValueError as error:  # whole numbers of thousands of digits, dates like 2000-99-99

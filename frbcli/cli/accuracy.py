@@ -1,4 +1,4 @@
-"""`frb accuracy`: what a more exact answer costs."""
+"""`frb accuracy`: cost against error."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ COLUMNS = ("", "film", "tol.", "CPU", "max", "rms", "onset", "thr.", "force")
 EXPLANATION = (
     "* choice of the plan, + on Pareto's front; film: short bearing, or elements of a\n"
     "finite one; tol.: local error of a step; CPU: time in s; max, rms: error of the\n"
-    "eccentricity; onset: error of the rotor speed at which the whirl begins in Hz,\n"
-    "thr.: of that from which on it grows by linear stability; force: relative error\n"
-    "of the film forces."
+    "eccentricity; onset: error of the rotor speed at the onset of whirl, in Hz;\n"
+    "thr.: error of the linear threshold, in Hz; force: relative error of the\n"
+    "film forces."
 )
-RESOLVED = 0.01  # Hz; two decimals tell no more
+RESOLVED = 0.01  # Hz; resolution of the table
 
 
 @click.command()
@@ -76,8 +76,10 @@ def command(
 
 def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     several = len({item.rung.coupling for item in found.ladder}) > 1
-    rows = [_cells(item, several, ("*" if item.planned else "") + ("+" if item in found.front else ""))
-            for item in found.ladder]
+    rows = [
+        _cells(item, several, ("*" if item.planned else "") + ("+" if item in found.front else ""))
+        for item in found.ladder
+    ]
     terminal.table(f"{found.case.title or found.case.name}, first {found.until_s:g} s", COLUMNS, rows)
     terminal.result(EXPLANATION)
     reference, change = found.reference.rung, found.reference.error
@@ -88,8 +90,8 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     )
     for item in (item for item in found.ladder if item.planned):
         stated = item.stated.get("eccentricity")
-        told = "" if stated is None else f", its error is stated as {short_number(stated)}"
-        terminal.result(f"the choice of the plan costs {found.above_front():.2g} times the front{told}.")
+        told = "" if stated is None else f", its stated error is {short_number(stated)}"
+        terminal.result(f"the choice of the plan costs {found.above_front():.2g} times Pareto's front{told}.")
     ended = {item.error.until_s for item in found.ladder} - {found.until_s}
     if ended:
         terminal.result(f"errors of the eccentricity until {min(ended):.4g} s, where a whirl begins to grow.")

@@ -1,4 +1,4 @@
-"""`frb cases`: the cases that come along, to read, to copy and to change."""
+"""`frb cases`: the shipped cases, to print and to copy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from frbcli.errors import Fault, InputError
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="The hard cases in place of the others.")
-@click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and say how each ended.")
+@click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and report how each ended.")
 @output_options
 def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool, terminal: Terminal) -> int | None:
     """List the shipped cases; with NAME print that case's text, or copy it with -o FILE."""
@@ -67,7 +67,7 @@ def _write(text: str, output: Path) -> None:
         with output.open("x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError:
-        problem, remedy = "is there already.", "Name a new file; a case that you changed is not overwritten."
+        problem, remedy = "is there already.", "Name a new file: existing cases are not overwritten."
     except (OSError, ValueError) as error:
         problem, remedy = f"cannot be written: {getattr(error, 'strerror', None) or error}.", "Check the directory."
     else:

@@ -1,4 +1,4 @@
-"""`frb check`: is the case sound, and what will be modelled for it."""
+"""`frb check`: the faults of a case, or what will be modelled for it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def command(case: Case, terminal: Terminal) -> None:
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
     test = "squeeze" if case.motion is not None and case.motion.frequency else "rotation"
-    # after the values, which help to see why a plan is refused
+    # after the values, which explain a refused plan
     expected: dict[str, float | int | None] | None = None
     lines: tuple[Decision, ...] = ()
     if kinematic:
@@ -64,7 +64,7 @@ def command(case: Case, terminal: Terminal) -> None:
             "film_solves": cost.film_solves,
         }
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in (*decisions, *lines)])
-    if not kinematic:  # after the plan, which helps to see why it is refused
+    if not kinematic:  # after the plan, which explains a refusal
         require_affordable(case, plan, cost)
     terminal.emit(
         {
@@ -94,13 +94,13 @@ def command(case: Case, terminal: Terminal) -> None:
 
 
 def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, ...]:
-    """What the plan will cost and leave, as its last lines."""
+    """Expected error and cost, the last lines of the plan."""
     from frbcli.scene.limits import clock, memory
     from frbcli.scene.plan import Decision
 
     solves = f"{cost.steps} steps, {cost.film_solves} film solves, on the machine of docs/accuracy.md"
     beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
-    forces = "as the bearing model has them" if error.film_force is None else f"{error.film_force:.1g}, relative"
+    forces = "of the bearing model, not known" if error.film_force is None else f"{error.film_force:.1g}, relative"
     parts = f"of the eccentricities before a whirl grows; film forces {forces}"
     return (
         Decision("expected error", f"{error.eccentricity:.1g}", parts),
@@ -128,13 +128,13 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
     for film in films:
         if not film.laminar:
             terminal.result(
-                f"Warning: {film.name}: the Reynolds number {film.reynolds:.0f} is not below 2300: its flow is not\n"
-                "laminar, as the equations of a film have it."
+                f"Warning: {film.name}: the Reynolds number {film.reynolds:.0f} is not below 2300: the flow is not\n"
+                "laminar, as the Reynolds equation assumes."
             )
         if abs(film.turning) > TURNING_TOLD * film.clearance:
             terminal.result(
-                f"Note: {film.name}: steel shafts and brass rings that turn so fast change the gap by "
-                f"{film.turning / film.clearance:+.0%};\nthat is left out. Add it to the clearance where it matters."
+                f"Note: {film.name}: centrifugal growth of a steel shaft and a brass ring changes the gap by "
+                f"{film.turning / film.clearance:+.0%}\nand is not modelled. Add it to the clearance if needed."
             )
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-PIPE_WIDTH = 80  # columns of a table that nobody sees on a screen
+PIPE_WIDTH = 80  # columns of a table in a pipe or a file
 
 _JSON = "frbcli.json"
 _SETTINGS = "frbcli.settings"
@@ -43,9 +43,8 @@ _SETTINGS = "frbcli.settings"
 class Terminal:
     """Where a command speaks.
 
-    Results are the answer, with what limits it and the files it is in: they go to stdout. Remarks are what helps the
-    person who waits, progress and advice: they go to stderr. With json stdout holds one JSON document alone, and
-    results for people go to stderr; with quiet people are told nothing.
+    Results, with their limits and files, go to stdout. Remarks, which are progress and advice, go to stderr. With json
+    stdout holds one JSON document alone, and results as text go to stderr; with quiet there is no text.
     """
 
     json: bool = False
@@ -53,7 +52,7 @@ class Terminal:
 
     @property
     def live(self) -> bool:
-        """Whether somebody watches: progress may move on the screen."""
+        """Whether stderr is a terminal, on which a progress line can be redrawn."""
         return not self.quiet and sys.stderr.isatty()
 
     def live_console(self) -> Console:
@@ -61,12 +60,12 @@ class Terminal:
         return _console(sys.stderr)
 
     def result(self, text: str = "") -> None:
-        """Tell people a part of the answer; of control characters, which file names may have, only new lines."""
+        """Print a part of the results, without control characters other than new lines."""
         if not self.quiet:
             _write(self._results, f"{printable(text)}\n")
 
     def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-        """Tell people a table, a part of the answer. rows: as many cells as columns each, shown by str()."""
+        """Print a table, a part of the results. rows: as many cells as columns each, shown by str()."""
         if self.quiet:
             return
         from rich import box
@@ -82,12 +81,12 @@ class Terminal:
             _console(self._results).print(table)
 
     def remark(self, text: str) -> None:
-        """Tell people what is not part of the answer."""
+        """Print progress or advice."""
         if not self.quiet:
             _write(sys.stderr, f"{printable(text)}\n")
 
     def progress(self, line: str, show: Callable[[str], None] | None) -> None:
-        """How far a command is: by `show`, which moves a line where somebody watches, else a line of its own."""
+        """Print progress: by `show`, which redraws a line on a terminal, else as a line of its own."""
         if show is None:
             self.remark(line)
         else:
@@ -110,7 +109,7 @@ class Terminal:
 
 
 def _write(stream: TextIO, text: str) -> None:
-    """Write at once. A stdout that takes no more is told at the end, by `frbcli.cli.process`: the work goes on."""
+    """Write at once. `frbcli.cli.process` reports a stdout that cannot be written at the end."""
     with suppress(OutputLost):
         stream.write(text)
         stream.flush()
@@ -169,7 +168,7 @@ def output_options(function: Function) -> Function:
         callback=_remember_json,
         help="One JSON document on stdout.",
     )
-    quiet = click.option("--quiet", "terminal", is_flag=True, callback=_terminal, help="No text for people.")
+    quiet = click.option("--quiet", "terminal", is_flag=True, callback=_terminal, help="No text, errors excepted.")
     return as_json(quiet(function))
 
 
@@ -192,7 +191,7 @@ def _load(context: click.Context, _: click.Parameter, source: str) -> Case:
 
 
 def _as_json(letter: str) -> str:
-    """A letter as JSON prints it: what a terminal would obey as an escape of JSON."""
+    """A letter as JSON prints it: control characters are escaped."""
     return letter if letter.isprintable() or letter == "\n" else json.dumps(letter)[1:-1]
 
 

@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 COLUMNS = ("films", "crit.", "onset", "ratio", "max", "rms", "err.", "CPU")
 COUPLING_COLUMNS = ("coupling", "onset", "max", "ms/step", "micro", "ms/h", "CPU")
 COUPLING_EXPLANATION = (
-    "onset: rotor speed in Hz where the whirl begins; max: largest deviation of the\n"
-    "eccentricity from the first row's, before either whirls; ms/step: CPU time of a\n"
-    "step, of the films' own in a co-simulation; micro: those per macro step; ms/h:\n"
+    "onset: rotor speed in Hz at the onset of whirl; max: largest deviation of the\n"
+    "eccentricity from the first row before a whirl; ms/step: CPU time of a step, of\n"
+    "a micro step in a co-simulation; micro: micro steps per macro step; ms/h:\n"
     "simulated time per hour; CPU: time in s."
 )
 EXPLANATION = (
-    "crit., onset: rotor speed in Hz at resonance and where the whirl begins; ratio:\n"
-    "its frequency to that speed; max, rms: deviation of the eccentricity from the\n"
-    "first row's, before either whirls; err.: of the film forces against a finite\n"
-    "bearing on a finer mesh; CPU: time in s."
+    "crit., onset: rotor speed in Hz at resonance and at the onset of whirl; ratio:\n"
+    "whirl ratio; max, rms: deviation of the eccentricity from the first row before\n"
+    "a whirl; err.: relative error of the film forces against a finite bearing on a\n"
+    "finer mesh; CPU: time in s."
 )
 
 
@@ -58,7 +58,7 @@ def command(
 ) -> int:
     """Run CASE with several models of its films: events, deviations and cost in one table and one picture.
 
-    Without --cavitation, --theory and --coupling it is compared with all models without a state, which cost little.
+    Without --cavitation, --theory and --coupling it is compared with all models whose films have no state and low cost.
     """
     from frbcli.bearing_tests.plan import TESTS
     from frbcli.studies.compare import compare

@@ -1,4 +1,4 @@
-"""The first start: kernels are compiled once and kept beside the sources, and who waits for it is told."""
+"""The first start: kernels are compiled once and kept beside the sources, with progress on the terminal."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ EVERY_s = 10.0  # between two lines where no line moves on the screen
 
 @contextmanager
 def compiling_told(terminal: Terminal, case: Case, show: Callable[[str], None] | None = None) -> Iterator[None]:
-    """Within it, the terminal is told of kernels that are compiled, and how far they are.
+    """Within it, the terminal shows the progress of the compilation.
 
-    case: tells how many kernels there are; show: see Terminal.progress.
+    case: determines the number of kernels; show: see Terminal.progress.
     """
     from numba.core.event import Listener, install_listener  # heavy: only where kernels are used
 
@@ -28,7 +28,7 @@ def compiling_told(terminal: Terminal, case: Case, show: Callable[[str], None] |
     about_s = compile_s(case)
 
     class Told(Listener):
-        """Hears of each function that is compiled, with those that it calls inside of it."""
+        """Counts the compiled functions, with those that they call."""
 
         def __init__(self) -> None:
             self._begun, self._told, self._count = 0.0, 0.0, 0

@@ -1,4 +1,4 @@
-"""The hard cases on the terminal: the list of them, and how they ended."""
+"""The hard cases on the terminal: their list, and their results."""
 
 from __future__ import annotations
 
@@ -14,26 +14,25 @@ from frbcli.errors import INTERRUPTED
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
-COLUMNS = ("case", "what is hard", "end", "error", "stated", "CPU s")
+COLUMNS = ("case", "difficulty", "end", "error", "stated", "CPU s")
 WIDTH = 80
 EXPLANATION = """\
 error: largest deviation of the eccentricities from a fine reference until a
-whirl begins or the run ends, of a force the relative one; stated: what the
-program itself says that it may be off by. `frb cases --hard NAME` prints a
-case."""
+whirl begins or the run ends; relative deviation of a force; stated: error that
+the run or test states. `frb cases --hard NAME` prints a case."""
 
 
 def list_hard(terminal: Terminal) -> None:
     """The table of all hard cases."""
     found = hard_cases()
-    terminal.table("hard cases", ("case", "what is hard", "ends"), [(h.name, h.hard, h.end) for h in found])
+    terminal.table("hard cases", ("case", "difficulty", "ends"), [(h.name, h.hard, h.end) for h in found])
     terminal.remark("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
     terminal.emit({"command": "cases", "hard": [_entry(hard) for hard in found]})
 
 
 def hard_text(name: str) -> str:
     """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
-    a case that has to be refused is given as its base, and its settings are told."""
+    a case that has to be refused is given as its base and its settings."""
     (hard,) = hard_cases([name])
     settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
     head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
@@ -68,7 +67,7 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
 def write_page(found: HardResults, page: Path, introduction: str) -> None:
     """The results as a page of the documentation."""
     rows = "".join(f"| {' | '.join(cells)} |\n" for cells in map(_page_cells, found.results))
-    head = "| case | what is hard | has to end | ended | error | certain to | stated | CPU s | cause |\n"
+    head = "| case | difficulty | expected | ended | error | reference uncertainty | stated error | CPU s | cause |\n"
     head += "| --- " * 9 + "|\n"
     page.write_text(f"{introduction}\n{head}{rows}", encoding="utf-8")
 
@@ -82,7 +81,7 @@ def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callabl
 
 
 def _cause(result: HardResult) -> str:
-    """Why a case ended early: its message, and what the list knows of it."""
+    """Why a case ended early: its message, and the cause from the list."""
     return "; ".join(text.rstrip(".") for text in (result.message, result.hard.why) if text)
 
 
@@ -97,7 +96,6 @@ def _page_cells(result: HardResult) -> tuple[str, ...]:
     name, what, _, error, stated, cpu_s = _cells(result)
     notes = "; ".join(filter(None, (_cause(result), *result.problems))).replace("|", "\\|")
     return f"`{name}`", what, hard.end, result.status, error, short_number(result.certain), stated, cpu_s, notes
-
 
 
 def _entry(hard: HardCase) -> dict[str, object]:

@@ -23,11 +23,11 @@ BAR = 1e5
 FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.", "CPU")
 OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance")
 EXPLANATION = (
-    "Forces in N on the journal, by the whole bearing; angle: of the force from the\n"
-    "x-axis; So: Sommerfeld number (3.14); p: bar, absolute; err.: of the force,\n"
-    "estimated from half the cells; CPU: s; torque: on the journal, N m; oil: mean\n"
-    "oil fraction; in, out: mm^3/s; balance: oil that appears from nowhere (negative)\n"
-    "or vanishes, over what passes through."
+    "Forces of the whole bearing on the journal in N; angle: of the force from the\n"
+    "x-axis; So: Sommerfeld number (3.14); p: absolute, in bar; err.: relative error\n"
+    "of the force, from half the cells; CPU: time in s; torque: on the journal, N m;\n"
+    "oil: mean oil fraction; in, out: flow in mm^3/s; balance: oil that is lost, or\n"
+    "created (negative), over the flow."
 )
 LARGEST = "Values are those of the moment of the largest force."
 
@@ -52,7 +52,7 @@ def run_test(
     terminal: Terminal,
     compared: bool = False,
 ) -> int | None:
-    """Run a test, tell it, draw it; its exit code. compared: the document is that of `frb compare`."""
+    """Run a test, print and draw it; its exit code. compared: the document is that of `frb compare`."""
     from frbcli.bearing_tests import kinematic
 
     target = output or here(case.name, f"-{test}.png")
@@ -78,20 +78,20 @@ def exit_code(found: KinematicTest) -> int | None:
 
 
 def draw_test(found: KinematicTest, target: Path, terminal: Terminal) -> None:
-    """The picture of a test, if there is anything to see."""
+    """The picture of a test, if it has results."""
     from frbcli.plot.film import film_figure
     from frbcli.plot.history import history_figure
 
     if all(result.loads is None for result in found.results):
         return
     if found.test == "rotation" and all(result.field is None for result in found.results):
-        terminal.remark("No picture: a bearing model tells no pressures.")
+        terminal.remark("No picture: a bearing model has no pressure.")
         return
     draw(terminal, lambda: film_figure(found) if found.test == "rotation" else history_figure(found), target)
 
 
 def report(found: KinematicTest, terminal: Terminal) -> None:
-    """Two tables: forces, and what the oil does."""
+    """Two tables: forces and oil."""
     title = found.case.title or found.case.name
     terminal.table(f"{title}: {found.test}", FORCES, map(_forces, found.results))
     terminal.table("", OIL, map(_oil, found.results))
@@ -127,7 +127,7 @@ def _forces(result: KinematicResult) -> tuple[str, ...]:
 
 
 def _told(value: float, form: str) -> str:
-    """A number in a form; "-" for one that nobody knows."""
+    """A number in a form; "-" for an unknown one."""
     return "-" if math.isnan(value) else format(value, form)
 
 

@@ -1,8 +1,8 @@
 """`frb`: the table of commands, and the one place where errors become exit codes.
 
 Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug, or
-too little memory; `process.main` adds what streams that take no more make of 0. docs/command-line.md tells it of each
-command.
+too little memory; `process.main` adds the codes of streams that cannot be written. docs/command-line.md lists those of
+each command.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from frbcli.version import __version__
 # name: (module, one line of help); the module is imported when its command is called
 COMMANDS = {
     "check": ("frbcli.cli.check", "Validate a case; show its SI values and what will be modelled."),
-    "rotation": ("frbcli.cli.rotation", "Turn a journal at a displacement or under a load: films compared."),
+    "rotation": ("frbcli.cli.rotation", "Turn a journal at a displacement or under a load; compare models."),
     "squeeze": ("frbcli.cli.squeeze", "Move a journal up and down: force over time."),
     "whirl": ("frbcli.cli.whirl", "Move a journal on a circle: pressure over time."),
     "runup": ("frbcli.cli.runup", "Run a rotor up and write the run to a file."),
@@ -31,10 +31,10 @@ COMMANDS = {
     "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits or displacements of runs."),
     "compare": ("frbcli.cli.compare", "Run one case with several models and compare them."),
     "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
-    "accuracy": ("frbcli.cli.accuracy", "Speed against error: theories, meshes, tolerances, couplings."),
-    "sweep": ("frbcli.cli.sweep", "Many settings of one case on all cores or a cluster: table and map."),
+    "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
+    "sweep": ("frbcli.cli.sweep", "Run one case with many settings, on all cores or a cluster."),
     "export": ("frbcli.cli.export", "Write the signals of a run as CSV, Parquet or MAT."),
-    "cases": ("frbcli.cli.cases", "List, show or copy the cases that come with frb."),
+    "cases": ("frbcli.cli.cases", "List, show or copy the shipped cases."),
     "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),
 }
 
@@ -43,7 +43,7 @@ LIGHT = ("cases", "schema")  # compute nothing
 
 
 class LazyGroup(click.Group):
-    """A group that knows its commands by name and imports only the one that is called."""
+    """A group that imports only the command that is called."""
 
     def list_commands(self, _ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -69,8 +69,7 @@ class LazyGroup(click.Group):
 def frb() -> None:
     """Rotordynamics of light, fast rotors in fluid film bearings.
 
-    Describe rotor, bearings and oil in one TOML file (CASE: a file, or the name of a shipped case), run it up, and look
-    at the waterfall.
+    CASE is a TOML file that describes rotor, bearings and oil, or the name of a shipped case.
     """
 
 
@@ -119,7 +118,7 @@ def _usage_fault(error: click.ClickException) -> Fault:
 
 
 def _emit_error(arguments: Sequence[str], error: FrbError) -> None:
-    """With --json an error, too, is one JSON document on stdout."""
+    """With --json an error is one JSON document on stdout as well."""
     if "--json" not in arguments:
         return
     document: dict[str, object] = {"command": next((word for word in arguments if word in COMMANDS), None)}

@@ -1,4 +1,4 @@
-"""Too little memory: told in one line, however the libraries put it.
+"""Too little memory: reported in one line, whatever error a library raises.
 
 Where a process may use little memory (`ulimit -v`), libraries do not load, the compiler aborts, and linear algebra
 waits forever for its buffers. So what takes less than a usual run is told before any of them is loaded; what happens
@@ -20,7 +20,7 @@ except ImportError:  # Windows has no such limits
 # Bytes of addresses that a usual run takes, and some more; each thread of linear algebra has buffers of its own.
 USUAL, PER_THREAD = 900_000_000, 50_000_000
 SUSPECT = 2.0  # times as much, below which an error of another kind may have come from too little memory
-RESERVE = 32_000_000  # bytes that are given free to tell what is wrong
+RESERVE = 32_000_000  # bytes that are freed for the error message
 LONGEST_REASON = 150  # characters
 
 
@@ -36,7 +36,7 @@ def reserve() -> bytearray:
 
 
 def shortage(error: BaseException) -> OutOfMemory | None:
-    """What to tell if an error comes, or may come, from too little memory; None for any other."""
+    """The message for an error that comes, or may come, from too little memory; None for any other."""
     if not isinstance(error, MemoryError) and _allowed() > SUSPECT * _enough():
         return None
     reason = " ".join(str(error).split())[:LONGEST_REASON]

@@ -1,4 +1,4 @@
-"""Natural frequencies of a turbocharger's rotor, as `frb stability` tells them."""
+"""Natural frequencies of a turbocharger rotor in the output of `frb stability`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from frbcli.cli.common import Terminal
     from frbcli.linear.modes import Mode, Modes
 
-LONGEST_TABLE = 13  # rows for people
+LONGEST_TABLE = 13  # rows of the text
 TOLD = 3  # slowest modes of each direction
 
 
@@ -40,9 +40,7 @@ class BearingStiffness(click.ParamType[float]):
         return stiffness
 
 
-def emit_modes(
-    terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], picture: Path | None
-) -> None:
+def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], picture: Path | None) -> None:
     """Table, picture and JSON of the rotor, free and on springs of a stiffness in N/m, at speeds in Hz."""
     from frbcli.linear.modes import natural_modes
     from frbcli.plot.modes import modes_figure
@@ -66,7 +64,7 @@ def emit_modes(
 
 
 def tell_modes(terminal: Terminal, modes: Modes) -> None:
-    """The modes for people."""
+    """The modes as text."""
     from frbcli.units import display
 
     if not modes.stiffness_N_m:

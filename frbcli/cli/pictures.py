@@ -1,4 +1,4 @@
-"""Pictures as commands draw them: what a picture lacks is a remark, and one beside results never costs them."""
+"""Pictures of commands: a failure is a remark, and never affects the results."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def check_place(picture: Path | None) -> None:
 
 
 def draw(terminal: Terminal, picture: Callable[[], Picture], target: Path, what: str = "picture") -> Path | None:
-    """Draw a picture of results that are told already. None if that fails, for whatever reason: a remark says why."""
+    """Draw a picture of printed results. None if that fails, with the reason as a remark."""
     try:
         return draw_wanted(terminal, picture, target, what)
     except InputError as error:
@@ -49,7 +49,7 @@ def draw_wanted(terminal: Terminal, picture: Callable[[], Picture], target: Path
     letters = dict.fromkeys(chr(int(found[1])) for found in map(MISSING.match, texts) if found)
     if letters:
         shown = ", ".join(letter if letter.isprintable() else repr(letter) for letter in letters)
-        terminal.remark(f"{target}: the font has no {shown}; boxes stand for that.")
+        terminal.remark(f"{target}: the font has no {shown}; boxes are drawn instead.")
     for text in dict.fromkeys(text for text in texts if not MISSING.match(text)):
         terminal.remark(f"{target}: {_one_line(text)}")
     return target

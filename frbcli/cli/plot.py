@@ -44,8 +44,7 @@ def command(
     output: Path | None,
     terminal: Terminal,
 ) -> None:
-    """Draw one picture of one or several runs, overlaid; or, with --what law, of a case: its oil fraction over
-    pressure."""
+    """Draw one or several runs in one picture; with --what law, the oil fraction of a case over pressure."""
     from frbcli.plot.style import check_picture
     from frbcli.results.store import read_run
 
@@ -57,7 +56,7 @@ def command(
         _law(str(run_files[0]), settings, output, terminal)
         return
     if settings:
-        raise click.UsageError("--set belongs to --what law: a run is what it is.")
+        raise click.UsageError("--set belongs to --what law; a run cannot be changed.")
     if what == "summary" and len(run_files) > 1:
         raise click.UsageError("A summary is of one run.")
     if what == "summary" and (from_time is not None or to_time is not None):

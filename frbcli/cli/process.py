@@ -42,10 +42,10 @@ class Interruption:
         sys.unraisablehook = self._unraisable
 
     def _unraisable(self, lost: UnraisableHookArgs) -> None:
-        """What is raised where nobody can catch it, as in a callback or the end of an object of some library."""
+        """Handles exceptions that cannot be caught, as in a callback or in the destructor of a library."""
         if isinstance(lost.exc_value, KeyboardInterrupt):  # it was dropped there: again, where it is heard
             Timer(AGAIN_s, interrupt_main, [self.asked]).start()
-        elif not self.asked:  # what an interruption left half made fails when it goes; that is nobody's fault
+        elif not self.asked:  # incomplete objects of an interruption fail when they are destroyed
             sys.__unraisablehook__(lost)
 
 

@@ -21,5 +21,5 @@ if TYPE_CHECKING:
 def command(
     case: Case, cavitation: tuple[str, ...], output: Path | None, picture: bool, terminal: Terminal
 ) -> int | None:
-    """A journal that turns at a displacement, or rests under a load: pressure, forces, torque, oil."""
+    """Rotation of a journal at a displacement or under a load: pressure, forces, torque, oil."""
     return run_test(case, "rotation", cavitation, output, picture, terminal)

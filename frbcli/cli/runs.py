@@ -31,10 +31,10 @@ SECONDS = Seconds()
 
 
 def beside(run: Path, what: str) -> Path:
-    """Where a result goes if nothing is said: beside its run."""
+    """The default place of a result: beside its run."""
     return run.parent / (run.stem + what)
 
 
 def here(case_name: str, what: str) -> Path:
-    """Where the result of a case goes if nothing is said: into this directory, under the case's name."""
+    """The default place of the result of a case: this directory, under the name of the case."""
     return Path((re.sub(r"[^\w.-]+", "-", case_name) or "run") + what)

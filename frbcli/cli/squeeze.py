@@ -21,5 +21,5 @@ if TYPE_CHECKING:
 def command(
     case: Case, cavitation: tuple[str, ...], output: Path | None, picture: bool, terminal: Terminal
 ) -> int | None:
-    """A journal that moves up and down (4.47): force over time."""
+    """Vertical oscillation of a journal (4.47): force over time."""
     return run_test(case, "squeeze", cavitation, output, picture, terminal)

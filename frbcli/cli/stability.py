@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
 
 
-
 class RotorSpeed(click.ParamType[float]):
     """A rotor speed with a unit, "25 Hz" or "1500 rpm"; a bare number is in Hz. Greater than zero."""
 
@@ -60,7 +59,7 @@ def command(
     no_picture: bool,
     terminal: Terminal,
 ) -> int | None:
-    """Where CASE rests at each speed, how stiff its films are there, and from which speed on a whirl grows.
+    """Resting positions, coefficients of the films and eigenvalues of CASE over speed, and the threshold of stability.
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
@@ -88,7 +87,7 @@ def command(
         tell_modes(terminal, modes)
     if len(natural) == 1 and found.points[-1].films:
         at = f"{found.points[-1].speed_Hz:.4g} Hz"
-        terminal.result(f"None on its films at {at}: one has no direct stiffness there.")
+        terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
     terminal.emit(
         {
             "command": "stability",
@@ -112,7 +111,7 @@ def _tell(terminal: Terminal, found: Stability, every_speed: bool) -> None:
     for film in unfed_films(found.case):
         terminal.result(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
     if step_times(found.case):
-        terminal.result("Note: with the clearances that a run begins with; bearing.clearance_steps changes them later.")
+        terminal.result("Note: the clearances are the initial ones; bearing.clearance_steps changes them during a run.")
 
 
 def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
@@ -134,7 +133,7 @@ def _sentence(found: Stability) -> str:
     if threshold is None:
         return found.note
     return (
-        f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, at first with "
+        f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, initially with "
         f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed.{found.note}"
     )
 
@@ -178,5 +177,5 @@ def _threshold(found: Stability) -> dict[str, float] | None:
 
 
 def _file_name(name: str) -> str:
-    """A case's name with what file names do not bear replaced."""
+    """The name of a case without characters that file names cannot have."""
     return re.sub(r"[^\w.-]+", "-", name) or "case"

@@ -1,4 +1,4 @@
-"""The table of `frb stability` in 80 columns: where the films rest beside the modes that matter at each speed.
+"""The table of `frb stability` in 80 columns: resting positions and, for each speed, the modes with the least damping.
 
 All growing modes are listed, then the least damped ones.
 """
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from frbcli.cli.common import Terminal
     from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
 
-MOST_SPEEDS, MOST_LINES = 20, 40  # for people; JSON and the picture have every speed
+MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 MODES = 2  # in the one line of a single film
 ONE_FILM = ("Hz", "eps", "attitude", *("mode Hz", "damping") * MODES, "growth 1/s")
 FILMS = ("Hz", "film", "eps", "attitude", "mode Hz", "damping", "growth 1/s")
@@ -22,7 +22,7 @@ NONE = "none"  # no resting position
 
 
 def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None:
-    """The table for people, and the speeds without a resting position. every_speed: leave no speed out."""
+    """The table, and the speeds without a resting position. every_speed: show all speeds."""
     several = max((len(point.films) for point in found.points), default=0) > 1
     films = max(1, *(len(point.films) for point in found.points))
     most = min(MOST_SPEEDS, max(1, MOST_LINES // films))
@@ -34,7 +34,7 @@ def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None
         terminal.result("Modes of the machine: all that grow (damping below 0), then the least damped.")
     if every > 1:
         told = f"{len(shown)} of {len(found.points)} speeds"
-        terminal.result(f"{told}; --json gives all, --speed exactly those you want.")
+        terminal.result(f"{told}; --json gives all, --speed the given ones.")
     _tell_problems(terminal, found.points)
 
 

@@ -1,7 +1,7 @@
-"""stdout and stderr of this process, which may be full, closed, or pipes that nobody reads any more.
+"""stdout and stderr of this process, which may be full, closed, or pipes without a reader.
 
-A stream that takes no more is remembered, not reported where it happens: the command goes on with its work, and
-`frbcli.cli.process` says so at the end. Imports nothing but the standard library.
+A stream that cannot be written is remembered: the command continues its work, and `frbcli.cli.process` reports it at
+the end. Imports nothing but the standard library.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class OutputLost(Exception):
 class Output(io.TextIOWrapper):
     """stdout or stderr. lost: why it takes no more, None as long as it does.
 
-    raises: whether OutputLost is raised when that happens; what is written afterwards goes nowhere, in silence.
+    raises: whether OutputLost is raised when that happens; what is written afterwards is dropped.
     """
 
     def __init__(self, descriptor: int, stream: TextIO | None, raises: bool) -> None:
@@ -70,7 +70,7 @@ def take_streams() -> tuple[Output, Output]:
 
 
 def closing_code(code: int, out: Output, err: Output, only_json: bool) -> int:
-    """The exit code of a command that ended with `code`; a stream that took not all of it is told on the other one.
+    """The exit code of a command that ended with `code`; a stream that was not written is reported on the other.
 
     only_json: stdout is for one JSON document alone. A code that is not 0 stands: it says more.
     """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
-LONGEST_TABLE = 40  # points for people; the table's file and JSON have all
+LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
 
 
 @click.command()
@@ -53,7 +53,7 @@ def command(
 ) -> int:
     """Compute CASE at many points: one table, one picture, all runs.
 
-    The same command goes on with a sweep that was broken off.
+    The same command resumes an interrupted sweep.
     """
     from frbcli.case.load import load_case
     from frbcli.studies.sweep.sweep import Workers, check_table_format, sweep, write_table
@@ -121,7 +121,7 @@ def _points(axes: Mapping[str, Sequence[str]], list_file: Path | None) -> Sequen
 
 
 def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[SweepPoint, int, int], None]:
-    """A line that moves where somebody watches, else one for each point."""
+    """A line that is redrawn on a terminal, else one for each point."""
     began = time.monotonic()
     before: list[int] = []  # its first entry: the points that an earlier call had computed
 
@@ -153,9 +153,11 @@ def _report(found: Sweep, terminal: Terminal) -> None:
         terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
     failed = [point for point in found.points if point.status != "finished"]
     if any(point.status == "interrupted" for point in failed):
-        terminal.remark("Interrupted; the same command goes on.")
+        terminal.remark("Interrupted; the same command resumes the sweep.")
     elif failed:
-        terminal.result(f"{len(failed)} of {len(found.points)} points did not finish; the table's file says why.")
+        terminal.result(
+            f"{len(failed)} of {len(found.points)} points did not finish; the table's file has the reasons."
+        )
 
 
 def _cells(point: SweepPoint, keys: Sequence[str], kind: str) -> tuple[str, ...]:

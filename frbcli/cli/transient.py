@@ -31,7 +31,7 @@ ENDED_EARLY = 3  # for any other reason, which is named
 REFRESH_Hz = 8
 COLUMNS = 80  # of a terminal
 SUMMARY = "-summary.png"
-LONGEST_LEFT_s = 1e9  # no guess that anybody waits for
+LONGEST_LEFT_s = 1e9  # longest time that is shown
 TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
 SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
@@ -41,11 +41,11 @@ def run_options(function: Function) -> Function:
     output = click.option(
         "--output", "-o", type=OUTPUT, default=None, metavar="RUN.h5", help="Run file. Default: CASE.h5 here."
     )
-    resume = click.option("--resume", is_flag=True, help="Go on with an interrupted run in the run file.")
+    resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
     force = click.option("--force", is_flag=True, help="Replace an interrupted run in the run file.")
     picture = click.option("--picture/--no-picture", default=True, help="A summary picture beside the run.")
     verify = click.option(
-        "--verify", is_flag=True, help="Run again with half the tolerance and half the step, and say what changes."
+        "--verify", is_flag=True, help="Run again with half the tolerance and step size, and report the change."
     )
     return output(resume(force(picture(verify(function)))))
 
@@ -104,7 +104,7 @@ def _check_summary(path: Path) -> None:
 
 
 def cost_line(cost: ExpectedCost) -> str:
-    """What a run will take, for people who would wonder."""
+    """Expected cost of a run."""
     from frbcli.scene.limits import clock, memory
 
     before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > TOLD_BEFORE_s else ""
@@ -112,7 +112,7 @@ def cost_line(cost: ExpectedCost) -> str:
 
 
 def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
-    """Shows the progress where somebody watches, and says once if a run takes much longer than its plan expected."""
+    """Shows the progress on a terminal, and warns once if a run takes much longer than its plan expected."""
     from frbcli.scene.limits import clock
 
     said = False
@@ -123,17 +123,21 @@ def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
             show(progress_line(progress))
         if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
             said = True
-            left = f"about {clock(progress.left_s)} left" if progress.left_s < LONGEST_LEFT_s else "no end in sight"
+            left = (
+                f"about {clock(progress.left_s)} left"
+                if progress.left_s < LONGEST_LEFT_s
+                else "and the end cannot be estimated"
+            )
             terminal.remark(
                 f"Warning: this run takes {progress.over_plan:.0f} times as long as its plan expected, {left}.\n"
-                "Ctrl-C keeps what is computed."
+                "Ctrl-C ends it and keeps the results so far."
             )
 
     return observe
 
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
-    """What a finer run says, told and as part of the JSON document."""
+    """The change in a finer run, as text and as part of the JSON document."""
     from frbcli.studies.verify import verify
 
     try:
@@ -141,11 +145,11 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
             watch = None if show is None else lambda progress: show(f"again\n{progress_line(progress)}")
             found = verify(case, run, watch)
     except KeyboardInterrupt:
-        terminal.remark("Interrupted before it was verified.")
+        terminal.remark("Interrupted before the end of the verification.")
         return {"status": "interrupted"}
-    onset = "" if math.isnan(found.onset_Hz) else f", and the whirl begins {abs(found.onset_Hz):.2g} Hz away"
+    onset = "" if math.isnan(found.onset_Hz) else f", and the onset of whirl by {abs(found.onset_Hz):.2g} Hz"
     terminal.result(
-        f"verified: with half the tolerance and half the step the eccentricity changes by {found.eccentricity:.1e}\n"
+        f"verified: with half the tolerance and step size the eccentricity changes by {found.eccentricity:.1e}\n"
         f"until {found.until_s:.3g} s{onset} ({found.status}, {found.cpu_s:.3g} s of CPU time)."
     )
     if found.coupling is not None:
@@ -167,7 +171,7 @@ def exit_code(status: str) -> int:
 
 @contextmanager
 def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
-    """What shows some lines on the terminal in place of those before; None where nobody watches."""
+    """Redraws some lines on the terminal; None without a terminal."""
     if not terminal.live:
         yield None
         return
@@ -200,7 +204,7 @@ def _clock(seconds: float) -> str:
 
 
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
-    """Status with its cause and remedy, events, cost and error, for people."""
+    """Status with its cause and remedy, events, cost and error, as text."""
     from frbcli.runs.advice import run_advice, run_end
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
@@ -214,7 +218,7 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
 
 
 def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
-    """Oil that passed the films, if they keep it."""
+    """Oil that passed mass-conserving films."""
     if "oil_in_m3" not in run.cost:
         return []
     came, left = (1e9 * run.cost[name] for name in ("oil_in_m3", "oil_out_m3"))
@@ -243,7 +247,7 @@ def _event_row(event: dict[str, Any]) -> tuple[str, ...]:
 def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
     cost, error = run.cost, run.error
     film = error.get("film_force_relative")
-    against = "against a finer mesh" if error.get("model_relative") is None else "of the short bearing itself"
+    against = "against a finer mesh" if error.get("model_relative") is None else "of the short-bearing theory"
     return [
         ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.3g} ms per hour"),
         (
@@ -261,7 +265,7 @@ def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
 
 
 def _predicted(cost: dict[str, Any]) -> str:
-    """What the plan had said; runs of an earlier version do not know."""
+    """The prediction of the plan, which runs of earlier versions lack."""
     return f"predicted {cost['predicted_cpu_s']:.2g} s, " if "predicted_cpu_s" in cost else ""
 
 
@@ -271,6 +275,6 @@ def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
     if error.get("modal_reduction") is not None:
         rows.append(("error, modal reduction", f"{error['modal_reduction']:.1e}", "of the natural frequencies"))
     if error.get("eccentricity") is not None:
-        until = f"all together, until {error['quiet_until_s']:.3g} s"
+        until = f"total, until {error['quiet_until_s']:.3g} s"
         rows.append(("error of the eccentricity", f"{error['eccentricity']:.1e}", until))
     return rows

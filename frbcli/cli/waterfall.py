@@ -24,15 +24,13 @@ class Orders(click.ParamType[tuple[float, ...]]):
 
     name = "orders"
 
-    def convert(
-        self, value: object, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, ...]:
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
         if isinstance(value, tuple):
             return value
         try:
             return tuple(float(number) for number in str(value).split(","))
         except ValueError:
-            self.fail(f"{value} is no list of numbers, such as 1,0.5.", param, ctx)
+            self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
 
 
 @click.command()
@@ -44,13 +42,11 @@ class Orders(click.ParamType[tuple[float, ...]]):
     "orders",
     metavar="1,0.5",
     type=Orders(),
-    help="Amplitudes by multiples of the rotor speed in place of spectra: no ramp smears them.",
+    help="Amplitudes by order in place of spectra; exact also in a ramp of the speed.",
 )
-@click.option(
-    "--over", type=click.Choice(["time", "speed"]), help="The axis. [time; speed with --order]"
-)
+@click.option("--over", type=click.Choice(["time", "speed"]), help="The axis. [time; speed with --order]")
 @click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
-@click.option("--window", type=SECONDS, help="Length of one spectrum. [as the ramp asks for, up to 0.2 s]")
+@click.option("--window", type=SECONDS, help="Length of one spectrum. [from the ramp, up to 0.2 s]")
 @click.option(
     "--direction",
     type=click.Choice(["x", "y", "forward"]),

@@ -21,5 +21,5 @@ if TYPE_CHECKING:
 def command(
     case: Case, cavitation: tuple[str, ...], output: Path | None, picture: bool, terminal: Terminal
 ) -> int | None:
-    """A journal that moves on a circle (4.48): pressure at the bottom of the bearing over time."""
+    """Circular motion of a journal (4.48): pressure at the bottom of the bearing over time."""
     return run_test(case, "whirl", cavitation, output, picture, terminal)

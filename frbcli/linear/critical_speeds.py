@@ -1,8 +1,8 @@
-"""The critical speeds of a machine by its linearised equations: what resonances of a run are held to.
+"""The critical speeds of the linearised rotor, with which resonances of a run are compared.
 
 A mode of the rotor in its films whose natural frequency equals the rotor speed. The films are half-Sommerfeld ones,
-full wherever they carry: a film that keeps its oil has no stiffness of its own, and one that starves holds the journal
-in other ways from moment to moment. A bearing model is taken as it is.
+full wherever they carry: a mass-conserving film has no eight coefficients, and the stiffness of a starved film changes
+with time. A bearing model is linearised itself.
 """
 
 from __future__ import annotations

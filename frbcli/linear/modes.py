@@ -1,6 +1,6 @@
 """Natural frequencies and shapes of a turbocharger's rotor, free or on isotropic springs, over its speed.
 
-The rotor is undamped and not reduced: what a bearing's stiffness makes of the shaft, before any film is computed.
+The rotor is undamped and not reduced; bearings are springs, without any film.
 """
 
 from __future__ import annotations
@@ -128,8 +128,8 @@ def natural_modes(
 
 def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
     """Isotropic stiffness in N/m of each bearing of a case out of its films at rest: the mean of both directions, in
-    series where a ring floats between two films. Cross stiffness is left out: it drives a whirl and holds nothing.
-    Empty where a film has no direct stiffness, as one without a cavity in its center."""
+    series where a ring floats between two films. Cross stiffness is left out: it excites a whirl and carries no load.
+    Empty where a film has no direct stiffness, such as a full film in its centre."""
     means = [0.5 * float(np.trace(film.stiffness)) for film in films]
     sizes = [float(np.abs(film.stiffness).max()) for film in films]
     if any(mean <= NO_STIFFNESS * size for mean, size in zip(means, sizes, strict=True)):

@@ -1,8 +1,8 @@
-"""Where a rotor rests at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
+"""The resting position of a rotor at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
 
-The rotor is linear, and the films see its journals only. So it is condensed first to the force that it puts on its
+The rotor is linear, and the films see its journals only. So it is condensed first to the force that it exerts on its
 films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
-rings turn with the speeds at which the torques on them balance (ring_speeds); the two are found by turns.
+rings turn with the speeds at which the torques on them balance (ring_speeds); the two are solved alternately.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
         left = min(left, residual)
     raise NotConverged(
         f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
-        f"{len(starts)} starts, {left:.3g} N of {np.linalg.norm(loads):.3g} N left over. "
+        f"{len(starts)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. "
         "Ask for a higher speed, or give the bearing more viscosity, more width or less clearance."
     )
 

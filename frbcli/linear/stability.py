@@ -1,6 +1,6 @@
-"""Linear stability: where the journals rest, how stiff the films are there, and which motions grow.
+"""Linear stability: resting positions, coefficients of the films, and eigenvalues.
 
-At a speed the rotor rests where films and shaft carry its static load. Linearised there, each film is a stiffness
+In its resting position films and shaft carry the static load of the rotor. Linearised there, each film is a stiffness
 K = -dF/dD and a damping D = -dF/dD' per bearing, and the rotor has 2 n eigenvalues: a positive real part is a motion
 that grows. The threshold is the lowest speed at which one of the oscillating motions, a whirl, begins to grow.
 """
@@ -37,7 +37,7 @@ Array = NDArray[np.float64]
 Eigenvalues = NDArray[np.complex128]
 
 SPEEDS = 60  # of the default sweep: 5 Hz apart from 0 to 300 Hz
-THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed: one step of brentq beyond 1e-6, and below what anybody measures
+THRESHOLD_TOLERANCE = 1e-9  # relative tolerance of the speed: one step of brentq beyond 1e-6
 OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 DIVERGENT = 1e-9  # real part over the largest absolute value from which a motion grows without oscillating
 
@@ -92,7 +92,7 @@ class StabilityPoint:
     @property
     def modes(self) -> Eigenvalues:
         """One eigenvalue of each motion that oscillates or grows: those that grow, the fastest first, then those that
-        die out, the slowest first."""
+        decay, the slowest first."""
         size = np.abs(self.eigenvalues)
         divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
         told: Eigenvalues = self.eigenvalues[(self.eigenvalues.imag > OSCILLATING * size) | divergent]
@@ -195,9 +195,7 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
     return values[np.lexsort((-values.imag, values.real, np.abs(values.imag)))]
 
 
-def _point(
-    case: Case, system: System, speed: float, start: Array | None
-) -> tuple[StabilityPoint, Array | None]:
+def _point(case: Case, system: System, speed: float, start: Array | None) -> tuple[StabilityPoint, Array | None]:
     """The point at a speed in Hz, sought from the displacements `start`, and those from which to seek the next one."""
     try:
         with advised(case):
@@ -253,7 +251,7 @@ def _threshold(case: Case, system: System, sweep: Sequence[StabilityPoint]) -> t
 
 def _one_speed(point: StabilityPoint, tried: int) -> str:
     """Why a single speed has no threshold."""
-    speed, found = f"{point.speed_Hz:.4g} Hz", "a motion grows" if point.growth > 0.0 else "every motion dies out"
+    speed, found = f"{point.speed_Hz:.4g} Hz", "a motion grows" if point.growth > 0.0 else "every motion decays"
     if tried > 1:
         return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {found}."
     return (
@@ -286,14 +284,14 @@ def _crossing(case: Case, system: System, low: float, high: float) -> tuple[Thre
 
 
 def _without_coefficients(case: Case) -> list[Fault]:
-    """The films that no stiffness and damping of their own describe."""
+    """The faults of films that eight coefficients do not describe."""
     faults = []
     for index, bearing in enumerate(case.bearings):
         if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
-            problem = "ties the two films of a ring together: neither has coefficients of its own."
+            problem = "couples the two films of a ring: neither has coefficients of its own."
             key = f"{bearing_key(case, index)}.channels"
             faults.append(Fault(key, "coupled", None, problem, 'Write channels = "pressure" here.'))
-    problem = "keeps oil of its own: eight coefficients per speed do not say whether the rotor is stable."
+    problem = "is mass-conserving: eight coefficients per speed do not determine stability."
     remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
     named = dict(cavitation_keys(case))
     faults += [Fault(key, name, None, problem, remedy) for key, name in named.items() if law_named(name).keeps_oil]
@@ -302,7 +300,7 @@ def _without_coefficients(case: Case) -> list[Fault]:
 
 def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
     if not speeds:
-        given, problem = f"{case.speed.end:g} Hz", "leaves no speed at which the rotor turns."
+        given, problem = f"{case.speed.end:g} Hz", "leaves no speed above zero."
         remedy = 'Write e.g. speed.to = "300 Hz", or ask for a speed, "25 Hz".'
         raise InputError(case.name or "case", (Fault("speed.to", given, None, problem, remedy),))
     wrong = [speed for speed in speeds if not (math.isfinite(speed) and speed > 0.0)]

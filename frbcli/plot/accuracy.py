@@ -1,4 +1,4 @@
-"""Work over precision: what each rung of a ladder costs, and how far it is from the reference."""
+"""Error over cost of the rungs of a ladder."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ SMALLEST = 1e-16  # stands for no deviation at all
 
 def accuracy_figure(ladder: AccuracyLadder) -> Figure:
     """Largest deviation of the eccentricity over CPU time, both logarithmic: one colour and mark for each theory, mesh
-    and coupling, joined in the order of their tolerances; Pareto's front, the choice of the plan, and how certain the
-    reference is. Raises ValueError for a ladder without rungs.
+    and coupling, joined in the order of their tolerances; Pareto's front, the choice of the plan, and the
+    reference uncertainty. Raises ValueError for a ladder without rungs.
     """
     if not ladder.ladder:
         raise ValueError("a ladder needs a rung")
@@ -28,7 +28,7 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
         tolerances = sorted({item.rung.tolerance for item in ladder.ladder}, reverse=True)
         several = len({item.rung.coupling for item in ladder.ladder}) > 1
         subtitle = (
-            f"{name}: error of a run-up over its cost, first {window:.3g} s, "
+            f"{name}: error over cost of a run-up, first {window:.3g} s, "
             f"tolerances from {tolerances[0]:.0e} to {tolerances[-1]:.0e}"
         ).replace("e-0", "e-")
         figure = new_figure(ladder.case.title or ladder.case.name, subtitle, height=4.8)
@@ -50,7 +50,7 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
         change = max(ladder.reference.error.eccentricity_largest, SMALLEST)
         axes.set_ylim(bottom=min(axes.get_ylim()[0], change / 3.0))
         axes.axhspan(axes.get_ylim()[0], change, color=GREY, alpha=0.15, linewidth=0.0)
-        axes.annotate("how certain the reference is", (1.0, change), xycoords=("axes fraction", "data"),
+        axes.annotate("reference uncertainty", (1.0, change), xycoords=("axes fraction", "data"),
                       xytext=(-4, -3), textcoords="offset points", ha="right", va="top", fontsize=7.5,
                       color=GREY)  # fmt: skip
         axes.set_xlabel("CPU time in s, with the tabulation of the films")
@@ -61,7 +61,7 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
 
 
 def _draw_front(axes: Axes, ladder: AccuracyLadder) -> None:
-    """The front as steps: nothing has been found left of and below it."""
+    """The front as steps."""
     front = ladder.front
     cost, error = [_cost(item) for item in front], [_error(item) for item in front]
     dearest = max(_cost(item) for item in ladder.ladder)

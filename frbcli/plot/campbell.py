@@ -1,4 +1,4 @@
-"""The Campbell diagram: eigenfrequencies over rotor speed, those that grow marked, and how fast each of these grows."""
+"""The Campbell diagram: eigenfrequencies over rotor speed, growing motions marked, and their growth."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode
 DOT, SMALL_DOT = 15.0, 6.0  # pt^2
 BESIDE_ONE = 1.1  # times the speed of a single point, which the edge would cut
-GROWTH_FLOOR = 1.0  # 1/s, smallest half height of the growth panel: round-off is no news
+GROWTH_FLOOR = 1.0  # 1/s, smallest half height of the growth panel, above round-off
 
 
 def campbell_figure(stability: Stability) -> Figure:
     """Damped eigenfrequencies of all oscillating motions over the swept speeds, and the growth of the critical one.
 
-    Motions that grow are filled dots in both panels, at zero frequency where they do not oscillate. Motions that die
-    out without oscillating have no frequency and are left out, those faster than the frequency axis as well.
+    Motions that grow are filled dots in both panels, at zero frequency where they do not oscillate. Motions that decay
+    without oscillating have no frequency and are left out, those faster than the frequency axis as well.
     """
     points = [point for point in stability.sweep if point.films]
     case = stability.case
@@ -42,10 +42,10 @@ def _draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
     critical = [point.critical.imag / (2 * np.pi) for point in points if len(point.oscillating)]
     top = max(fastest, ABOVE_LOWEST * max([*critical, *frequencies[grows]], default=0.0))
     ends = np.array([0.0, fastest])
-    for label, order, dashes in (("rotor speed", 1.0, (0, (5, 3))), ("half of it", 0.5, (0, (1, 2)))):
+    for label, order, dashes in (("rotor speed", 1.0, (0, (5, 3))), ("half the rotor speed", 0.5, (0, (1, 2)))):
         axes.plot(ends, order * ends, color=GREY, linestyle=dashes, linewidth=1.1, label=label, zorder=1.5)
     axes.scatter(
-        speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="dies out"
+        speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="decays"
     )
     axes.scatter(speeds[grows], frequencies[grows], DOT, color=VERMILION, label="grows", zorder=3)
     axes.set_xlim(0.0, fastest * (1.0 if len(points) > 1 else BESIDE_ONE))

@@ -1,4 +1,4 @@
-"""Several models of the films in one picture: eccentricities overlaid, and what happens when."""
+"""Several models of the films in one picture: eccentricities overlaid, and their events."""
 
 from __future__ import annotations
 

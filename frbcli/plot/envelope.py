@@ -1,4 +1,4 @@
-"""What a picture shows of a signal with many samples: each short stretch from its lowest to its highest value.
+"""What a picture shows of a signal with many samples: the lowest and the highest value of each short span.
 
 A run is read a piece at a time, so that a long run needs no more memory than a short one.
 """
@@ -17,7 +17,7 @@ from frbcli.results.store import Run
 Values = NDArray[np.float64]
 
 DRAWN_POINTS = 4000  # more than a picture has columns of pixels
-SHORTEST = 4  # samples of a stretch: below, all are drawn
+SHORTEST = 4  # samples of a span; with fewer, all are drawn
 
 
 class Column(Protocol):
@@ -27,7 +27,7 @@ class Column(Protocol):
 
 
 class Envelope:
-    """Fewer points that draw the same line: the lowest and the highest of each stretch, where they lie, and the last.
+    """Fewer points that draw the same line: the lowest and the highest of each span at their places, and the last.
 
     count: of the points that will come, in their order.
     """

@@ -1,4 +1,4 @@
-"""How full of oil the films are, over time or rotor speed."""
+"""Oil fraction of the films, over time or rotor speed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROOM = 0.02  # above a full film
 def oil_content_figure(
     runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None, over: Over = "time"
 ) -> Figure:
-    """Oil fraction of each film, meaned over its gap, the runs overlaid, from from_time to to_time in s.
+    """Oil fraction of each film, averaged over the gap, the runs overlaid, from from_time to to_time in s.
 
     Raises RunFileError if a run has none: its cavitation model does not conserve oil.
     """
@@ -28,8 +28,8 @@ def oil_content_figure(
     for run in runs:
         if not told or any(name not in run.signals for name in told):
             keeping = ", ".join(names(law for law in laws() if law.keeps_oil))
-            remedy = f"Run the case with a model that keeps its oil: {keeping}."
-            raise refuse(run.path, "does not tell how full its films are.", remedy)
+            remedy = f"Run the case with a mass-conserving model: {keeping}."
+            raise refuse(run.path, "has no oil fraction.", remedy)
     curves = [(name[len(SIGNAL) + 1 :].replace("_", " "), [run.signal(name) for run in runs]) for name in told]
     with styled():
         figure = new_figure(*heading(runs))

@@ -71,7 +71,7 @@ def _draw(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[float, fl
 
 
 def _reach(x: Signal, y: Signal, first: int, last: int) -> float:
-    """The largest distance from the center."""
+    """The largest distance from the centre."""
     return max(float(np.max(np.hypot(x[start:stop], y[start:stop]))) for start, stop in pieces(first, last))
 
 

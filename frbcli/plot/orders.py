@@ -44,5 +44,5 @@ def orders_figure(
 
 
 def named(order: float) -> str:
-    """An order for people, e.g. "0.5 ω"."""
+    """Label of an order, e.g. "0.5 ω"."""
     return "ω" if order == 1.0 else f"{order:g} ω"

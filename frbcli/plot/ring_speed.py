@@ -24,7 +24,7 @@ from frbcli.results.store import Run
 
 Values = NDArray[np.float64]
 
-SLOWEST = 0.02  # share of the highest rotor speed below which a ratio says nothing
+SLOWEST = 0.02  # share of the highest rotor speed below which the ratio is not drawn
 ROOM = 1.15  # above the highest curve
 PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
 START = 0.05  # share of the run after which the highest value is sought: a rotor that falls drags its rings

@@ -1,4 +1,4 @@
-"""What pictures read of a run: motions, lengths, names, events."""
+"""Data of a run for pictures: motions, lengths, names, events."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def bearing_of(run: Run, node: str) -> str:
 def ends(run: Run) -> tuple[float, float]:
     """The first and the last time in s; raises RunFileError if there is nothing to draw."""
     if len(run) < 2:
-        raise refuse(run.path, "holds no samples yet.", "Let the run go on with --resume.")
+        raise refuse(run.path, "holds no samples yet.", "Resume the run with --resume.")
     return float(run.read(TIME, 0, 1)[0]), float(run.read(TIME, len(run) - 1)[0])
 
 
@@ -73,7 +73,7 @@ def clearance(run: Run, bearing: str = "") -> float:
     length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
     if length > 0.0:
         return length
-    raise refuse(run.path, "does not say the clearance that amplitudes refer to.", "Run the case again.")
+    raise refuse(run.path, "lacks the clearance to which amplitudes refer.", "Run the case again.")
 
 
 def case_tables(run: Run) -> dict[str, Any]:
@@ -104,7 +104,7 @@ def model(run: Run) -> str:
 
 
 def labels(runs: Sequence[Run]) -> list[str]:
-    """What tells several runs apart in a legend: their models if these differ, else their files."""
+    """Names of several runs in a legend: their models if these differ, else their files."""
     for names in ([model(run) for run in runs], [run.path.stem for run in runs]):
         if len(set(names)) == len(runs) and all(names):
             return [plain(name) for name in names]
@@ -122,7 +122,7 @@ def heading(runs: Sequence[Run]) -> tuple[str, str]:
 
 
 def events(run: Run) -> list[dict[str, Any]]:
-    """The events that the run tells, or else those found in it; none where searching would take too much memory."""
+    """The recorded events of the run, else those found in it; none where the search would take too much memory."""
     return run.events or ([asdict(event) for event in find_events(run)] if is_searchable(run) else [])
 
 

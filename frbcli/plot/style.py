@@ -19,15 +19,19 @@ from matplotlib.figure import Figure
 from frbcli.errors import Fault, InputError, printable
 from frbcli.results.place import remove_part, wrong_place
 
-# Okabe and Ito: told apart by the colour-blind too
+# Okabe and Ito: distinguishable also for the colour-blind
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 SKY, PURPLE, BLACK, GREY = "#56B4E9", "#CC79A7", "#000000", "#707070"
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 LEVEL_MAP = "viridis"  # rises evenly in lightness, so that it survives a grey print
 
-Picture = Figure  # as other rooms call it, which know nothing of matplotlib
+Picture = Figure  # the name outside matplotlib
 
-FORMATS = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}  # no dates: the same run, the same file
+FORMATS = {
+    ".png": {},
+    ".pdf": {"CreationDate": None},
+    ".svg": {"Date": None},
+}  # no dates, so that the same run gives the same file
 
 LABEL_WIDTH = 0.19  # of a label above a panel, relative to the panel
 LABEL_ROWS = 3
@@ -107,9 +111,9 @@ def legend_below(figure: Figure, axes: Axes) -> None:
 
 
 def check_picture(path: Path) -> None:
-    """Raises InputError if a picture cannot have this name or this place: before the work, not after."""
+    """Raises InputError if a picture cannot have this name or this place; called before the work."""
     if path.suffix.lower() not in FORMATS:
-        raise _refuse(path, "is no picture frb can write.", f"End it with {', '.join(FORMATS)}.")
+        raise _refuse(path, "is not a picture format of frb.", f"End it with {', '.join(FORMATS)}.")
     if wrong := wrong_place(path):
         raise _refuse(path, *wrong)
 

@@ -1,4 +1,4 @@
-"""One picture that tells a run: eccentricity with its events, waterfall, rotor speed."""
+"""Summary of a run: eccentricity with its events, waterfall, rotor speed."""
 
 from __future__ import annotations
 
@@ -22,8 +22,15 @@ from frbcli.results.store import Run
 SIGNAL = "journal"
 FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
 
-NAMES = {"critical-speed": "critical speed", "self-excited": "self-excited", "onset": "onset of whirl",
-         "offset": "end of whirl", "lock-in": "lock-in", "contact": "contact", "clearance-step": "clearance step"}
+NAMES = {
+    "critical-speed": "critical speed",
+    "self-excited": "self-excited",
+    "onset": "onset of whirl",
+    "offset": "end of whirl",
+    "lock-in": "lock-in",
+    "contact": "contact",
+    "clearance-step": "clearance step",
+}
 
 
 def summary_figure(run: Run) -> Figure:
@@ -89,7 +96,7 @@ def _marks(found: list[dict[str, Any]]) -> list[tuple[float, str]]:
 
 
 def _words(event: dict[str, Any]) -> str:
-    """An event for people: what, at which speed, with which frequency."""
+    """Label of an event: kind, speed, frequency."""
     name = NAMES.get(event["kind"], event["kind"])
     film = f" {event['film'].replace('_', ' ')}" if event.get("film") else ""
     ratio = event.get("frequency_ratio")

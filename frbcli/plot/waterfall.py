@@ -36,7 +36,7 @@ MOST_VALUES = 3e6  # of a map of levels
 TURNING = 1e-3  # share of the highest speed per window that is a change of speed
 FEWEST_COLUMNS, COLUMNS = 50, 2000  # spectra: the latter are more than a picture has columns of pixels
 SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
-TOLD_dB = 0.1  # 1 %: what the synchronous line reads low less than that is not told
+TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
 
 
 def waterfall_figure(
@@ -96,9 +96,9 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
 
 
 def reading(found: Spectrogram) -> str:
-    """How the spectra were made, and by how much the synchronous line reads low at the worst."""
+    """Window of the spectra, and the largest loss of the synchronous line."""
     low = float(np.max(found.low_dB, initial=0.0))
-    told = f": the line ω reads up to {low:.1f} dB low, --order 1 does not" if low >= TOLD_dB else ""
+    told = f": the line ω is up to {low:.1f} dB low, use --order 1" if low >= TOLD_dB else ""
     return f"window {1e3 * found.window_s:.3g} ms{told}"
 
 
@@ -121,9 +121,7 @@ def level_label(run: Run, signal: str) -> str:
     return f"amplitude relative to {'C$_i$ + C$_o$' if ringed else 'the clearance'} in dB"
 
 
-def draw_levels(
-    axes: Axes, run: Run, signal: str, found: Spectrogram, over: Over, log: bool = False
-) -> QuadMesh:
+def draw_levels(axes: Axes, run: Run, signal: str, found: Spectrogram, over: Over, log: bool = False) -> QuadMesh:
     """The map of levels with its lines, on axes of a figure."""
     across = found.time_s if over == "time" else found.speed_Hz
     mesh = axes.pcolormesh(
@@ -152,7 +150,7 @@ def draw_levels(
 
 
 def _orders(run: Run, signal: str, found: Spectrogram) -> list[tuple[str, Values]]:
-    """The lines an engineer looks for: synchronous, and what the oil films whirl with."""
+    """The synchronous line, and the frequencies of free whirls."""
     lines = [("ω", found.speed_Hz)]
     bearing = bearing_of(run, signal)
     if bearing not in points(run.signals, "ring"):

@@ -1,1 +1,1 @@
-"""Run files: what a run leaves behind."""
+"""Run files."""

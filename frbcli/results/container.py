@@ -26,7 +26,7 @@ PIECE = 4 * 1024**2  # bytes of a file that are held at a time
 
 
 def refuse(path: Path, problem: str, remedy: str = "") -> RunFileError:
-    """The error that says why `path` is no use as a run file."""
+    """The error of a `path` that cannot be a run file."""
     return RunFileError(f"run file {path}", (Fault(key="file", value="", line=None, problem=problem, remedy=remedy),))
 
 
@@ -37,7 +37,7 @@ def seal(content: memoryview) -> bytes:
 
 
 def write_whole(path: Path, content: memoryview) -> None:
-    """Put `content` in place of `path` in one step: whoever opens `path` finds the old file or the new one, whole.
+    """Put `content` in place of `path` in one step: a reader of `path` finds either the complete old or new file.
 
     Raises RunFileError if the disk or the directory does not take it.
     """
@@ -52,7 +52,7 @@ def write_whole(path: Path, content: memoryview) -> None:
     except OSError as error:
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
-        remedy = "Make room, and go on with --resume; or choose another place with -o."
+        remedy = "Free some space and continue with --resume, or choose another place with -o."
         raise refuse(path, f"cannot be written: {error.strerror}.", remedy) from error
 
 
@@ -90,7 +90,7 @@ def _check_seal(path: Path, file: BufferedReader) -> None:
     if not whole or (head != _user_block(length, checksum) and not crowded):
         raise refuse(path, "was cut short or changed after frb wrote it.", "Run the case again.")
     if crowded or not heaps.are_sound(file, USER_BLOCK, USER_BLOCK + length, places):
-        raise refuse(path, "is not a whole run: its texts cannot be found.", "Run the case again.")
+        raise refuse(path, "is not a complete run: its texts cannot be found.", "Run the case again.")
     file.seek(0)
 
 
@@ -130,7 +130,7 @@ def check_output(path: Path) -> None:
         if path.exists() and not path.is_file():
             raise refuse(path, "is not a file.", "Give -o the name of a file.")
         if path.exists() and not is_run(path):
-            raise refuse(path, "exists and is not a run of frb; it is left alone.", "Choose another name.")
+            raise refuse(path, "exists and is not a run of frb; it is not replaced.", "Choose another name.")
     except OSError as error:
         raise refuse(path, f"cannot be used: {error.strerror}.", "Choose another name with -o.") from error
 

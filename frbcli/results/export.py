@@ -32,7 +32,7 @@ def export_run(run: Run, path: str | Path, table_format: str) -> Path:
         raise _refuse("output", f"{path} {wrong[0]}", wrong[1])
     try:
         if path.is_file() and is_run(path):
-            raise _refuse("output", f"{path} is a run of frb; it is left alone.", "Choose another name with -o.")
+            raise _refuse("output", f"{path} is a run of frb; it is not replaced.", "Choose another name with -o.")
     except OSError as error:
         raise _refuse("output", f"{path} cannot be used: {error}.", "Choose another place with -o.") from error
     try:

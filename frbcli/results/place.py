@@ -1,4 +1,4 @@
-"""Whether a file can be written at a place: asked before the work, not after."""
+"""Whether a file can be written at a place, checked before the work."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def wrong_place(path: Path) -> tuple[str, str] | None:
-    """What is wrong with a file that is to be written, and what to do about it; None if nothing is.
+    """Problem and remedy of a file that is to be written; None if there is no problem.
 
     Its directory has to be there, its name possible, and both open for writing. Whether the disk has room for it is
     known when it is written.
@@ -28,7 +28,7 @@ def wrong_place(path: Path) -> tuple[str, str] | None:
 
 
 def remove_part(path: Path) -> None:
-    """Remove a file that could be written in part only, so that nobody takes it for whole; devices stay."""
+    """Remove a file that was written in part only; devices stay."""
     with suppress(OSError):
         if path.is_file():
             path.unlink()

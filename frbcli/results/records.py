@@ -1,4 +1,4 @@
-"""What a run file must say: the forms of its texts and records, and its signals with their names, units and values.
+"""The content of a run file: the forms of its texts and records, and its signals with their names, units and values.
 
 Whatever reads a run relies on this: what is printed is printable, what is computed with is finite and no larger than
 any machine needs, and there is never more of it than a picture or a table can show.
@@ -30,7 +30,7 @@ UNEVEN = 1e-3  # share of a time step by which a sample may be off: round-off is
 EVENT_NUMBERS = ("t_s", "speed_Hz")  # every event has them
 EVENT_OPTIONAL = ("frequency_Hz", "frequency_ratio")  # or None
 EVENT_KEYS = ("kind", "film", *EVENT_NUMBERS, *EVENT_OPTIONAL)
-# What is told of every run that has ended, and what comes together.
+# Records of every run that has ended, and those that come together.
 COST_OF_ALL = ("cpu_s", "steps", "rejected_steps", "steps_per_revolution", "film_solves", "ms_per_film_solve",
                "simulated_ms_per_hour")  # fmt: skip
 ERROR_OF_ALL = ("time_integration",)
@@ -67,17 +67,18 @@ def wrong_record(records: Mapping[str, Any]) -> str:
         "versions": lambda record: _is_table(record, lambda _, value: _is_label(value)),
         "references": lambda record: _is_table(record, _is_reference),
         "cost": lambda record: _is_table(record, lambda _, value: _is_number(value)) and _is_complete(record),
-        "error": lambda record: _is_table(record, lambda _, value: value is None or _is_number(value))
-        and _is_complete(record),
-        "events": lambda record: isinstance(record, list)
-        and len(record) <= MOST_EVENTS
-        and all(map(_is_event, record)),
+        "error": lambda record: (
+            _is_table(record, lambda _, value: value is None or _is_number(value)) and _is_complete(record)
+        ),
+        "events": lambda record: (
+            isinstance(record, list) and len(record) <= MOST_EVENTS and all(map(_is_event, record))
+        ),
     }
     return next((name for name, holds in forms.items() if not holds(records[name])), "")
 
 
 def untold(cost: Mapping[str, Any], error: Mapping[str, Any]) -> str:
-    """What a run that has ended does not tell of its cost and its error, "" if it tells all that every run does."""
+    """The missing record of cost or error of a run that has ended, "" if it has all."""
     numbers = [(cost, name) for name in COST_OF_ALL] + [(error, name) for name in ERROR_OF_ALL]
     return next((name for record, name in numbers if not _is_number(record.get(name))), "")
 

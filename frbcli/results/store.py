@@ -67,7 +67,7 @@ class Header:
 
 @dataclass(frozen=True)
 class Run:
-    """A run as its file tells it. `run["eccentricity"]` gives the values (n,) of a signal, in the unit of its name.
+    """A run from its file. `run["eccentricity"]` gives the values (n,) of a signal, in the unit of its name.
 
     Of a run that was read from a file they are read when they are asked for, and a long run is better read in pieces:
     `run.read("eccentricity", 0, 1000)`. checkpoint: the state from which the run can go on, or None;
@@ -264,7 +264,7 @@ def _plain(value: Any) -> Any:
 def read_run(path: str | Path) -> Run:
     """Read a run file. Its signals and its checkpoint stay in the file until they are asked for.
 
-    Raises RunFileError for anything that is not a whole run, whoever wrote it: see parts.py, records.py.
+    Raises RunFileError for anything that is not a complete run: see parts.py, records.py.
     """
     path = Path(path)
     with open_whole(path) as content:
@@ -272,20 +272,20 @@ def read_run(path: str | Path) -> Run:
             with h5py.File(content, "r") as file:
                 return _read(path, file, Place.of(path, content))
         except parts.WrongPart as error:
-            raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from None
+            raise refuse(path, f"is not a complete run: {error}.", "Run the case again.") from None
         except UNREADABLE as error:
-            raise refuse(path, f"is not a whole run: {error}.", "Run the case again.") from error
+            raise refuse(path, f"is not a complete run: {error}.", "Run the case again.") from error
 
 
 def _read(path: Path, file: h5py.File, place: Place) -> Run:
-    """The run in a file that is as frb wrote it, or as somebody did who knows how frb seals it."""
+    """The run in a file with a valid checksum."""
     group = parts.group(file, "signals")
     columns = {name: parts.array(group, name, place, dimensions=1) for name in parts.names(group, "signals")}
     units = {name: parts.text_attribute(group[name], "unit") for name in columns}
     state, samples = _checkpoint(file, place)
     rest = parts.rest([*columns.values(), *({} if state is None else state).values()], place.size - USER_BLOCK)
     if not 0 <= rest <= LARGEST_REST:
-        raise parts.WrongPart("the sizes of its parts do not make up that of the file")
+        raise parts.WrongPart("the sizes of its parts do not add up to that of the file")
     if sum(array.bytes for array in ({} if state is None else state).values()) > LARGEST_STATE:
         raise parts.WrongPart("its checkpoint is too large")
     texts: dict[str, Any] = {name: parts.text(file, name) for name in TEXTS}

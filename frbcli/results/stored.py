@@ -23,7 +23,7 @@ SIZE = 0  # its position in a stamp
 
 @dataclass(frozen=True)
 class Place:
-    """A file as it was when it was checked. path: absolute; stamp: what tells it from one that came in its place."""
+    """A file as it was when it was checked. path: absolute; stamp: its identity, against a later file there."""
 
     path: Path
     stamp: tuple[int, ...]

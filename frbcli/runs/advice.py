@@ -1,6 +1,6 @@
-"""What to tell of the end of a run: what happened, why as far as that is known, and what to change.
+"""Advice at the end of a run: what happened, the cause if known, and remedies.
 
-Advice follows from how the run ended, from the case and from what is set in it: nothing is advised that is set already.
+Advice follows from the end of the run and from the case; settings that the case already has are not advised.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from frbcli.solve.state import STEP
 from frbcli.solve.step import SMALLEST_STEP
 from frbcli.units import display
 
-THIN = 0.99  # eccentricity from which a film that could not be solved is thin, and not another one
+THIN = 0.99  # eccentricity above which the cause of a film without solution is its small gap
 AT_ONCE = 1e-9  # s within which a run ends at a step of the clearance
-SHORTER = 10.0  # what a target, tolerance or macro step is divided by
-FINEST_TARGET, FINEST_TOLERANCE = 1e-5, 1e-9  # what is smaller is not made smaller still
-SOFTER = 10.0  # what a contact's stiffness is divided by
-STIFFNESS = "1e9 N/m"  # of a contact, for those who have none
+SHORTER = 10.0  # divisor of a target, tolerance or macro step
+FINEST_TARGET, FINEST_TOLERANCE = 1e-5, 1e-9  # smaller values are not reduced further
+SOFTER = 10.0  # divisor of a contact stiffness
+STIFFNESS = "1e9 N/m"  # suggested contact stiffness
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def run_end(run: Run) -> RunEnd:
 
 
 def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
-    """Sentences on the end of a run of a case; none where there is nothing to tell."""
+    """Sentences on the end of a run of a case; may be none."""
     if end.status == "interrupted":
         return ("Go on with the same command and --resume.",)
     if end.status == "starved":
@@ -78,12 +78,12 @@ def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
 
 
 def _starved(case: Case) -> tuple[str, ...]:
-    """A film that keeps its oil, and into which none is pushed, carried less and less."""
+    """A mass-conserving film without a pressurised supply has lost its load."""
     told = []
     for film in unfed_films(case):
         if film.keeps:
             name = f"The film {film.name}" if film.name else "The film"
-            told.append(f"{name} ran out of oil: {film.cause}, so that more oil left than came in. {film.remedy}")
+            told.append(f"{name} starved: {film.cause}, so that more oil left than flowed in. {film.remedy}")
     return tuple(told)
 
 
@@ -97,7 +97,7 @@ def _contact(case: Case, end: RunEnd) -> tuple[str, ...]:
 
 
 def _closed_shell(case: Case, end: RunEnd) -> str:
-    """A clearance step that leaves the journal no room, which no policy helps against."""
+    """The sentence on a clearance step below the displacement of the journal, else empty."""
     if not any(abs(time - end.t_s) <= AT_ONCE for time in step_times(case)):
         return ""
     names = [
@@ -107,40 +107,40 @@ def _closed_shell(case: Case, end: RunEnd) -> str:
         if abs(step.time - end.t_s) <= AT_ONCE
     ]
     return (
-        f"The step of the clearance {', '.join(names)} at {end.t_s:g} s closes the shell upon the journal. "
-        "Take a larger clearance, or a time at which the journal lies nearer to the middle."
+        f"The step of the clearance {', '.join(names)} at {end.t_s:g} s is below the displacement of the journal. "
+        "Take a larger clearance, or a time with a smaller eccentricity."
     )
 
 
 def _before(end: RunEnd) -> str:
-    """What was going on."""
+    """The motion before the contact."""
     if end.whirl is None:
-        return "; no whirl had begun before: the film did not carry weight and unbalance"
+        return "; there was no whirl before: the film could not carry weight and unbalance"
     frequency, begun = end.whirl["frequency_Hz"], f"since {end.whirl['t_s']:.3f} s"
     return f", whirling {begun}" + ("" if frequency is None else f" with about {frequency:.3g} Hz")
 
 
 def _through_contact(case: Case) -> str:
     stiffness = "" if case.contact.stiffness is not None else f" --set contact.stiffness='{STIFFNESS}'"
-    return f"To go on through contact: --set contact.policy=elastic{stiffness}."
+    return f"To continue through contact: --set contact.policy=elastic{stiffness}."
 
 
 def _missing_oil(case: Case) -> tuple[str, ...]:
-    """A cause of many ends: whatever the model, physics would not have it."""
+    """Films without a pressurised supply, a frequent cause."""
     return tuple(film.remark for film in unfed_films(case))
 
 
 def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
-    """Rotor and films were not solved in the shortest of steps."""
+    """Sentences on a run whose equations had no solution with the smallest step size."""
     step = f"{SMALLEST_STEP:.0e} s" if end.step_s is None or end.step_s < SMALLEST_STEP else f"{end.step_s:.1e} s"
     touching = end.eccentricity >= case.contact.eccentricity
     place = "in contact with the shell" if touching else "not in contact"
     told = (
-        f"Rotor and films were not solved at {end.speed_Hz:.4g} Hz, however short the step (below {step}): the "
+        f"Rotor and films had no solution at {end.speed_Hz:.4g} Hz with a step size below {step}: the "
         f"{end.journal} was {place}, at an eccentricity of {end.eccentricity:.4f}{_while(end)}."
     )
     causes = (*_missing_oil(case), *_thin_film(case, end, touching))
-    return (told, *causes, f"What may help: {'; '.join((*_numerics(case), *film_remedies(case)))}.")
+    return (told, *causes, f"Possible remedies: {'; '.join((*_numerics(case), *film_remedies(case)))}.")
 
 
 def _while(end: RunEnd) -> str:
@@ -148,7 +148,7 @@ def _while(end: RunEnd) -> str:
 
 
 def _thin_film(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
-    """Of a journal in contact, or nearly so."""
+    """Remedies for a journal in contact or close to it."""
     contact = case.contact
     if touching and contact.stiffness is not None:
         softer = display(contact.stiffness / SOFTER, "N/m")
@@ -156,11 +156,11 @@ def _thin_film(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
     if touching or end.eccentricity < THIN:
         return ()
     gap = (1.0 - end.eccentricity) * _clearance(case_at(case, end.t_s), end.film)
-    thin = f"The gap is {1e6 * gap:.2g} um there, and its film the stiffer the thinner it is."
+    thin = f"The smallest gap is {1e6 * gap:.2g} um, and the stiffness of the film is very large there."
     if contact.policy == "elastic":
-        return (f"{thin} Let the shell carry earlier: contact.eccentricity = {THIN:g}.",)
+        return (f"{thin} Let contact begin earlier: contact.eccentricity = {THIN:g}.",)
     earlier = f"contact.policy = elastic with contact.eccentricity = {THIN:g} and contact.stiffness"
-    return (f"{thin} Let an elastic shell carry earlier: {earlier}.",)
+    return (f"{thin} Use an elastic shell: {earlier}.",)
 
 
 def _clearance(case: Case, film: str) -> float:
@@ -168,7 +168,7 @@ def _clearance(case: Case, film: str) -> float:
 
 
 def _numerics(case: Case) -> tuple[str, ...]:
-    """What the time integration may be told."""
+    """Settings of the time integration that may help."""
     found: list[str] = []
     accuracy = case.accuracy
     if case.film.coupling == APART:

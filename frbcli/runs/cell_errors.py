@@ -1,4 +1,4 @@
-"""What two runs of the same machine on different cells say of the error of either."""
+"""The error of a run by its cells, from two runs of the same machine on different cells."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from frbcli.scene.system import System
 from frbcli.solve.state import Array
 
-ORDER = 0.66  # in which errors fall with the cells, at least: that of films that fill again after they starved
+ORDER = 0.66  # lowest order of the error in the mesh: that of films that fill again after starvation
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class FewerCells:
         apart = samples - other
         films = [_largest(apart[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True)]
         eccentric = films
-        if system.ring_count:  # nothing is said of the directions of films between rings
+        if system.ring_count:  # directions do not count for films at rings
             runs = samples[:, :n], other[:, :n]
             eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
         points = [_largest(apart[:, :n], selection, system.clearances[0]) for _, selection in rotor.points]

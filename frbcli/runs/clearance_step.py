@@ -1,7 +1,7 @@
-"""The state of a run when clearances change: the rotor stays where it is and goes on as it did, and so does the oil.
+"""The state of a run when clearances change: displacements and velocities of the rotor and the oil stay the same.
 
-What a film held of oil is in the new gap at once: a wider one is filled to a smaller part, and from one that has become
-too narrow the rest leaves through the ends.
+The oil of a film stays in the new gap: a wider gap has a smaller oil fraction, and from a narrower gap the surplus
+leaves through the ends.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _refill(old: VolumeFilm, new: VolumeFilm, d: tuple[float, float], state: Sta
     share, free = old.section.clearance / new.section.clearance, ~new.grid.fixed
     pressure = old.scales.reference * old.section.pressure_scale / (new.scales.reference * new.section.pressure_scale)
     oil, w = share * state.wet[OIL, i], state.wet[W, i]
-    full = np.maximum(new.full(), pressure * w)  # cells keep their pressure if there is oil enough
+    full = np.maximum(new.full(), pressure * w)  # cells with enough oil keep their pressure
     gap = new.gap(d, new.grid.centre)[:, None]
     kept = np.where(free, _with_fraction(new, oil / gap, full), w)
     state.wet[W, i] = state.wet[W_BEFORE, i] = kept

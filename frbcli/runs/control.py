@@ -1,4 +1,4 @@
-"""What the time loop may do in a run."""
+"""The limits of the time loop in a run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from frbcli.solve.state import Control
 
 
 def control_of(case: Case, plan: Plan) -> Control:
-    """What the case and its plan allow the time loop to do."""
+    """The limits of the time loop, from the case and its plan."""
     contact = case.contact
     stiffness = contact.stiffness if contact.policy == "elastic" and contact.stiffness is not None else 0.0
     return Control(

@@ -1,4 +1,4 @@
-"""What a co-simulation of rotor and films begins with, and what it costs."""
+"""The initial state of a co-simulation of rotor and films, and its cost."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ def in_turn(system: System, state: State, omega: float) -> State:
 
     omega: speed of the rotor in rad/s.
 
-    The coupling variables (section 5.2.1) are taken as constant before the beginning, but for the journals, which move
-    on as they do.
+    The coupling variables (section 5.2.1) are constant before the start, except those of the journals, which
+    move with their initial velocity.
     """
     rotor, rings = system.rotor, list(system.spins)
     numbers = np.zeros(CO_NUMBERS)

@@ -1,4 +1,4 @@
-"""The error budget of a run: what each approximation leaves, and what all of them leave of the displacements."""
+"""The error budget of a run: the error of each approximation, and the total error of the displacements."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from frbcli.solve.time_loop import NEWTON_SHARE
 # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films (ERROR_MEMORY):
 # that is 2 to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
 COUNTED = 0.5
-# A disk swings on for long after the films have calmed the journals: there the true error is 0.2 to 2.5 times the sum
-# of all of them.
+# A disk oscillates longer than its journals, which the films damp: its true error is 0.2 to 2.5 times the sum of all
+# local errors.
 LASTING = 3.0
-# A force that is wrong by a share moves its journal by so many shares of the eccentricity; cells on a mesh twice as
-# fine still keep a third of their error. Of cells this is too little where errors add up on the way: it is said only
-# where the run was not made on fewer cells.
+# A relative error of the force moves the journal by as large a share of the eccentricity; the error of cells on a mesh
+# twice as fine is still a third. For finite-volume films this is too small where errors accumulate: it is used only
+# where the run was not repeated on fewer cells.
 FILM_REACH, CELL_REACH = 2.0, 3.0
-BEFORE_WHIRL = 0.85  # of the time of its event: a whirl has grown for a while before it is seen
-PARTING = ("onset", "self-excited", "contact")  # from there on two runs differ in phase, however exact they are
+BEFORE_WHIRL = 0.85  # of the time of its event: a whirl grows before it is detected
+PARTING = ("onset", "self-excited", "contact")  # afterwards two runs differ in phase, whatever their accuracy
 
 
 def error_budget(
@@ -48,10 +48,10 @@ def error_budget(
     samples: Array,
     fewer: FewerCells | None = None,
 ) -> dict[str, float | None]:
-    """The error of a run as its JSON has it, beside that of quick_budget. until: see quiet_until, s.
+    """The error of a run as in its JSON, without the part of quick_budget. until: see quiet_until, s.
 
     steps: as summed, until then; times (m,) s, samples (m, 2 n + 1 ...): see film_force_errors; fewer: the same run on
-    fewer cells. None stands for what the run does not have: see docs/accuracy.md.
+    fewer cells. None: the run does not have this error, see docs/accuracy.md.
     """
     films = film_force_errors(plan, system, case, times, samples)
     force, short = films.relative(), plan.theory == "short"
@@ -88,8 +88,7 @@ def budget_of_segments(
     samples: Array,
     fewer: FewerCells | None = None,
 ) -> dict[str, float | None]:
-    """The largest of each part over the segments that a run has passed, and of what is known of it beside; otherwise
-    as error_budget."""
+    """The largest value of each part over the segments that a run has passed; otherwise as error_budget."""
     begins, budgets = [segment.start for segment in segments], [known]
     for segment, first, last in zip(segments, begins, [*begins[1:], math.inf], strict=True):
         there = (times >= first) & (times < last)
@@ -116,7 +115,7 @@ def _reach(system: System, samples: Array, parts: Iterable[tuple[Array, float]])
 
 
 def quick_budget(system: System, state: State, angle: float) -> dict[str, float | None]:
-    """What is known of the error without any work, while a run goes on. angle: of the rotor, rad."""
+    """The part of the error that is known during a run. angle: of the rotor, rad."""
     return {
         "time_integration": COUNTED * float(state.numbers[ERROR_LARGEST]),
         "film_force_relative": None,
@@ -125,7 +124,7 @@ def quick_budget(system: System, state: State, angle: float) -> dict[str, float 
 
 
 def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:
-    """Time in s until which runs can be compared point by point."""
+    """Time in s up to which runs can be compared at each time."""
     return min([end, *(BEFORE_WHIRL * float(event["t_s"]) for event in events if event["kind"] in PARTING)])
 
 
@@ -159,10 +158,14 @@ def _springs(case: Case, system: System, sample: Array) -> Array:
         for i, selection in enumerate(system.rotor.journals)
     )
     single = (-0.5 * float(np.trace(force.by_displacement)) for force in forces)
-    return np.array([
-        1.0 / (1.0 / next(single) + 1.0 / next(single)) if isinstance(bearing, FloatingRingBearing) else next(single)
-        for bearing in case.bearings
-    ])
+    return np.array(
+        [
+            1.0 / (1.0 / next(single) + 1.0 / next(single))
+            if isinstance(bearing, FloatingRingBearing)
+            else next(single)
+            for bearing in case.bearings
+        ]
+    )
 
 
 def _journals(system: System) -> Iterable[tuple[Array, float]]:
@@ -170,5 +173,5 @@ def _journals(system: System) -> Iterable[tuple[Array, float]]:
 
 
 def _points(system: System) -> Iterable[tuple[Array, float]]:
-    """Disks and all else that moves; displacements count over the first film's clearance."""
+    """Disks and all other points; displacements are relative to the clearance of the first film."""
     return ((selection, system.clearances[0]) for _, selection in system.rotor.points)

@@ -1,7 +1,7 @@
-"""The error that the cells of a run leave, from the same run on fewer of them.
+"""The error of a run by its cells, from the same run on fewer cells.
 
-Film forces at single states tell too little where a film lives on its own oil and errors add up on a way that lasts:
-how far a run on fewer cells has gone elsewhere holds all of it. It costs 0.3 to 0.7 of the time loop of the run.
+Force errors at single states underestimate the error of a mass-conserving film, where errors accumulate; the difference
+to a run on fewer cells contains all of them. It costs 0.3 to 0.7 of the time loop of the run.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ from frbcli.solve.state import RUNNING
 
 Observer = Callable[[Progress], None]
 
-SHARE, SHARE_WITH_HOLES = 1 / 2, 2 / 3  # of the cells in each direction; fewer would make holes of another size
-COARSER_BY = 1.2  # times as few around, at least: what is nearer says little
+SHARE, SHARE_WITH_HOLES = (
+    1 / 2,
+    2 / 3,
+)  # of the cells in each direction; on fewer cells the feed holes would have another size
+COARSER_BY = 1.2  # least ratio of the cells around
 
 
 def on_fewer_cells(march: March, until: float, observe: Observer | None = None) -> FewerCells | None:

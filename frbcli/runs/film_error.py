@@ -28,13 +28,13 @@ from frbcli.solve.contact import felt_motion
 from frbcli.solve.state import Array
 
 SAMPLES = 48  # states of a run
-PUBLISHED_SAMPLES = 6  # in the published form, where settling takes hundreds of assemblies
+PUBLISHED_SAMPLES = 6  # in the published form, where a steady film takes hundreds of assemblies
 RICHARDSON = 3.0  # an error of second order on twice the elements, from the difference to it
 CELL_SAMPLES = 8  # of them for films with cells, which have to settle at each
-COMPARED = 192  # states of a run with cells, in which it is held against one on fewer
+COMPARED = 192  # states at which a run is compared with one on fewer cells
 FINER = 2  # elements more in each direction
 SMALL_FORCE = 0.1  # of the median one
-QUANTILE = 0.9  # of the errors, by the force that they belong to: what nearly all of it stays below
+QUANTILE = 0.9  # quantile of the errors, weighted with the force
 
 
 @dataclass(frozen=True)
@@ -46,14 +46,14 @@ class FilmErrors:
     sizes: Array
 
     def relative(self, until: float = math.inf) -> float | None:
-        """What nearly all of the force is wrong by at most, relative, in states until a time in s; None without any.
+        """Relative error that 90 % of the force does not exceed, in states until a time in s; None without any.
 
-        A film that carries next to nothing counts as little as it carries."""
+        States are weighted with their force."""
         kept = self.times <= until
         errors, sizes = self.errors[kept], self.sizes[kept]
         if not len(errors) or sizes.max() == 0.0:
             return None
-        # A film that carries next to nothing for a moment, as at the start, is held to what it carries otherwise.
+        # At states with a very small force, as at the start, the error is relative to the usual force.
         scales = np.maximum(sizes, SMALL_FORCE * float(np.median(sizes)))
         relative = errors / np.maximum(scales, np.finfo(float).tiny)
         order = np.argsort(relative)
@@ -70,10 +70,10 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     """Errors of the film forces at sampled states, against the finite-length film on a finer mesh.
 
     times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s. For the short-bearing
-    theory this is the error of the theory itself. In contact it is that of the film in the gap that is kept. Films with
-    oil of their own are compared in states in which it has settled; where it does not settle, they are left out.
+    theory this is the error of the theory itself. In contact it is that of the film in the contact gap.
+    Mass-conserving films are compared in their steady state; where there is none, they are left out.
     """
-    if plan.form == GIVEN:  # a bearing model is what it is: nothing finer is there
+    if plan.form == GIVEN:  # a bearing model has no mesh
         return FilmErrors(*np.zeros((3, 0)))
     if system.published is not None:
         forces = _published_forces(system.published, case)
@@ -108,7 +108,7 @@ Forces = Callable[[int, Array, Array, float], tuple[Array, Array]]
 def _closed_forces(plan: Plan, system: System) -> Forces:
     """Exact and own force of a film without cells."""
     finer = Mesh(FINER * plan.mesh.axial, FINER * plan.mesh.circumferential)
-    # Between axial grooves nothing is tabulated: the same film on the finer mesh is the direct solution.
+    # Films between axial grooves have no table: the same film on the finer mesh is the reference.
     fine = [
         planned_film(plan, bearing, law, finer) if bearing.grooves else None
         for bearing, law in zip(system.bearings, system.laws, strict=True)
@@ -126,7 +126,7 @@ def _closed_forces(plan: Plan, system: System) -> Forces:
 
 
 def _source_forces(plan: Plan, system: System) -> Forces:
-    """Solved force on a finer mesh and tabulated one of a film whose law makes oil."""
+    """Force on a finer mesh and tabulated force of a film that is not mass-conserving."""
     finer = Mesh(FINER * plan.mesh.axial, FINER * plan.mesh.circumferential)
     fine = [replace(film, mesh=finer) for film in system.solved]
 
@@ -149,7 +149,7 @@ def _published_forces(own: PublishedFilm, case: Case) -> Forces:
 
 
 def _cell_forces(plan: Plan, system: System, case: Case) -> Forces:
-    """Fine and own force of a film with cells that has settled."""
+    """Force on a finer mesh and own force of a finite-volume film in its steady state."""
     assert plan.cells is not None
     cells = FINER * plan.cells[0], FINER * plan.cells[1]
     fine = [volume_film(case, place, cells) for place in film_places(case)]

@@ -1,4 +1,4 @@
-"""Names and units of what a run writes, and the head of its file."""
+"""Names and units of the signals of a run, and the header of its file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def ring_names(system: System) -> list[str]:
 def header(
     command: str, case: Case, segments: Sequence[Segment], critical_speeds: Sequence[float] | None = None
 ) -> Header:
-    """The head of the file of a run. Its clearances, which amplitudes refer to, are the first ones; critical_speeds: of
+    """The header of the file of a run. Amplitudes refer to its initial clearances; critical_speeds: of
     the linearised machine in Hz, ascending, None if they are not known."""
     system = segments[0].system
     lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]

@@ -1,4 +1,4 @@
-"""Ctrl-C at a time when nothing is half done."""
+"""Ctrl-C at times at which the state is consistent."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Interrupt:
 
 @contextmanager
 def deaf() -> Iterator[None]:
-    """Within it Ctrl-C is lost. Processes that begin within it stay deaf: where this one hears it, it ends them."""
+    """Within it Ctrl-C is ignored, also by processes that start within it; the caller ends these."""
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(before):
         yield
@@ -39,7 +39,7 @@ def deaf() -> Iterator[None]:
 
 @contextmanager
 def held_back() -> Iterator[Interrupt]:
-    """Within it, Ctrl-C does nothing but be remembered: the caller looks at `asked` when it suits.
+    """Within it, Ctrl-C only sets `asked`, which the caller reads when the state is consistent.
 
     So do other signals that are to end the process, where it has a handler for them, as the command line does. Only the
     main thread is interrupted, and only by what is not ignored altogether (as under nohup).

@@ -1,4 +1,4 @@
-"""A run under way: it is advanced chunk by chunk, tells how far it is, and can be put down and taken up again."""
+"""A run: it is advanced in chunks, reports its progress, and can be stopped and resumed."""
 
 from __future__ import annotations
 
@@ -47,18 +47,18 @@ from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
-# Steps between two looks at the clock: from the first ones on so many as take CHUNK_s, as measured, since nobody can
-# interrupt them.
+# Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
 FIRST_BUDGET, BUDGET, GROWTH = 4, 500, 8.0
 CHUNK_s = 0.1
-# A run whose steps are this many times as many as its plan expected goes nowhere, and would for ever.
+# A run with this many times the expected steps makes no progress and is stopped.
 RUNAWAY, FEWEST_STEPS = 100, 2_000_000
 
 
 @dataclass(frozen=True)
 class Progress:
-    """What a run tells while it goes on. Times in s, speed in Hz; eccentricity: the largest of all films now; cpu_s: so
-    far, and over_plan: over what the plan expected until now; for_error: of the same run again, to tell its error."""
+    """The progress of a run. Times in s, speed in Hz; eccentricity: the largest of all films now; cpu_s: so
+    far, and over_plan: over what the plan expected until now; for_error: of the second run,
+    from which the error follows."""
 
     t_s: float
     end_s: float
@@ -74,9 +74,9 @@ class Progress:
 
 
 class March:
-    """A run under way: the constant parts, the state, the clock.
+    """A run: the constant parts, the state, the clock.
 
-    Its machine may change on the way (scene/segments.py): all segments are there from the beginning, one is current.
+    Its machine may change (scene/segments.py): all segments exist from the start, and one is current.
     """
 
     def __init__(self, case: Case, plan: Plan, segments: Sequence[Segment], profile: SpeedProfile) -> None:
@@ -115,13 +115,13 @@ class March:
         before = self._system
         self._take_up(self._current + 1)
         if largest_eccentricity(self._system, self._state) >= self._control.contact_eccentricity:
-            return CONTACT  # a shell that closes upon the journal
+            return CONTACT  # the new clearance is below the displacement
         self._state = with_clearances(before, self._system, self._profile, self._state, self._apart)
         return RUNNING
 
     @property
     def plan(self) -> Plan:
-        """What the run follows."""
+        """The speed profile of the run."""
         return self._plan
 
     @property
@@ -142,7 +142,7 @@ class March:
 
     @property
     def starves(self) -> bool:
-        """Whether a film gets no oil, so that a run that cannot go on has run dry."""
+        """Whether a film has no inflow, so that a run without solution has starved."""
         return no_oil_comes_in(self._system)
 
     def compile(self) -> None:
@@ -199,7 +199,7 @@ class March:
         return signals
 
     def snapshot(self) -> dict[str, Array]:
-        """All that is needed to go on as if the run had not stopped."""
+        """The checkpoint, from which the run continues with the same result."""
         clock = np.array([self._cpu_s, self._wall_s])
         return {**self._state._asdict(), "film_samples": self._samples, "clock": clock}
 
@@ -223,7 +223,7 @@ class March:
         wall = max(self._wall_s, 1e-9)
         return {
             "cpu_s": self._cpu_s,
-            "error_cpu_s": 0.0,  # told when the run has ended
+            "error_cpu_s": 0.0,  # known when the run has ended
             "predicted_cpu_s": self._expected.cpu_s,
             "wall_s": self._wall_s,
             "steps": int(numbers[STEPS]),
@@ -237,7 +237,7 @@ class March:
         }
 
     def error_so_far(self) -> dict[str, float | None]:
-        """The error of a run that goes on, as far as it costs nothing to know."""
+        """The part of the error that is known during a run."""
         return quick_budget(self._system, self._state, self._profile.angle(self.time))
 
     def again(self, plan: Plan) -> March:
@@ -258,7 +258,7 @@ class March:
         return film_error_s(self._case, self._plan)
 
     def progress(self, until: float | None = None) -> Progress:
-        """For people who wait. until: s, of a run that is made again to tell the error of another one."""
+        """The progress of the run. until: end in s of a run that is repeated for its error."""
         numbers = self._state.numbers
         t, end = self.time, self._profile.end if until is None else until
         here = self._system.rotor.journals @ self._state.q / np.array(self._system.clearances)[:, None]

@@ -1,4 +1,4 @@
-"""The oil that has passed through the films of a run, and whether all of it is accounted for."""
+"""The oil that has passed through the films of a run, and its balance."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from frbcli.solve.state import GRID, NOW, OIL, PASSED, State, W
 
 
 def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None:
-    """Oil in the cells that their unknowns do not account for, over what has passed through; the largest of all films
-    that keep theirs. angle: of the rotor in rad, with which films with bores in the journal turn.
+    """Oil in the cells that their unknowns do not account for, over what has passed through; the largest of all
+    mass-conserving films. angle: of the rotor in rad, with which films with feed holes in the journal turn.
 
     The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with the
     pressures and oil fractions. None if none does.
@@ -76,6 +76,6 @@ def oil_created(state: State) -> float:
 
 
 def no_oil_comes_in(system: System) -> bool:
-    """Whether no oil is pushed into a film that keeps its oil, so that what it carries falls, if not to nothing."""
+    """Whether a mass-conserving film has no pressurised supply, so that its force decays."""
     films = zip(system.volumes, system.remembering, system.laws, strict=True) if system.volumes else ()
     return any(keeps and is_unfed(film.section, law) for film, keeps, law in films)

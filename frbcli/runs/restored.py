@@ -1,4 +1,4 @@
-"""The state of a checkpoint, held to what a run of its machine can have: the compiled time loop trusts it."""
+"""The state of a checkpoint, checked against the machine of the run, since the compiled time loop does not check it."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfil
         and math.isclose(outputs, t / output_step + 0.5, abs_tol=0.5 + 1e-6)
     )
     if not fits:
-        raise WrongCheckpoint("its numbers do not fit together")
+        raise WrongCheckpoint("its numbers are inconsistent")
     return state
 
 
@@ -65,5 +65,5 @@ def array(checkpoint: Mapping[str, Array], name: str, shape: tuple[int, ...]) ->
     if found is None or found.dtype != np.float64 or found.shape != shape:
         raise WrongCheckpoint(f"{name} is missing or has another shape")
     if not np.all(np.abs(found) <= LARGEST):
-        raise WrongCheckpoint(f"{name} holds numbers that no run has")
+        raise WrongCheckpoint(f"{name} holds invalid numbers")
     return found

@@ -72,16 +72,14 @@ def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost
     return plan, profile, cost
 
 
-def _run(
-    command: str, case: Case, output: str | Path, resume: bool, observe: Observer | None, force: bool
-) -> Run:
+def _run(command: str, case: Case, output: str | Path, resume: bool, observe: Observer | None, force: bool) -> Run:
     plan, profile, _ = _planned(command, case)
     check_output(Path(output))
     if resume and force:
-        raise _refuse(Path(output), "--force", "begins anew, and --resume goes on.", "Give one of them.")
+        raise _refuse(Path(output), "--force", "replaces the run, and --resume continues it.", "Give one of them.")
     if not resume and not force and is_interrupted(Path(output)):
         problem = "holds an interrupted run, which would be lost."
-        raise _refuse(Path(output), "--output", problem, "Go on with it: --resume. Or replace it: --force.")
+        raise _refuse(Path(output), "--output", problem, "Continue it with --resume, or replace it with --force.")
     earlier = earlier_run(command, case, Path(output)) if resume else None
     if earlier is not None and earlier.status != "interrupted":
         return earlier
@@ -116,11 +114,11 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
                 checkpoint(march.error_so_far())
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
-        # The state stays in the file: what a run ended with can be looked at, and a longer run can start from it.
+        # The final state stays in the file.
         checkpoint(march.error_so_far())
         if status == RUNNING:
             return _interrupted(march, writer)
-    from frbcli.analysis.events import find_events  # what a run asks analysis for, when it ends
+    from frbcli.analysis.events import find_events  # the analysis at the end of a run
 
     ended = STATUS.get(status, "not-converged")
     if status != FINISHED and march.starves:
@@ -134,8 +132,7 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
 
 
 def is_interrupted(path: Path) -> bool:
-    """Whether a file is an interrupted run with samples. One that is damaged is none: nothing can go on from it, and
-    whoever reads it is told to run the case again."""
+    """Whether a file is an interrupted run with samples. A damaged file is not one, since it cannot be resumed."""
     if not path.exists():
         return False
     try:
@@ -161,8 +158,8 @@ def _restore(march: March, earlier: Run, head: Header) -> None:
 
 
 def _interrupted(march: March, writer: RunWriter) -> Run:
-    """The run so far, with its events and its error until the first whirl, as far as that needs no other run and no
-    wait: who interrupts wants an end, and the run may go on."""
+    """The run so far, with its events and its error until the first whirl, without the parts that need
+    another run, since the user waits and the run may be resumed."""
     from frbcli.analysis.events import find_events
 
     events = [asdict(event) for event in find_events(writer.so_far())]
@@ -193,7 +190,7 @@ def earlier_run(command: str, case: Case, path: Path) -> Run | None:
         problem = f"was made with another bearing model of the name {case.film.theory} than this process has."
         raise _refuse(path, "--resume", problem, "Add the model of that run, or give another --output.")
     if run.status != "interrupted" and (missing := untold(run.cost, run.error)):
-        raise refuse(path, f"does not tell its {missing}.", "Remove it, or give another --output.")
+        raise refuse(path, f"has no {missing}.", "Remove it, or give another --output.")
     return run
 
 

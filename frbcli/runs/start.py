@@ -1,4 +1,4 @@
-"""What a run starts with: the arrays of its rotor; displacement, velocity and consistent acceleration."""
+"""The initial state of a run: arrays of the rotor; displacement, velocity and consistent acceleration."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
 
 
 def _factor(system: System) -> int:
-    """How missing oil lowers the torque."""
+    """Reduction of the torque by missing oil."""
     if system.torque == "simple":
         return SIMPLE_FACTOR
     return {"none": NO_FACTOR, "global": GLOBAL_FACTOR, "local": LOCAL_FACTOR}[system.cavitation_factor]

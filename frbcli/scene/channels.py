@@ -1,4 +1,4 @@
-"""The channels of floating rings: what their feed holes are held at, or how they couple the two films of a ring."""
+"""The channels of floating rings: the pressure of their feed holes, or how they couple the two films of a ring."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def opens_to_groove(bearing: FloatingRingBearing) -> bool:
 
 
 def feed_holes_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
-    """The bores in the ring as the outer film sees them, None if it does not: they are not coupled, or in a groove."""
+    """The feed holes of the outer film at the channels; None if these are not coupled or open to a groove."""
     supply = bearing.inner.supply
     if not coupled(bearing) or opens_to_groove(bearing) or not isinstance(supply, Bores):
         return None
@@ -34,7 +34,7 @@ def feed_holes_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
 
 
 def centrifugal_pressure(case: Case, bearing: FloatingRingBearing) -> float:
-    """By what the pressure rises outwards in a channel with the square of the ring's speed, (4.27), Pa s^2."""
+    """Centrifugal pressure of a channel over the square of the ring speed, (4.27), Pa s^2."""
     if not bearing.centrifugal_pressure:
         return 0.0
     inside, outside = 0.5 * bearing.inner.diameter, 0.5 * bearing.outer.diameter
@@ -42,7 +42,7 @@ def centrifugal_pressure(case: Case, bearing: FloatingRingBearing) -> float:
 
 
 def resistance(case: Case, bearing: FloatingRingBearing) -> float:
-    """Of one channel in Pa s / m^3: a bore through the ring, by its oil."""
+    """Flow resistance of one channel in Pa s / m^3."""
     supply = bearing.inner.supply
     assert isinstance(supply, Bores)
     length = 0.5 * (bearing.outer.diameter - bearing.inner.diameter)
@@ -76,7 +76,7 @@ def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel
 
 
 def channel_faults(case: Case) -> Iterator[Fault]:
-    """What keeps the channels of a case from being coupled."""
+    """The faults of coupled channels."""
     for bearing in case.bearings:
         if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
             problem, remedy = _problem(bearing)
@@ -87,23 +87,23 @@ def channel_faults(case: Case) -> Iterator[Fault]:
 def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:
     supply, outer = bearing.inner.supply, bearing.outer
     if not isinstance(supply, Bores):
-        return "needs channels: the inner film has no bores.", 'Write inner.supply.kind = "bores".'
+        return "needs channels, and the inner film has no bores.", 'Write inner.supply.kind = "bores".'
     if supply.on == "journal":
-        return "needs channels through the ring: the bores are in the journal.", 'Write inner.supply.on = "shell".'
+        return "needs channels through the ring, and the bores are in the journal.", 'Write inner.supply.on = "shell".'
     if outer.supply.kind == "none" and not {"oil-bath"} & {bearing.inner.ends, outer.ends}:
-        return "leaves the bearing without oil: its channels bring none from outside.", f"Give it {INLETS}."
+        return "leaves the bearing without a supply from outside.", f"Give it {INLETS}."
     if outer.supply.kind == "circumferential-groove":
         middle = _groove_position(outer) == MIDDLE
         if middle and supply.axial_position != MIDDLE:
-            problem = "asks for bores beside a groove in the middle, which parts the outer film in two unlike ones."
+            problem = "asks for feed holes beside a central groove, which makes two different outer films."
             return problem, "Put the bores in the middle, or the groove at an end of the outer film."
         if middle:
             return "", ""
     elif bearing.ring.spin == "free" and outer.supply.kind != "none":
-        problem = f"asks for {outer.supply.kind} in the housing, which the bores of a turning ring pass."
+        problem = f"asks for {outer.supply.kind} in the housing, which the feed holes of a turning ring pass."
         return problem, f"Give it {INLETS}, or a ring that does not turn."
     if bearing.ring.spin == "free" and outer.lobes is not None:
-        return "asks for lobes in the housing, which the bores of a turning ring pass.", "Remove outer.lobes."
+        return "asks for lobes in the housing, which the feed holes of a turning ring pass.", "Remove outer.lobes."
     return "", ""
 
 

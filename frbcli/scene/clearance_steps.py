@@ -1,8 +1,7 @@
-"""Clearances that change in steps during a run: when, to what, and what the case is then.
+"""Clearances that change in steps during a run, by heat or wear: times, values, and the case after each step.
 
-Warming, wear, or a test of the program itself: from one moment on the gap is wider or narrower. The rotor keeps its
-place and its velocity, a film that keeps its oil keeps it (runs/clearance_step.py); what the gap does while it
-changes is left out.
+The rotor keeps its displacement and velocity, a mass-conserving film its oil (runs/clearance_step.py). The motion of
+the gap while it changes is left out.
 """
 
 from __future__ import annotations
@@ -30,17 +29,17 @@ def case_at(case: Case, time: float) -> Case:
 
 
 def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
-    """What is decided about clearances that change: choice, value, reason."""
+    """The decisions about clearances that change: choice, value, reason."""
     for place in film_places(case):
         steps = place.geometry.clearance_steps
         if steps:
             told = [f"{1e6 * step.clearance:.4g} um from {step.time:g} s" for step in steps]
             value = ", ".join([f"{1e6 * place.geometry.clearance:.4g} um", *told])
-            yield f"clearance {place.name}".rstrip(), value, "set in the case; changes at once, rotor and oil stay"
+            yield f"clearance {place.name}".rstrip(), value, "set in the case; rotor and oil keep their state"
 
 
 def clearance_faults(case: Case) -> list[Fault]:
-    """What keeps a case from a run with clearances that change."""
+    """The faults of a case with clearances that change."""
     if not step_times(case) or not is_published(case):
         return []
     problem = "is not modelled for the published two-phase form."

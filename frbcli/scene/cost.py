@@ -1,12 +1,12 @@
-"""What a run will cost, told from its plan before it starts: time steps, film solves, CPU time, memory.
+"""Expected cost of a run, from its plan: time steps, film solves, CPU time, memory.
 
     CPU time of the loop = steps x (stages x iterations x films x time of a film solve + a large rotor's own share)
 
-Steps follow from the revolutions of the run, and from the tolerance where that asks for more. Iterations and times of a
-film solve, the share of a small rotor included, were measured on the shipped cases on one machine and stand in one
-table here; docs/accuracy.md says which, and holds predicted beside real cost. What is to do before and after the loop
-is in preparation.py. No machine is timed before a run: on a busy one such a probe is wrong by more than the machines of
-today differ.
+The number of steps follows from the revolutions of the run, or from the tolerance where that needs more. Iterations and
+times of a film solve, the share of a small rotor included, were measured on the shipped cases on one machine and are
+kept in one table here; docs/accuracy.md compares predicted and real cost. The cost before and after the loop is in
+preparation.py. No measurement is made before a run: on a busy machine its error is larger than the difference between
+machines.
 """
 
 from __future__ import annotations
@@ -31,24 +31,24 @@ from frbcli.scene.published import PUBLISHED
 from frbcli.scene.tabulated import SOLUTIONS
 
 STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
-ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step that its error goes with
-# By form of the film. SOLVE_us: of a solve; ITERATIONS: solves of a stage; CROWDED: steps over the fewest allowed, as a
-# film whose whirl is hard takes more.
+ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step size in the local error
+# By form of the film. SOLVE_us: time of a solve; ITERATIONS: solves of a stage; CROWDED: steps over the least number
+# of steps, which whirl increases.
 SOLVE_us = {CLOSED_FORM: 0.5, CLIPPED: 14.0, TABLE: 0.5, FIELDS: 14.0, CHAINS: 20.0, CELLS: 36.0, SOLUTIONS: 0.8,
             PUBLISHED: 1300.0, GIVEN: 1.0}  # fmt: skip
 ITERATIONS = {CLOSED_FORM: 1.6, CLIPPED: 2.4, TABLE: 1.6, FIELDS: 2.4, CHAINS: 2.2, CELLS: 2.6, SOLUTIONS: 1.3,
               PUBLISHED: 4.0, GIVEN: 1.6}  # fmt: skip
-RING_ITERATIONS = 3.6  # of a film with cells between a ring and something else
+RING_ITERATIONS = 3.6  # of a finite-volume film at a ring
 CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.15, CELLS: 2.0, SOLUTIONS: 1.05,
            PUBLISHED: 1.5, GIVEN: 1.05}  # fmt: skip
-# Steps of a run whose journal may go on in an elastic shell: some whirl there for long, and pass element after element
-# of a gap that is all but closed (1.3 to 3.4 times the steps), some never get there.
+# Steps of a run with an elastic shell over those without one: 1.3 to 3.4 where a whirl presses the journal into the
+# shell, 1 where there is no contact.
 ELASTIC = 1.7
 FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 CELLS_AROUND, CELLS_ALONG = 48, 6
 PUBLISHED_COUNT, PUBLISHED_POWER = 288, 1.4
-LONGEST_STEP_s = 1e-3  # of a run: a slow rotor still falls, and its shaft still vibrates
+LONGEST_STEP_s = 1e-3  # of a run: also at low speed the rotor falls and its shaft vibrates
 MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
 # Of a rotor with n degrees of freedom and m coordinates of its journals beyond those of the shipped ones: ns per n^3 of
 # a step, which needs a new inverse now and then, per n^2 of a stage, and per m^3 of an iteration.
@@ -61,8 +61,8 @@ TABLE_POINTS = 400  # of the speed profile
 @dataclass(frozen=True)
 class ExpectedCost:
     """steps, film_solves: of the whole run; cpu_s: of its time loop; before_s: of tables, reduction of the shaft and
-    the first state; after_s: of the error that is told at the end; memory_B: bytes that the process will take. CPU
-    times are those of the reference machine."""
+    the first state; after_s: of the stated error; memory_B: bytes of the process. CPU times
+    are those of the reference machine."""
 
     steps: int
     film_solves: int
@@ -73,7 +73,7 @@ class ExpectedCost:
 
     @property
     def total_s(self) -> float:
-        """CPU time of all of it."""
+        """CPU time of the whole run."""
         return self.before_s + self.cpu_s + self.after_s
 
     @property
@@ -83,7 +83,7 @@ class ExpectedCost:
 
 
 def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost:
-    """What a run along a speed profile will cost."""
+    """Expected cost of a run along a speed profile."""
     steps = float(expected_course(case, plan, profile)[1][-1])
     films = len(film_places(case))
     iterations = RING_ITERATIONS if turning_rings(case) else ITERATIONS[plan.form]
@@ -99,7 +99,7 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
 
 
 def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
-    """Time of a step in a rotor that is larger than those whose share is in the time of a film solve, ns."""
+    """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve."""
     n, m, stages = max(rotor_size(case), SMALL_ROTOR), 2 * len(film_places(case)), STAGES[plan.method]
     inverse, products = n**3 - SMALL_ROTOR**3, n**2 - SMALL_ROTOR**2
     journals = max(0, m**3 - SMALL_ROTOR**3)
@@ -107,7 +107,7 @@ def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
 
 
 def longest_step(case: Case, plan: Plan) -> float:
-    """Of a run, s: also no more than some samples, which are held in memory until they are written."""
+    """Longest step of a run, s; limited also by the samples that are held in memory until they are written."""
     longest = LONGEST_STEP_s if plan.macro_step is None else min(LONGEST_STEP_s, plan.macro_step)
     return min(longest, MOST_SAMPLES * case.output.step)
 
@@ -134,8 +134,8 @@ def _fields_us(mesh: Mesh) -> float:
 
 
 def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> tuple[Array, Array]:
-    """Times (k,) in s of a run and the steps (k,) until then: some per revolution, some per second where the rotor is
-    slow, and what the tolerance asks for."""
+    """Times (k,) in s of a run and the number of steps (k,) until then: a number per revolution, per second at low
+    speed, or that which the tolerance needs."""
     longest = longest_step(case, plan)
     times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
     turns = np.abs(profile.speed(times)) / (2.0 * np.pi)
@@ -148,8 +148,8 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> tuple[Arra
 
 
 def _resolving(case: Case, plan: Plan, omega: Array) -> Array:
-    """(n,) steps per second that the tolerance asks for at the rotor speeds omega (n,) in rad/s: the more, the further
-    the rotor moves over the clearance, which the tolerance refers to.
+    """(n,) steps per second that the tolerance needs at the rotor speeds omega (n,) in rad/s, for the amplitude of the
+    rotor over the clearance.
 
     The local error of a motion A cos(w t) is A (w h / SMOOTH)^p of a method with an embedded solution of order p - 1.
     """
@@ -164,7 +164,7 @@ def _resolving(case: Case, plan: Plan, omega: Array) -> Array:
         return np.asarray(w / SMOOTH * (size / allowed) ** (1.0 / order), dtype=np.float64)
 
     rate = steps(omega, eccentric)
-    if isinstance(rotor, JeffcottRotor):  # it begins in the centre, and swings about where its weight takes it
+    if isinstance(rotor, JeffcottRotor):  # it starts in the centre and oscillates about its resting position
         square = rotor.shaft_stiffness / rotor.mass
         rate = np.maximum(rate, steps(float(np.sqrt(square)), rotor.gravity / square))
     return rate

@@ -1,4 +1,4 @@
-"""How rotor and films are advanced together: what a case may ask for, and what is chosen for it (chapter 5)."""
+"""Coupling of rotor and films in the time integration: settings and choice (chapter 5)."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ COUPLINGS = ("monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co
 MONOLITHIC, FULL, SEMI, APART = COUPLINGS
 REASONS = {
     MONOLITHIC: "rotor and film are one equation in every stage",
-    FULL: "the film follows the journal at once, solved with the rotor in every stage",
-    SEMI: "the film is solved once in every stage, where the rotor is predicted to be, and linearised there",
-    APART: "rotor and film are solved in turn and told of each other once per macro step",
+    FULL: "the film has no state and is solved with the rotor in every stage",
+    SEMI: "the film is solved once in every stage, at the predicted position of the rotor, and linearised there",
+    APART: "rotor and film are solved in turn and exchange motion and force once per macro step",
 }
 
 
 def chosen_coupling(coupling: str, cavitation: str) -> str:
-    """One of COUPLINGS for what a case says: "auto" or one of them."""
+    """One of COUPLINGS for the setting of a case, which is one of them or "auto"."""
     if coupling != "auto":
         return coupling
     return MONOLITHIC if law_named(cavitation).keeps_oil else FULL
@@ -30,17 +30,17 @@ def plan_coupling(case: Case) -> tuple[str, str]:
 
 
 def coupling_fault(case: Case, with_cells: bool) -> Fault | None:
-    """What is wrong with the coupling that a case asks for."""
+    """The fault of the coupling that is set in a case."""
     coupling, cavitation = case.film.coupling, _deciding(case)
     if coupling in (FULL, SEMI) and law_named(cavitation).keeps_oil:
-        problem = f"needs a film without a state of its own; {cavitation} keeps its oil from step to step."
+        problem = f"needs a film without a state; {cavitation} is mass-conserving, and its oil is a state."
         return Fault("film.coupling", coupling, None, problem, f"Choose {MONOLITHIC}, {APART} or auto.")
     if coupling == SEMI and with_cells:
-        problem = "needs a film that is solved in one go; this one has cells, which take iterations."
+        problem = "needs a film that is solved without iterations; this one is a finite-volume film."
         return Fault("film.coupling", coupling, None, problem, f"Choose {FULL}, {APART} or auto.")
     return None
 
 
 def _deciding(case: Case) -> str:
-    """The cavitation model that decides how a case is advanced: one that keeps its oil, if any film has such a one."""
+    """The cavitation model that decides on the coupling: a mass-conserving one, if any film has one."""
     return next((model for model in case.cavitations if law_named(model).keeps_oil), case.film.cavitation)

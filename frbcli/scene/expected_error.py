@@ -1,4 +1,4 @@
-"""The error that a plan is expected to leave, before anything is run; the run itself says what came out."""
+"""The expected error of a plan; the run states its own."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.plan import Plan
 
-SUMMED = 10.0  # local errors of a step that live on at a time: 1 to 13 where it was measured (docs/accuracy.md)
-REACH = 0.5  # eccentricity at which a rotor usually rests, and by which a wrong force moves it
-# The same with cells: 0.2 to 0.8 of the shipped cases, held against twice the cells, which keep half of the error.
+SUMMED = 10.0  # number of local errors that add up: 1 to 13 as measured (docs/accuracy.md)
+REACH = 0.5  # usual eccentricity of a resting position, the factor of a relative error of the force
+# The same for finite-volume films: 0.2 to 0.8 in the shipped cases, against twice the cells, with half of the error.
 CELL_REACH = 1.5
 
 

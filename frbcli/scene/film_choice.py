@@ -19,7 +19,7 @@ from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, pub
 from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 
-MIDDLE = 0.5  # axial position of a circumferential groove that parts two equal films
+MIDDLE = 0.5  # axial position of a circumferential groove between two equal films
 TABULATED = ("none", "circumferential-groove", "axial-grooves")  # supplies of gaps that are rectangles
 
 CLOSED_FORM, CLIPPED = "closed form", "clipped exactly along z, 96 points around"
@@ -27,33 +27,32 @@ TABLE, FIELDS = "table over eccentricity and direction", "tabulated fields, clip
 CHAINS, CELLS = "solved between the grooves at every call", "cells"
 MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)
 
-# Eccentricity up to which films hold the target. A table costs little more if it is finer; where every element is paid
-# for at every call, the last bit next to the shell is not worth it.
+# Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
+# call would cost much more for eccentricities close to 1.
 TABLE_HOLDS_TO, SOLVED_HOLDS_TO = 0.95, 0.9
 FILM_SHARE = 0.5  # of the target
 DEFAULT_MESH = Mesh(axial=6, circumferential=96)  # where no plan is made
 # The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.
 SHORT, SHORT_POWER = 0.45, 1.3
-# Errors at TABLE_HOLDS_TO: MESH_ERROR (b/D)^2, and what the interpolation leaves, whatever the mesh.
+# Errors at TABLE_HOLDS_TO: MESH_ERROR (b/D)^2, and the error of the interpolation, which does not depend on the mesh.
 MESH_ERROR = {Mesh(3, 48): 4.2e-3, Mesh(4, 64): 3e-3, Mesh(6, 96): 3e-4, Mesh(10, 192): 5e-5}
 TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
-# Errors at SOLVED_HOLDS_TO between axial grooves, for widths up to the diameter; wider bearings are the worse for it.
+# Errors at SOLVED_HOLDS_TO between axial grooves, for widths up to the diameter; larger for wider bearings.
 CHAIN_ERROR = {Mesh(3, 48): 8.5e-4, Mesh(6, 48): 5e-4, Mesh(9, 72): 4e-4, Mesh(10, 192): 2e-4}
 CHAIN_FLOOR = 8.5e-4
-# Cells (around, along), by the target they are for; their error falls a little faster than the first order.
+# Cells (around, along) by target; their order is a little above 1.
 COARSE_CELLS, DEFAULT_CELLS, FINE_CELLS = (40, 5), (48, 6), (96, 10)
 FEWEST_CELLS = (12, 3)
-CELL_ERROR, OPENING_ERROR, CELL_ORDER = 2e-3, 1.2e-2, 1.5  # on DEFAULT_CELLS; with bores, pockets or without oil
+CELL_ERROR, OPENING_ERROR, CELL_ORDER = 2e-3, 1.2e-2, 1.5  # on DEFAULT_CELLS; with feed holes, pockets or starved
 LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4
 
 
 @dataclass(frozen=True)
 class FilmChoice:
     """theory: "short" | "finite", or the name of a bearing model; form: how the most expensive film is evaluated, in
-    words, CELLS for cells; mesh: of films without cells, the finest; cells: (around, along) or None; error: expected of
-    the forces, relative, at the eccentricity up to which the film holds the target, 0 for a bearing model, whose own
-    error nobody knows; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements, none of
-    others."""
+    words, CELLS for cells; mesh: the finest mesh of elements; cells: (around, along) or None; error: expected relative
+    error of the forces at the eccentricity up to which the film holds the target, 0 for a bearing model, whose error is
+    not known; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements."""
 
     theory: str
     form: str
@@ -77,8 +76,8 @@ def choose_films(case: Case) -> FilmChoice:
         return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
     if needs_cells(case):
         cells = _cells(case)
-        theory_why = "set in the case" if case.film.theory != "auto" else "the film has cells"
-        mesh_why = "set in the case" if given is not None else "parabolas over the width need few along the axis"
+        theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
+        mesh_why = "set in the case" if given is not None else "nearly parabolic over the width: few cells along"
         if case.film.solution == "cells":
             mesh_why += "; film.solution is set in the case"
         elif all(law_named(model).tabulated for model in case.cavitations):
@@ -86,7 +85,7 @@ def choose_films(case: Case) -> FilmChoice:
         return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, _cell_error(case, cells), theory_why, mesh_why)
     if not all_clipped(case):
         mesh = SOLUTION_MESH if given is None else Mesh(*given)
-        mesh_why = "set in the case" if given is not None else f"wrong by {SOLUTION_ERROR:.1g}, as the splines are"
+        mesh_why = "set in the case" if given is not None else f"error {SOLUTION_ERROR:.1g}, as of the splines"
         theory_why = "tabulated before the run"
         return FilmChoice("finite", SOLUTIONS, mesh, None, SOLUTION_ERROR, theory_why, mesh_why)
     films = [place.geometry for place in film_places(case)]
@@ -96,13 +95,13 @@ def choose_films(case: Case) -> FilmChoice:
     if theory == "auto":
         fits = short <= FILM_SHARE * target and all(film.supply.kind != "axial-grooves" for film in films)
         theory = "short" if fits else "finite"
-        theory_why = f"the short bearing of b/D = {slenderness:.2g} is wrong by {short:.1g} at {SOLVED_HOLDS_TO:g}"
+        theory_why = f"error of the short bearing with b/D = {slenderness:.2g}: {short:.1g} at {SOLVED_HOLDS_TO:g}"
     forms = [film_form(case, film, theory) for film in films]
     form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
     meshes = [_mesh(form, _slenderness(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]
     mesh, error = max((mesh for mesh, _ in meshes), key=_size), max(error for _, error in meshes)
     holds_to = SOLVED_HOLDS_TO if form == CHAINS else TABLE_HOLDS_TO
-    mesh_why = f"wrong by {error:.1g} at an eccentricity of {holds_to:g}"
+    mesh_why = f"relative error {error:.1g} at an eccentricity of {holds_to:g}"
     if given is not None:
         mesh, mesh_why = Mesh(*given), "set in the case"
         error = _mesh_error(form, mesh, slenderness)
@@ -118,7 +117,7 @@ def short_error(slenderness: float, eccentricity: float) -> float:
 
 
 def all_clipped(case: Case) -> bool:
-    """Whether no film is more than the clipped solution of a linear equation."""
+    """Whether every film is the clipped solution of a linear equation."""
     if case.film.bearing_model:
         return False
     return all(law_named(model).closed for model in case.cavitations)
@@ -163,7 +162,7 @@ def _slenderness(film: FilmGeometry) -> float:
 
 
 def _mesh(form: str, slenderness: float, allowed: float) -> tuple[Mesh, float]:
-    """The coarsest mesh of a small enough error, and its error; no finer one than helps."""
+    """The coarsest mesh whose error is small enough, or below which the error does not fall, and its error."""
     meshes = list(CHAIN_ERROR if form == CHAINS else MESH_ERROR)
     errors = [_mesh_error(form, mesh, slenderness) for mesh in meshes]
     allowed = max(allowed, {CHAINS: CHAIN_FLOOR, FIELDS: FIELDS_FLOOR}.get(form, 0.0))
@@ -176,7 +175,7 @@ def _size(mesh: Mesh) -> int:
 
 
 def _mesh_error(form: str, mesh: Mesh, slenderness: float) -> float:
-    """Of a mesh that need not be in the tables: as the next coarser one that is."""
+    """Error of any mesh: that of the next coarser one in the tables."""
     table = CHAIN_ERROR if form == CHAINS else MESH_ERROR
     coarser = [known for known in table if known.axial <= mesh.axial and known.circumferential <= mesh.circumferential]
     coarsest = next(iter(table))

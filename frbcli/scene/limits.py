@@ -1,4 +1,4 @@
-"""What no plan can afford is refused before anything is computed, with the key that asks for it and its cost."""
+"""Runs that are too expensive are refused before anything is computed, with the responsible key and the cost."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from frbcli.scene.preparation import before_s, rotor_size
 DAY_s = 86_400.0
 LONGEST_RUN_s = 30.0 * DAY_s  # CPU time
 LONGEST_PREPARATION_s = 3_600.0
-LONGEST_WAIT_s = 2.0  # of one step, in which nothing is told and Ctrl-C is not heard
+LONGEST_WAIT_s = 2.0  # of one step, during which there is no progress and Ctrl-C has no effect
 MOST_MEMORY_B = 1e9
-SMALLEST_TOLERANCE = 1e-13  # rounding leaves as much of displacements
+SMALLEST_TOLERANCE = 1e-13  # round-off of displacements
 
 
 def require_affordable(case: Case, plan: Plan, cost: ExpectedCost) -> None:
@@ -28,12 +28,12 @@ def require_affordable(case: Case, plan: Plan, cost: ExpectedCost) -> None:
 
 
 def cost_faults(case: Case, plan: Plan, cost: ExpectedCost) -> Iterator[Fault]:
-    """Whatever of the plan is beyond a limit: at most one fault, for all of them have the same remedy."""
+    """The limit that the plan exceeds: at most one fault, since all have the same remedy."""
     if plan.tolerance < SMALLEST_TOLERANCE:
         key = "accuracy.target" if case.accuracy.tolerance is None else "accuracy.tolerance"
         value = case.accuracy.target if case.accuracy.tolerance is None else case.accuracy.tolerance
-        problem = f"asks for steps that are exact to {plan.tolerance:.1g} of the clearance, beyond rounding."
-        yield Fault(key, f"{value:g}", None, problem, "Take a larger one, e.g. 1e-3 for the target.")
+        problem = f"asks for a tolerance of {plan.tolerance:.1g} of the clearance, which is below round-off."
+        yield Fault(key, f"{value:g}", None, problem, "Take a larger one, e.g. a target of 1e-3.")
         return
     for words, amount, most, told in (
         ("needs {} of memory", cost.memory_B, MOST_MEMORY_B, memory),
@@ -63,7 +63,7 @@ def memory(number: float) -> str:
 
 @dataclass(frozen=True)
 class _Asked:
-    """What a key asks for. times: of what usual cases ask for."""
+    """The demand of a key. times: over that of usual cases."""
 
     times: float
     key: str
@@ -72,7 +72,7 @@ class _Asked:
 
 
 def _responsible(case: Case, plan: Plan) -> _Asked:
-    """What asks for most, compared with usual cases."""
+    """The largest demand, compared with usual cases."""
     return max((*_by_accuracy(case, plan), *_by_machine(case), *_by_speed(case)), key=lambda asked: asked.times)
 
 
@@ -99,11 +99,11 @@ def _by_machine(case: Case) -> Iterator[_Asked]:
     yield _Asked(len(case.shaft) / 1e3, "shaft", f"{len(case.shaft)} sections", "Join neighbours that are alike.")
     yield _Asked(len(case.disks) / 100.0, "disk", f"{len(case.disks)} disks", "Join neighbours.")
     yield _Asked(len(case.bearings) / 4.0, "bearing", f"{len(case.bearings)} bearings", "Take fewer.")
-    yield _Asked(steps / 10.0, "bearing.clearance_steps", f"{steps} steps", "Take fewer, each makes films of its own.")
+    yield _Asked(steps / 10.0, "bearing.clearance_steps", f"{steps} steps", "Take fewer: each has its own films.")
 
 
 def _by_speed(case: Case) -> Iterator[_Asked]:
     speed = case.speed
-    yield _Asked(speed.duration / 100.0, "speed.duration", f"{speed.duration:g} s", "Run shorter.")
+    yield _Asked(speed.duration / 100.0, "speed.duration", f"{speed.duration:g} s", "Shorten the run.")
     fastest = max(abs(speed.start), abs(speed.end))
-    yield _Asked(fastest / 1e4, "speed.to", f"{fastest:g} Hz", "Run slower, or shorter.")
+    yield _Asked(fastest / 1e4, "speed.to", f"{fastest:g} Hz", "Lower the speed, or shorten the run.")

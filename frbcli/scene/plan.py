@@ -1,6 +1,6 @@
 """The plan of a case: what has to be modelled for it, what is left out, and why.
 
-Everything that a run decides on its own is decided here, in the open; what the case fixes by hand is respected.
+All choices that the program makes for a run are made here, with their reasons; settings of the case take precedence.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ from frbcli.scene.supply import unfed_films
 from frbcli.scene.tabulated import SOLUTIONS
 
 THEORIES = ("short", "finite")
-# At least: of films with cells, and of those that are solved at every call, where a step costs more than it is worth.
+# Least steps per revolution of finite-volume films, and of films that are solved at every film call. More steps would
+# raise the cost more than they reduce the error.
 CELL_STEPS, SOLVED_STEPS = 12.0, 20.0
-# Local errors of a step that keep the sum of some revolutions below the target, by method.
+# Local error of a step over the target, by method: the errors of some revolutions then add up to less than the target.
 LOOSE_SHARE, TIGHT_SHARE = 0.02, 0.01
 
 
@@ -55,9 +56,9 @@ Decide = Callable[[str, object, str], None]
 @dataclass(frozen=True)
 class Plan:
     """What will be modelled. theory: "short" | "finite", or the name of a bearing model; cavitation: of films that name
-    none of their own; form: how the most expensive film is evaluated, in words; mesh: of films without cells, the
-    finest; films: form and mesh of each of those on quadratic elements; cells: (around, along) of films with cells,
-    None for the others; film_error: expected of the forces, relative; method: name of a time integration method;
+    none of their own; form: how the most expensive film is evaluated, in words; mesh: the finest mesh of elements;
+    films: form and mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for
+    other films; film_error: expected relative error of the forces; method: name of a time integration method;
     tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
     COUPLINGS; macro_step: longest one in s of a co-simulation, else None."""
 
@@ -128,11 +129,11 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     decide("theory", films.theory, films.theory_why)
     for told, cavitation in _cavitations(case):
         if films.form == PUBLISHED:
-            decide("cavitation", told, "set in the case; the film keeps its oil from step to step, and creates some")
+            decide("cavitation", told, "set in the case; the oil is part of the state, and some is created")
         elif law_named(cavitation).keeps_oil:
-            decide("cavitation", told, "set in the case; the film conserves oil and keeps it from step to step")
+            decide("cavitation", told, "set in the case; mass-conserving: the oil is part of the state")
         else:
-            decide("cavitation", told, "set in the case; the film has no state of its own, oil is not balanced")
+            decide("cavitation", told, "set in the case; the film has no state, and oil is not balanced")
 
 
 def _decide_scene(case: Case, decide: Decide) -> None:
@@ -141,7 +142,9 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     if isinstance(case.rotor, TurbochargerRotor):
         decide("bearings", f"{len(case.bearings)} of {len(case.bearings)}", "the rotor is not symmetric")
     else:
-        decide("bearings", "1 of 2", "rotor and bearings are symmetric: both journals move alike, forces count twice")
+        decide(
+            "bearings", "1 of 2", "symmetric rotor and bearings: both journals have the same motion, forces count twice"
+        )
     if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
         decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
     for bearing in rings(case):
@@ -154,7 +157,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
 
 
 def _cavitations(case: Case) -> tuple[tuple[str, str], ...]:
-    """What to tell of the films' cavitation models, and the models: one for all films, or one each."""
+    """Texts for the cavitation models of the films, and the models: one for all films, or one each."""
     if len(set(case.cavitations)) == 1:
         return ((case.cavitations[0], case.cavitations[0]),)
     names = (place.name for place in film_places(case))
@@ -162,18 +165,18 @@ def _cavitations(case: Case) -> tuple[tuple[str, str], ...]:
 
 
 def _coupling_of_films(case: Case, bearing: FloatingRingBearing) -> str:
-    end = "a groove in the outer film that holds its pressure" if opens_to_groove(bearing) else "the outer film"
-    return f"oil passes between the inner film and {end}; {resistance(case, bearing):.3g} Pa s/m^3 each"
+    end = "a groove of given pressure in the outer film" if opens_to_groove(bearing) else "the outer film"
+    return f"oil flows between the inner film and {end}; resistance {resistance(case, bearing):.3g} Pa s/m^3 each"
 
 
 def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
-    """Form and mesh, and what they leave of the force."""
+    """Form and mesh, with the error of the force."""
     if films.cells is None:
-        reason = "rectangular gap: forces depend on the line of centres only"
+        reason = "rectangular gap: the force turns with the line of centres"
         if films.form == CHAINS:
-            reason = "the grooves stand still while the line of centres turns: nothing to tabulate"
+            reason = "no table: the grooves do not turn with the line of centres"
         elif films.form == SOLUTIONS:
-            reason = "rectangular gap without memory: forces follow from the motion; solved on cells before the run"
+            reason = "rectangular gap, no state: the force depends on the motion alone; solved on cells before"
         decide("film", films.form, reason)
         kind = "cells" if films.form == SOLUTIONS else "quadratic elements"
         if films.theory == "finite":
@@ -188,27 +191,27 @@ def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
         return
     decide("film", f"{films.cells[0]} x {films.cells[1]} cells", f"finite volumes, around x along; {films.mesh_why}")
     if case.film.grid != "fixed":
-        decide("grid", case.film.grid, "set in the case; the cells go with the oil between journal and shell")
+        decide("grid", case.film.grid, "set in the case; the cells turn with the mean speed of journal and shell")
 
 
 def _time_integration(case: Case, films: FilmChoice, decide: Decide) -> tuple[str, float, float]:
     """Method, tolerance and steps per revolution."""
     target, cells = case.accuracy.target, films.cells is not None
     if cells and target > FINE_TARGET:
-        reason = "third order, L-stable: fronts that cross cells leave no more to gain"
+        reason = "third order, L-stable: cavity fronts that cross cells limit the order"
         method, share = "esdirk3", LOOSE_SHARE
     elif target > LOOSE_TARGET:
-        method, share, reason = "esdirk3", LOOSE_SHARE, "third order, L-stable: enough for a loose target"
+        method, share, reason = "esdirk3", LOOSE_SHARE, "third order, L-stable: sufficient for a large target"
     else:
         method, share, reason = "esdirk4", TIGHT_SHARE, "fourth order, L-stable: its error is far below the target"
     decide("integrator", method, reason)
-    tolerance, reason = share * target, f"{share:g} of the target, per step"
+    tolerance, reason = share * target, f"{share:g} of the target, for each step"
     if case.accuracy.tolerance is not None:
         tolerance, reason = case.accuracy.tolerance, "set in the case"
     decide("tolerance", f"{tolerance:g}", reason)
     steps, reason = float(case.accuracy.steps_per_revolution), "set in the case"
     if "steps_per_revolution" not in case.accuracy.model_fields_set:
-        reason = "at least; a step costs more than it is worth"
+        reason = "at least; more steps raise the cost more than they reduce the error"
         if cells:
             steps = CELL_STEPS
         elif films.form in (CHAINS, FIELDS) and target > FINE_TARGET:
@@ -222,11 +225,11 @@ def _time_integration(case: Case, films: FilmChoice, decide: Decide) -> tuple[st
 def _gap(film: FilmGeometry) -> tuple[str, str]:
     supply = film.supply
     if supply.kind == "axial-grooves":
-        return f"{supply.count} rectangles", "axial grooves part the turn; odd axial modes vanish"
+        return f"{supply.count} rectangles", "axial grooves divide the circumference; odd axial modes vanish"
     if isinstance(supply, CircumferentialGroove):
         if supply.axial_position == MIDDLE:
             return "2 equal rectangles", "a central circumferential groove splits the width; one section is solved"
         return "1 rectangle", "a circumferential groove at one end: one section of the whole width"
     if supply.kind == "none":
         return "1 rectangle", "plain bearing: the pressure is symmetric about the middle, its odd modes vanish"
-    return "developed gap", f"{supply.kind} are cut out of it"
+    return "developed gap", f"with openings: {supply.kind}"

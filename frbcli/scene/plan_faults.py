@@ -1,4 +1,4 @@
-"""What keeps a case from being planned for a run: said before anything is computed."""
+"""The faults of a case that cannot be modelled, found before anything is computed."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from frbcli.scene.tabulated import solution_fault
 
 
 def plan_faults(case: Case) -> list[Fault]:
-    """Every part of a case that no run can have."""
+    """Every part of a case that cannot be modelled in a run."""
     faults = model_faults(case, 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end)))
 
     def missing(key: str, value: str, known: tuple[str, ...]) -> None:
         faults.append(_missing(key, value, known))
 
     if case.film.theory == "short" and (needs_cells(case) or not all_clipped(case)):
-        remedy = "finite or auto for this cavitation model and supply; short knows half-sommerfeld between rectangles"
+        remedy = "finite or auto for this cavitation model and supply; short is for half-sommerfeld on rectangles"
         missing("film.theory", "short", (remedy,))
     elif case.film.theory == "short" and any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case)):
         missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
@@ -43,14 +43,14 @@ def plan_faults(case: Case) -> list[Fault]:
     faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
     faults += published_faults(case)
     if case.film.grid != "fixed" and not (needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))):
-        missing("film.grid", case.film.grid, ("fixed where a film has openings or lobes, or no cells",))
+        missing("film.grid", case.film.grid, ("fixed for films with openings or lobes, and for films without cells",))
     for place in film_places(case):
         supply = place.geometry.supply
         if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):
             missing("bearing.supply.axial_position", f"{supply.axial_position:g}", ("0.5, 0 and 1",))
             continue
         section = film_section(case, place.geometry, place.feed_holes)
-        if not law_named(case.cavitation(place.geometry)).keeps_oil:  # a film that makes its oil cannot run dry
+        if not law_named(case.cavitation(place.geometry)).keeps_oil:  # such a film cannot run dry
             section = ends_at_ambient(section)
         for found in section_faults(section):
             faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
@@ -58,7 +58,7 @@ def plan_faults(case: Case) -> list[Fault]:
 
 
 def _bearing_faults(case: Case) -> list[Fault]:
-    """Of the number of bearings."""
+    """Faults of the number of bearings."""
     if len(case.bearings) == 1 or isinstance(case.rotor, TurbochargerRotor):
         return []
     both = "one [bearing], which stands for both of a symmetric rotor"

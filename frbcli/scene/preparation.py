@@ -1,8 +1,8 @@
-"""What a run costs beside its time loop, and the memory that it takes: told from its plan before it starts.
+"""Expected cost of a run outside its time loop, and its memory.
 
-Before the loop films are tabulated, the shaft is reduced to some modes, and the first state is sought; after it the
-error of the forces is told on a finer mesh, and films with cells are run again on fewer of them. All numbers are CPU
-seconds of the machine that cost.py speaks of.
+Before the loop films are tabulated, the shaft is reduced to its modes, and the first state is computed; after it the
+error of the forces is computed on a finer mesh, and runs with finite-volume films are repeated on fewer cells. All
+numbers are CPU seconds of the reference machine of cost.py.
 """
 
 from __future__ import annotations
@@ -22,14 +22,17 @@ from frbcli.scene.plan import Plan
 from frbcli.scene.published import PUBLISHED
 from frbcli.scene.tabulated import SOLUTION_MESH, SOLUTIONS
 
-FINER = 2  # elements more in each direction, on which the error of the forces is told
+FINER = 2  # factor of the elements in each direction for the error of the forces
 SAMPLES, CELL_SAMPLES = 48, 8  # states at which that is done
-TABLE_s, TABLE_MODES = 3.2e-5, 14  # per element around and mode along; modes that the evaluation at the lines is worth
+TABLE_s, TABLE_MODES = (
+    3.2e-5,
+    14,
+)  # per element around and mode along; modes that cost as much as the evaluation at the lines
 MODES_s = 3e-9  # of the axial modes, per cube of the elements along
 DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
 SOLUTIONS_s = 0.65  # of a table of solutions on cells, on SOLUTION_MESH
 STEADY_s, STEADY_CELLS, STEADY_POWER = 0.27, 1152, 1.62  # of a steady film, a state of its own; its cells
-RESTING = 3.0  # times as much for a resting position, found by Newton's method from a film that hardly changes
+RESTING = 3.0  # factor for a resting position, found by Newton's method
 PUBLISHED_STATE_s = 3.0  # to settle
 AGAIN = 0.5  # of the loop: the run on fewer cells
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
@@ -42,7 +45,7 @@ SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how ma
 
 
 def compile_s(case: Case) -> float:
-    """CPU time at the very first start, for kernels that the cache then has: of films with cells, or of any other."""
+    """CPU time of the compilation at the first start: of finite-volume films, or of any other."""
     return COMPILE_CELLS_s if needs_cells(case) else COMPILE_s
 
 
@@ -59,14 +62,14 @@ def before_s(case: Case, plan: Plan) -> float:
 
 
 def after_s(case: Case, plan: Plan, loop_s: float, samples: float) -> float:
-    """CPU time of what is told when a run of loop_s in its time loop has ended: events, the error. samples: written."""
+    """CPU time after a time loop of loop_s: events and stated error. samples: number that the run writes."""
     again = AGAIN * loop_s if plan.cells is not None and plan.form != PUBLISHED else 0.0
     told = SAMPLE_s * samples + (1 + len(step_times(case))) * _reduction_s(case)
     return told + again + film_error_s(case, plan)
 
 
 def film_error_s(case: Case, plan: Plan) -> float:
-    """CPU time of the error of the film forces, at sampled states."""
+    """CPU time of the error of the film forces at sampled states."""
     films = len(film_places(case))
     if plan.form == PUBLISHED:
         return 6 * PUBLISHED_STATE_s
@@ -84,7 +87,7 @@ def film_error_s(case: Case, plan: Plan) -> float:
 
 
 def memory_B(case: Case, plan: Plan, samples: float) -> float:
-    """Bytes that the process takes at most. samples: that the run writes."""
+    """Largest memory of the process in bytes. samples: number that the run writes."""
     films, n = len(film_places(case)), rotor_size(case)
     found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_freedoms(case)
     found += SAMPLE_B * samples
@@ -101,7 +104,7 @@ def memory_B(case: Case, plan: Plan, samples: float) -> float:
 
 
 def along_factor(along: int) -> float:
-    """How the time of a solve on cells grows with those along the axis, which are eliminated as full blocks."""
+    """Factor of the time of a solve by the cells along the axis, which are eliminated as full blocks."""
     return 0.37 + 0.03 * along + 0.01065 * along**2 + 3.09e-4 * float(along) ** 3
 
 

@@ -12,14 +12,14 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
 
 PUBLISHED = "quadratic elements, two-phase model as published"  # the form of such a film
-PUBLISHED_ERROR = 2e-2  # of the force, on the published elements: what half of them change it by, over 3
+PUBLISHED_ERROR = 2e-2  # of the force, on the published elements: its change on half of them, over 3
 ELEMENTS = (20, 10)  # of a section, around and along, figure 6.2
 FEWEST = (8, 2)
 REMEDY = 'Write form = "conservative".'
 DIFFUSIONS = {
-    "consistent": "artificial, added both around and along as published (4.42): carries oil in from the edges",
+    "consistent": "artificial, around and along as published (4.42): transports oil in from the edges",
     "streamline": "artificial (4.42), around only",
-    "none": "no artificial diffusion: the steep step may keep the film from converging",
+    "none": "no artificial diffusion: a steep step may prevent convergence",
 }
 
 
@@ -29,16 +29,16 @@ def is_published(case: Case) -> bool:
 
 
 def published_faults(case: Case) -> list[Fault]:
-    """What keeps a case from a run in the published form; nothing for one in another form."""
+    """The faults of a case in the published form; none for other forms."""
     if not is_published(case):
         return []
     found: list[tuple[str, str, str, str]] = []
     if isinstance(case.rotor, TurbochargerRotor):
-        found.append(("rotor.kind", "turbocharger", "has two bearings; the published form rides with one film", REMEDY))
+        found.append(("rotor.kind", "turbocharger", "has two bearings; the published form is for one film", REMEDY))
     elif any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
-        found.append(("bearing.kind", "floating-ring", "has two films; the published form rides with one", REMEDY))
+        found.append(("bearing.kind", "floating-ring", "has two films; the published form is for one", REMEDY))
     if case.film.grid != "fixed":
-        found.append(("film.grid", case.film.grid, "turns cells; the published form has elements", 'Write "fixed".'))
+        found.append(("film.grid", case.film.grid, "is for cells; the published form has elements", 'Write "fixed".'))
     if case.film.two_phase.whirl_steepness is not None:
         value = f"{case.film.two_phase.whirl_steepness:g}"
         found.append(("film.two-phase.whirl_steepness", value, "is for the conservative form", REMEDY))
@@ -58,9 +58,9 @@ def published_elements(case: Case) -> tuple[tuple[int, int], str]:
 
 
 def published_decisions(case: Case, elements: tuple[int, int], why: str) -> tuple[tuple[str, str, str], ...]:
-    """What is decided about the film: choice, value, reason."""
+    """The decisions about the film: choice, value, reason."""
     kind = case.film.two_phase.diffusion
-    reason = "two-phase in its published form (4.31): creates oil where it cavitates; the run says how much"
+    reason = "two-phase in its published form (4.31): creates oil where it cavitates; the run states how much"
     return (
         ("film", f"{elements[0]} x {elements[1]} elements", f"quadratic, around x along of a section; {why}"),
         ("form", "published", reason),

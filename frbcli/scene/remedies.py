@@ -1,4 +1,4 @@
-"""What may help where a film found no solution: of what the case does not have already."""
+"""Remedies where a film has no solution: settings that the case does not have yet."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ GENTLE = 0.9  # x_1 of a step that is not steep
 
 @contextmanager
 def advised(case: Case) -> Iterator[None]:
-    """Where a film of a case is solved: raises NotConverged with what happened and what to change, in place of
-    FilmUnsolved."""
+    """Turns FilmUnsolved into NotConverged, with the failure and the remedies for the case."""
     try:
         yield
     except FilmUnsolved as failure:
@@ -24,7 +23,7 @@ def advised(case: Case) -> Iterator[None]:
 
 
 def film_remedies(case: Case) -> tuple[str, ...]:
-    """What makes the films of a case easier to solve, best first, as far as it is not in the case already."""
+    """Settings with which the films of a case are easier to solve, best first, that the case does not have yet."""
     models, film = set(case.cavitations), case.film
     if film.bearing_model:
         return (f"a force of film.theory = {film.bearing_model} without jumps, or with derivatives of its own",)
@@ -40,7 +39,7 @@ def film_remedies(case: Case) -> tuple[str, ...]:
     if "reynolds" in models:
         found.append("the penalty model, which has no kink at the edge of the cavity")
     if case.accuracy.mesh is None:
-        found.append("a mesh by hand, accuracy.mesh")
+        found.append("another mesh, accuracy.mesh")
     else:
         along, around = case.accuracy.mesh
         found.append(f"another accuracy.mesh than [{along}, {around}], or none: the plan then chooses one")
@@ -48,8 +47,8 @@ def film_remedies(case: Case) -> tuple[str, ...]:
 
 
 def film_advice(case: Case) -> str:
-    """Why the films of a case may have no solution where that is known, and what to change."""
+    """Why the films of a case may have no solution, where that is known, and the remedy."""
     unfed = [film for film in unfed_films(case) if film.keeps]
     if unfed:
-        return " ".join(f"No oil is pushed in: {film.cause}. {film.remedy}" for film in unfed)
-    return f"What may help: {'; '.join(film_remedies(case))}."
+        return " ".join(f"The film has no pressurised supply: {film.cause}. {film.remedy}" for film in unfed)
+    return f"Possible remedies: {'; '.join(film_remedies(case))}."

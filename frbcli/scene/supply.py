@@ -1,9 +1,9 @@
-"""Films that no oil is pushed into: which they are, why, and what each cavitation model makes of them.
+"""Films without a pressurised supply: which they are, why, and what follows for each cavitation model.
 
-Oil is pushed into a film where its supply, or the bath around its ends, has a pressure above that of the cavities.
-Where that is nowhere, a film that keeps its oil loses it: Elrod's, whose pressure never falls below that of the
-cavities, all of it; Peeken's and the two-phase model draw some in from a groove. The other models make up the oil that
-they lack, and carry as if nothing were missing.
+Oil flows into a film where its supply, or the bath around its ends, has a pressure above the cavitation pressure. A
+mass-conserving film without such a supply loses oil: Elrod's film, whose pressure is never below the cavitation
+pressure, loses all of it; the films of Peeken's and the two-phase model draw some oil from a groove. The other models
+create the missing oil, and their films carry the full load.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from frbcli.units import display
 
 @dataclass(frozen=True)
 class UnfedFilm:
-    """A film that no oil is pushed into. name: as in results; key: of the film in the case; keeps: whether its model
-    keeps its oil, and so loses its load; cause, remedy: in words."""
+    """A film without a pressurised supply. name: as in results; key: of the film in the case; keeps: whether its model
+    is mass-conserving, so that the film loses its load; cause, remedy: in words."""
 
     name: str
     key: str
@@ -36,21 +36,21 @@ class UnfedFilm:
 
     @property
     def reason(self) -> str:
-        """What becomes of the film, for the plan."""
+        """The consequence for the film, for the plan."""
         if self.keeps:
-            return f"{self.cause}: no oil is pushed in, and the film loses oil and load"
-        return f"{self.cause}: a film that keeps its oil would lose it; {self.cavitation} makes up what is missing"
+            return f"{self.cause}: more oil leaves than flows in, and the film loses its load"
+        return f"{self.cause}: a mass-conserving film would starve; {self.cavitation} creates the missing oil"
 
     @property
     def remark(self) -> str:
-        """The same for those who see a result, with what to change."""
+        """The same beside a result, with the remedy."""
         film = f"film {self.name}" if self.name else "the film"
-        return f"Note: no oil is pushed into {film}. {self.reason[0].upper()}{self.reason[1:]}. {self.remedy}"
+        return f"Note: {film} has no pressurised supply. {self.reason[0].upper()}{self.reason[1:]}. {self.remedy}"
 
 
 def is_unfed(section: Section, cavitation: str) -> bool:
-    """Whether no oil is pushed into a film, so far as its cavitation law can tell: one that empties feels it in an oil
-    bath, too; one whose cavity falls below p_cav draws oil from any groove."""
+    """Whether a film has no pressurised supply. It depends on the law: a film that empties does so in an oil bath,
+    too; a film whose cavities have a pressure below p_cav draws oil from any groove."""
     law = law_named(cavitation)
     if law.empties:
         return no_inflow(section)
@@ -58,7 +58,7 @@ def is_unfed(section: Section, cavitation: str) -> bool:
 
 
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
-    """The films of a case that no oil is pushed into; none by a bearing model, whose oil nobody knows."""
+    """The films of a case without a pressurised supply; none for a bearing model, whose oil is not known."""
     found: list[UnfedFilm] = []
     if case.film.bearing_model:
         return ()
@@ -83,7 +83,7 @@ def _cause(film: FilmGeometry, oil: Oil) -> str:
 
 
 def _remedy(film: FilmGeometry, oil: Oil, key: str, cavitation: str) -> str:
-    """What brings oil in, of what is not in the case already."""
+    """Changes of the case that let oil flow in."""
     cavities = display(oil.cavitation_pressure, "Pa")
     first = f"Raise {key}.supply.pressure above {cavities}"
     if film.supply.kind == "none":

@@ -86,7 +86,7 @@ class System:
 
     @property
     def remembers(self) -> bool:
-        """Whether any film keeps oil of its own."""
+        """Whether any film is mass-conserving."""
         return any(self.remembering)
 
     @property
@@ -108,7 +108,7 @@ class System:
         return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
 
     def film_force(self, index: int, displacement: Array, velocity: Array, omega: float) -> FilmForce:
-        """As film.bearing.evaluate; a film with oil of its own is taken as settled. Raises NotConverged."""
+        """As film.bearing.evaluate; a mass-conserving film is steady. Raises NotConverged."""
         if isinstance(self.films, VolumeFilms):
             return steady_force(self.volumes[index], displacement, velocity, omega)
         if isinstance(self.films, ElementFilm):

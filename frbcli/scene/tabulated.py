@@ -1,4 +1,4 @@
-"""Which films whose law makes oil are tabulated before a run, and why others are solved on cells during it."""
+"""Which films that are not mass-conserving are tabulated before a run, and why others are solved on cells during it."""
 
 from __future__ import annotations
 
@@ -10,39 +10,39 @@ from frbcli.scene.films import film_places, is_plain
 
 SOLUTIONS = "table over eccentricity, direction and speed"
 SOLUTION_MESH = Mesh(axial=6, circumferential=48)  # cells
-# What nine of ten forces are off by up to an eccentricity of 0.95, by its interpolation and by its cells together.
+# 90 % of the forces up to an eccentricity of 0.95 have a smaller error, from interpolation and cells together.
 SOLUTION_ERROR = 6e-3
-TABLE_TARGET = 5e-4  # the smallest target of accuracy that splines through some thousand solutions serve
-TURNING = "openings or lobes stand while the line of centres turns"
+TABLE_TARGET = 5e-4  # the smallest target for which splines through some thousand solutions are sufficient
+TURNING = "openings or lobes do not turn with the line of centres"
 
 
 def table_obstacle(case: Case) -> str:
-    """Why films that are not all clipped cannot be tabulated, or nothing."""
+    """Why films that are not all clipped cannot be tabulated; empty if they can."""
     film, oil = case.film, case.oil
     for cavitation in case.cavitations:
         if law_named(cavitation).keeps_oil:
-            return f"{cavitation} keeps its oil: the force does not follow from the motion alone"
+            return f"{cavitation} is mass-conserving: the force does not depend on the motion alone"
         if not law_named(cavitation).tabulated:
             return f"{cavitation} has no such table"
     if film.grid != "fixed":
-        return f"a {film.grid} grid is one of cells"
+        return f"a {film.grid} grid needs cells"
     for place in film_places(case):
         if place.feed_holes is not None or not is_plain(place.geometry):
             return TURNING
         if place.geometry.ends == "free-to-air":
-            return "what leaves at free ends is no part of the table"
+            return "the flow out of free ends is not in the table"
         supply = getattr(place.geometry.supply, "pressure", oil.ambient_pressure)
         equal = supply == oil.ambient_pressure == oil.cavitation_pressure
         if film.penalty.pressure == "dimensionless" and not equal:
-            return "a supply or cavitation pressure beside one that follows the speed would be a fourth axis"
+            return "with the dimensionless pressure, a supply or cavitation pressure would be a fourth axis"
     if film.solution == "auto" and case.accuracy.target < TABLE_TARGET:
         return f"a table is too coarse for a target below {TABLE_TARGET:g}"
     return ""
 
 
 def solution_fault(case: Case, clipped: bool, tabulated: bool) -> Fault | None:
-    """What is wrong with the way that a case wants its films solved. clipped: whether all of them are; tabulated:
-    whether those can be."""
+    """The fault of film.solution. clipped: whether all films are clipped; tabulated: whether clipped films can be
+    tabulated."""
     if case.film.solution != "table":
         return None
     obstacle = table_obstacle(case)
@@ -50,4 +50,4 @@ def solution_fault(case: Case, clipped: bool, tabulated: bool) -> Fault | None:
         obstacle = "" if tabulated else TURNING
     if not obstacle:
         return None
-    return Fault("film.solution", "table", None, f"cannot be: {obstacle}.", "Choose auto or cells.")
+    return Fault("film.solution", "table", None, f"is not possible: {obstacle}.", "Choose auto or cells.")

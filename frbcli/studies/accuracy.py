@@ -29,7 +29,7 @@ MESHES = (0.5, 1.0, 1.5)  # of the plan's elements or cells in each direction
 TOLERANCES = (100.0, 10.0, 1.0, 0.1)  # of the plan's
 LOOSEST = 0.1  # tolerance that a case may have
 REFERENCE_MESH, REFERENCE_TOLERANCE = 2.0, 0.02
-COARSER_MESH, LOOSER = 1.5, 2.0  # what the reference is held against: of the plan's elements, of its own tolerance
+COARSER_MESH, LOOSER = 1.5, 2.0  # second reference: factors of the plan's elements, and of the tolerance
 INTERRUPTED = "interrupted"
 
 
@@ -43,7 +43,7 @@ def accuracy(
     couplings: Sequence[str] = (),
     observe: Observer | None = None,
 ) -> AccuracyLadder:
-    """Run a case up on a ladder and say what each rung costs and how far it is from a fine reference.
+    """Run a case up on a ladder and compare cost and error of each rung with a fine reference.
 
     until: in s, shortens the run; the rotor speeds up as before. theories, couplings: to be tried, () for all theories
     that can be had and for the coupling of the plan. observe: called some times a second. Ctrl-C ends it with the rungs
@@ -54,7 +54,9 @@ def accuracy(
     _check_names(case, theories, couplings)
     if case.film.bearing_model:
         problem = "is a bearing model, which has no theories and meshes to compare."
-        fault = Fault("film.theory", case.film.theory, None, problem, "`frb runup --verify` tells the error of a run.")
+        fault = Fault(
+            "film.theory", case.film.theory, None, problem, "`frb runup --verify` measures the error of a run."
+        )
         raise InputError(case.name or "case", (fault,))
     short = _until(case, until)
     own = planned_rung(make_plan(short))

@@ -1,4 +1,4 @@
-"""The same run-up with several models of the films: what each says, how far it is from the first, what it costs."""
+"""The same run-up with several models of the films: events, deviation from the first, and cost of each."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 TESTS = ("runup",)
 FINISHED, INTERRUPTED = "finished", "interrupted"
-UNTIL = ("onset", "contact")  # from there on two runs differ in phase, whatever their films
+UNTIL = ("onset", "contact")  # afterwards two runs differ in phase, whatever their films
 
 
 @dataclass(frozen=True)
@@ -216,18 +216,21 @@ def _check_test(test: str) -> None:
     if test in TESTS:
         return
     kinematic = test in KINEMATIC_TESTS
-    problem = f"is a function of its own: frbcli.{test}(case, cavitations)." if kinematic else "is no test."
+    problem = f"is a function of its own: frbcli.{test}(case, cavitations)." if kinematic else "is not a test."
     raise InputError("comparison", (Fault("--test", test, None, problem, f"There is: {', '.join(TESTS)}."),))
 
 
 def _unknown(option: str, names: Sequence[str], known: Sequence[str]) -> list[Fault]:
-    problem, remedy = "is no model of this version.", f"There are: {', '.join(known)}."
+    problem, remedy = "is not a model of this version.", f"There are: {', '.join(known)}."
     return [Fault(option, name, None, problem, remedy) for name in dict.fromkeys(names) if name not in known]
 
 
 def _with_models(case: Case, variant: Variant) -> Case:
     settings = (
-        f"film.theory={variant.theory}", f"film.cavitation={variant.cavitation}", f"film.coupling={variant.coupling}")
+        f"film.theory={variant.theory}",
+        f"film.cavitation={variant.cavitation}",
+        f"film.coupling={variant.coupling}",
+    )
     return load_case_text(case.source_text, settings, name=case.name)
 
 
@@ -245,7 +248,7 @@ def _fits(case: Case, variant: Variant) -> bool:
 def _check_own_models(case: Case, variant: Variant, its_case: Case) -> None:
     """Raise InputError for a variant whose model some film does not take, having one of its own."""
     if variant.cavitation != case.film.cavitation and set(its_case.cavitations) != {variant.cavitation}:
-        problem = "is not what all films are computed with: some name a model of their own."
+        problem = "does not apply to all films: some have a model of their own."
         remedy = "Remove `cavitation` from the films of the bearing, or compare couplings only."
         raise InputError(case.name or "case", (Fault("--cavitation", variant.cavitation, None, problem, remedy),))
 

@@ -1,4 +1,4 @@
-"""How far two runs of the same machine are apart, point by point, while that means anything."""
+"""Differences of two runs of the same machine at each time, until a whirl grows."""
 
 from __future__ import annotations
 

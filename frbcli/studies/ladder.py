@@ -1,4 +1,4 @@
-"""What a ladder of speed against error holds: ways to compute a run, what each costs and errs, Pareto's front."""
+"""A ladder of speed against error: ways to compute a run, cost and error of each, Pareto's front."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ class RungError:
 
 @dataclass(frozen=True)
 class RungResult:
-    """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: what the program
-    chooses on its own; signals: largest error of each signal, see Difference; stated: what the run itself says of its
-    error; work_s: CPU time by the count of its film solves and the table of scene/cost.py, whatever else the machine
-    does."""
+    """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: the choice
+    of the plan; signals: largest error of each signal, see Difference; stated: stated error of the run;
+    work_s: CPU time from the number of its film solves and the table of scene/cost.py, which does not depend on the
+    load of the machine."""
 
     rung: Rung
     status: str
@@ -77,7 +77,7 @@ class AccuracyLadder:
 
     @property
     def front(self) -> tuple[RungResult, ...]:
-        """Pareto's: the rungs that nothing cheaper comes closer than."""
+        """Pareto's front: the rungs for which no cheaper rung has a smaller error."""
         best, found = math.inf, []
         for result in sorted(self.ladder, key=lambda item: item.cpu_s):
             if result.error.eccentricity_largest < best:
@@ -100,9 +100,18 @@ class AccuracyLadder:
         """One row per rung."""
         import pandas as pd
 
-        return pd.DataFrame([
-            {**vars(item.rung), "status": item.status, "cpu_s": item.cpu_s, **vars(item.error),
-             "stated": item.stated.get("eccentricity"), "work_s": item.work_s,
-             "planned": item.planned, "on_front": item in self.front}
-            for item in self.ladder
-        ])
+        return pd.DataFrame(
+            [
+                {
+                    **vars(item.rung),
+                    "status": item.status,
+                    "cpu_s": item.cpu_s,
+                    **vars(item.error),
+                    "stated": item.stated.get("eccentricity"),
+                    "work_s": item.work_s,
+                    "planned": item.planned,
+                    "on_front": item in self.front,
+                }
+                for item in self.ladder
+            ]
+        )

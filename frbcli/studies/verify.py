@@ -1,4 +1,4 @@
-"""Is the stated error of a run true? The run again with shorter steps, and with rotor and films solved together."""
+"""Check of the stated error of a run by a run with shorter steps, and one with rotor and films solved together."""
 
 from __future__ import annotations
 
@@ -48,8 +48,9 @@ def verify(case: Case, run: Run, observe: Callable[[Progress], None] | None = No
     with TemporaryDirectory(prefix="frb-verify-") as folder:
 
         def other(*settings: str) -> Run:
-            return again(load_case_text(case.source_text, settings, name=case.name), Path(folder) / "run.h5",
-                         observe=observe)
+            return again(
+                load_case_text(case.source_text, settings, name=case.name), Path(folder) / "run.h5", observe=observe
+            )
 
         finer = other(f"accuracy.tolerance={0.5 * plan.tolerance!r}", f"accuracy.steps_per_revolution={steps}")
         apart, cpu_s, coupling = difference(run, finer), float(finer.cost["cpu_s"]), None

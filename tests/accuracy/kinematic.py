@@ -23,7 +23,7 @@ COARSER, FINER = 1.5, 2.0  # of the plan's cells in each direction
 
 @dataclass(frozen=True)
 class Stated:
-    """Of one model in one case. true: relative error of the force; certain: how far the reference is from one
+    """Of one model in one case. true: relative error of the force; certain: reference uncertainty, the distance to one
     on coarser cells; stated: by the test itself. NaN of one that does not converge, or is no film on cells."""
 
     case: str

@@ -23,8 +23,8 @@ TITLE = "## Floating rings, chapter 7"
 HEAD = f"""{TITLE}
 
 Written by `cd tests && python -m validation.chapter_7_page FOLDER` from the run-ups of `validation.chapter_7` at the
-default accuracy; cases and trends are in [floating-rings](floating-rings.md). Where several films whirl, all are told,
-and the one nearest to the printed number counts.
+default accuracy; cases and trends are in [floating-rings](floating-rings.md). Where several films whirl, all are
+listed, and the one nearest to the printed number counts.
 
 | quantity | where | model | printed | measured | deviation | verdict |
 | --- | --- | --- | --- | --- | --- | --- |"""

@@ -11,11 +11,11 @@ UNTIL_s = 6.0
 MESHES = {"40 x 5": (), "64 x 6": ("accuracy.mesh=[6,64]",), "96 x 10": ("accuracy.mesh=[10,96]",)}
 SUPPLIES = (1, 2)
 HEAD = """Case `jeffcott-two-phase`, x_1 = 0.99; the first row of each pressure has the cells of a target of 3e-3.
-Amplitude: the largest before the onset, over the clearance. Resting positions and onsets hold on few cells. At 1 bar
-the starved film also lets the journal vibrate with 82 to 90 Hz between about 2.6 and 3.8 s, which ends before the whirl
-begins; this amplitude grows with the number of cells and has not converged: on few cells the vibration needs the
-unbalance to begin and dies slowly, on many it goes on by itself. It is the event `self-excited` of such a run. At 2 bar
-the whirl has begun, or is about to, at 4 s."""
+Amplitude: the largest before the onset, over the clearance. Resting positions and onsets are accurate on
+few cells. At 1 bar the journal in the starved film also vibrates with 82 to 90 Hz between about 2.6 and 3.8
+s, which ends before the whirl begins; this amplitude grows with the number of cells and has not converged:
+on few cells unbalance excites the vibration, which decays slowly; on many cells it persists. It is the
+event `self-excited` of such a run. At 2 bar the whirl has begun, or is about to, at 4 s."""
 
 
 def table(folder: Path) -> list[str]:

@@ -17,12 +17,12 @@ SUPPLIES: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 HEAD = """## Two forms of the two-phase model
 
-The source rests on the form (4.31) that does not conserve oil, with artificial diffusion on 10 x 20 quadratic elements.
-frb has both: `form = "published"` reproduces it, `form = "conservative"` is the default. They differ where the source
-supplies oil at ambient pressure through a circumferential groove: nothing then presses oil into the film, and strictly
-it starves. There the published form creates the oil that leaves at the ends, and the journal rests where the penalty
-model has it; the conservative form rests far out and whirls early. Rows that depend on this supply therefore say in
-which form they were measured.
+The source uses the form (4.31), which does not conserve oil, with artificial diffusion on 10 x 20 quadratic elements.
+`frb` has both: `form = "published"` reproduces it, `form = "conservative"` is the default. They differ where the
+source supplies oil at ambient pressure through a circumferential groove: the film has no pressurised supply and
+starves. There the published form creates the oil that leaves at the ends, and the resting position is that of the
+penalty model; with the conservative form the eccentricity at rest is large and the onset of whirl early. Rows that
+depend on this supply therefore say in which form they were measured.
 
 Eccentricity at rest, 30 Hz, x_1 = 0.99; created: oil that leaves the film less what enters it, as a share of it.
 

@@ -38,11 +38,11 @@ On 20 x 10 elements of a section as published, with a target of 1e-2; `python -m
 keeps the figures in `tests/data/published-runs.csv`. Eccentricities after 1 s, beside those of the conservative form
 and of the penalty model (target 3e-3), and after 4 s; the onset; oil created, as a share of what left the film.
 
-With x_1 = 0.99 the published form follows the penalty model, free to air and in an oil bath, and does not starve. With
-x_1 = 0.9 the journal rests nearer to the middle; the whirl begins earlier than with the penalty model (6.55 s, above)
-and later than in the conservative form (5.62 s). Not run, for their cost: onsets with x_1 = 0.99, and 2 bar in the
-circumferential groove with x_1 = 0.99. There the points of an element are either full or cavitated, and the steps
-become small. The last run was stopped in its whirl.
+With x_1 = 0.99 the published form follows the penalty model, free to air and in an oil bath, and does not starve.
+With x_1 = 0.9 the resting position is nearer to the centre; the onset of whirl is earlier than with the penalty model
+(6.55 s, above) and later than in the conservative form (5.62 s). Not run because of their cost: onsets with x_1 =
+0.99, and 2 bar in the circumferential groove with x_1 = 0.99. There the points of an element are either full or
+cavitated, and the steps become small. The last run was stopped during its whirl.
 
 | run | until, s | at 1 s | conservative | penalty | at 4 s | onset, s | created | CPU s |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""

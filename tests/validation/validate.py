@@ -30,13 +30,13 @@ THRESHOLDS_Hz = {"jeffcott-table-4-1": 167.4, "jeffcott": 177.2}  # by an indepe
 
 HEAD = """# Validation
 
-Measured beside printed. This page is written by `cd tests && python -m validation.validate`, which runs everything
-again (some minutes); `tests/test_validation.py` holds the rows that matter most. Films are of finite length; rows on
+Measured and printed results. This page is written by `cd tests && python -m validation.validate`, which runs everything
+again (some minutes); `tests/test_validation.py` checks the most important rows. Films are of finite length; rows on
 half-Sommerfeld films are of the default accuracy, run-ups with the penalty and the two-phase model of a target of 3e-3.
 [cases](cases.md) lists the commands for every study of chapter 6.
 
-A row *agrees* if it deviates by no more than the wording of the source bears (the source rounds), else it *differs*,
-and the reason stands below the table.
+A row *agrees* if its deviation is within the rounding or the wording of the source, else it *differs*, and the reason
+is given below the table.
 """
 
 
@@ -186,7 +186,7 @@ def main(folder: Path) -> None:
         "",
         "## An independent program",
         "",
-        "Finite volumes, grid-refined and extrapolated, written only to check against.",
+        "Results of a separate finite-volume program, with mesh refinement and extrapolation.",
         "",
         *independent(),
         "",

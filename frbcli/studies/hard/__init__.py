@@ -1,1 +1,1 @@
-"""Hard cases: what happens at the limits, each in a process of its own."""
+"""Hard cases, each in a process of its own."""

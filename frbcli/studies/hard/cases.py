@@ -1,4 +1,4 @@
-"""Hard cases: each is computed in a process of its own time, and held to the end and the reference that it has."""
+"""Hard cases: each is computed in a process of its own, and compared with its expected end and its reference."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ class HardResult:
     status: of the run or test, "finished" for a test that converged; "input-error", "error" (a bug), "hung", "died";
     message: why, where there is more to say; events: kinds with names of films; error: the largest deviation of the
     eccentricities from those of the reference until until_s, or the relative one of the force, None without reference;
-    reported: the error that the program itself states for it, None where it states none; certain: how far the
-    reference may be off, None without; problems: what is not as it should be.
+    reported: the stated error, None where there is none; certain: the reference uncertainty, None without; problems:
+    deviations from the list.
     """
 
     hard: HardCase
@@ -109,7 +109,7 @@ def run_hard_cases(names: Sequence[str] = (), observe: Observer | None = None) -
 
 
 def hard_case_result(task: tuple[HardCase, Reference | None]) -> HardResult:
-    """One hard case, here and now, and all that is wrong with it. Raises nothing: a bug is a result, too."""
+    """One hard case in this process, with all deviations from the list. Raises nothing: a bug is a result as well."""
     hard, reference = task
     begun = time.process_time()
     try:
@@ -189,7 +189,7 @@ def _compared(hard: HardCase, found: Outcome, reference: Reference | None) -> Ha
 
 
 def apart(found: Outcome, reference: Reference) -> tuple[float, float | None]:
-    """(how far an outcome is from a reference, see HardResult; until which time in s, None for a test)."""
+    """(error against a reference, see HardResult; end of the comparison in s, None for a test)."""
     if not reference.times_s:
         return _force_error(found.values, reference.values), None
     until = min(found.until_s, reference.until_s)
@@ -214,7 +214,7 @@ def _deviation(found: Outcome, reference: Reference, until_s: float) -> float:
 
 
 def _unexpected(result: HardResult) -> list[str]:
-    """What of a result is not as the list says."""
+    """The deviations of a result from the list."""
     hard, found = result.hard, []
     if result.status != hard.end:
         found.append(f"{result.status} instead of {hard.end}")
@@ -224,7 +224,7 @@ def _unexpected(result: HardResult) -> list[str]:
         found.append(f"events: {', '.join(result.events) or 'none'} instead of {', '.join(hard.events) or 'none'}")
     if result.error is not None and not _bounded(result.error, result.reported):
         stated = "none" if result.reported is None else f"{result.reported:.1e}"
-        found.append(f"off by {result.error:.1e}, stated {stated}")
+        found.append(f"error {result.error:.1e}, stated error {stated}")
     return found
 
 

@@ -1,4 +1,4 @@
-"""References of the hard cases: fine runs, and how far they may be off themselves."""
+"""References of the hard cases: fine runs, and their uncertainty."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from frbcli.scene.plan import make_plan
 from frbcli.studies.accuracy import planned_rung
 from frbcli.studies.hard.cases import RUNS, Outcome, apart, outcome
 
-MOMENTS = 48  # times at which a run is held to its reference
+MOMENTS = 48  # times at which a run is compared with its reference
 DIGITS = 7  # of the numbers that a reference keeps
-LESS, LOOSER = 2 / 3, 2.0  # of the mesh in each direction, of the tolerance: what the reference is held against
+LESS, LOOSER = 2 / 3, 2.0  # second reference: factors of the mesh in each direction and of the tolerance
 
 
 def make_reference(hard: HardCase) -> Reference:
-    """The reference of a hard case, computed with its fine settings, and how far it may be off.
+    """The reference of a hard case, computed with its fine settings, and its uncertainty.
 
-    Raises ValueError if the run on less of a mesh ends otherwise.
+    Raises ValueError if the run on the coarser mesh ends otherwise.
     """
     begun = time.process_time()
     fine = hard.case(fine=True)
@@ -41,13 +41,13 @@ def make_reference(hard: HardCase) -> Reference:
 
 def _change(hard: HardCase, made: Reference, other: Outcome) -> float:
     if other.status != made.status:
-        raise ValueError(f"{hard.name}: {other.status} on less of a mesh, {made.status} on the fine one")
+        raise ValueError(f"{hard.name}: {other.status} on the coarser mesh, {made.status} on the fine one")
     return apart(other, made)[0]
 
 
 def _less(hard: HardCase, fine: Case) -> tuple[tuple[str, ...], float]:
-    """Settings for less of a mesh and a looser tolerance, and what the change by them counts: a reference on cells is
-    off by more than it is from one on fewer, e(h) = change / ((1 / LESS)^ORDER - 1); one on elements by less."""
+    """Settings for a coarser mesh and a larger tolerance, and the factor of the change that gives the reference
+    uncertainty: on cells e(h) = change / ((1 / LESS)^ORDER - 1); on elements the change itself."""
     on_cells = 1.0 / ((1.0 / LESS) ** ORDER - 1.0)
     if hard.command not in RUNS:
         return (_mesh(fine.accuracy.mesh),), on_cells

@@ -1,4 +1,4 @@
-"""One process that works beside this one, and can be stopped where it hangs."""
+"""One process beside this one that can be stopped if it hangs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Worker:
         self._end()
 
     def ask(self, task: object, within_s: float) -> Any:
-        """What the work makes of a task; HUNG if it takes longer than within_s, DIED if its process does not live."""
+        """The result of a task; HUNG if it takes longer than within_s, DIED if its process ends."""
         self._here.send(task)
         try:
             if self._here.poll(within_s):

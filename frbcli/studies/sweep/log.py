@@ -1,7 +1,7 @@
-"""What a sweep has done so far, one line of JSON for each point, so that a broken sweep goes on where it was.
+"""The log of a sweep, one line of JSON for each point, from which an interrupted sweep is resumed.
 
-A line is written as soon as its point is computed. The first line says which sweep it is; a line that a crash has
-torn is left out, and so are points that deserve another try.
+A line is written as soon as its point is computed. The first line says which sweep it is; an incomplete
+line is left out, and so are points that are to be computed again.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def append(path: Path, points: Sequence[SweepPoint]) -> None:
         with path.open("a", encoding="utf-8") as file:
             file.writelines(f"{_line(point)}\n" for point in points)
     except OSError as error:
-        remedy = "Make room; the same sweep then goes on."
+        remedy = "Free some space; the same command then resumes the sweep."
         raise _refuse(path, f"cannot be written: {error.strerror}.", remedy) from error
 
 
@@ -65,7 +65,7 @@ def _line(point: SweepPoint) -> str:
 
 
 def _point(line: str) -> SweepPoint | None:
-    """The point of a line, None for a torn one."""
+    """The point of a line, None for an incomplete one."""
     found = _parsed(line)
     if not isinstance(found, dict):
         return None

@@ -17,7 +17,7 @@ OPENING, CLOSING, QUOTES = "([{", ")]}", "\"'"
 
 
 def split_values(text: str) -> tuple[str, ...]:
-    """What stands between the commas of `text`; commas in quotes and brackets part nothing."""
+    """What stands between the commas of `text`; commas in quotes and brackets do not separate values."""
     values, depth, quote = [""], 0, ""
     for letter in text:
         if quote:
@@ -53,7 +53,7 @@ def product(points: Iterable[Mapping[str, str]], others: Iterable[Mapping[str, s
 
 
 def checked(points: Iterable[Mapping[str, object]]) -> tuple[Settings, ...]:
-    """`points` with values as text. Raises InputError if there are none, or more than anybody waits for."""
+    """`points` with values as text. Raises InputError if there are none, or too many."""
     taken = tuple(
         dict(zip(point, _texts(point.values()), strict=True)) for point in itertools.islice(points, MOST_POINTS + 1)
     )

@@ -1,6 +1,6 @@
 """Parameter studies: one case with many settings, on all cores or on a cluster.
 
-Everything stays in one directory: `sweep.jsonl`, which a broken sweep goes on from, and the runs in `runs/`.
+All results are in one directory: `sweep.jsonl`, from which an interrupted sweep is resumed, and the runs in `runs/`.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Pa
             found.to_pandas().to_parquet(path, index=False)
     except (OSError, ValueError) as error:
         remove_part(path)
-        remedy = "Make room, or choose another directory; the same sweep then goes on."
+        remedy = "Free some space or choose another directory; the same command then resumes the sweep."
         raise _refuse("--output", str(path), f"cannot be written: {error}.", remedy) from error
     return path
 
@@ -143,7 +143,7 @@ def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Pa
 def check_table_format(table_format: str) -> None:
     """Raises InputError if no table can be written so: before the work, not after."""
     if table_format not in TABLE_FORMATS:
-        raise _refuse("--format", table_format, "is no format.", f"There are: {', '.join(TABLE_FORMATS)}.")
+        raise _refuse("--format", table_format, "is not a format.", f"There are: {', '.join(TABLE_FORMATS)}.")
     if table_format == "parquet" and find_spec("pyarrow") is None:
         raise _refuse("--format", "parquet", "needs the library pyarrow.", "pip install frbcli[parquet], or use csv.")
 
@@ -162,7 +162,7 @@ def _check_models(cases: Sequence[Case | InputError], workers: Workers) -> None:
     """Raises InputError for bearing models that the processes of a sweep do not have."""
     models = {each.film.bearing_model for each in cases if isinstance(each, Case)} - {""}
     if models and (workers.jobs != 1 or workers.backend != "loky"):
-        problem = f"start processes that do not have the bearing model {min(models)}, which was added in this one."
+        problem = f"start processes that do not have the bearing model {min(models)} of this process."
         raise _refuse("--jobs", str(workers.jobs), problem, "Take one: Workers(jobs=1).")
 
 

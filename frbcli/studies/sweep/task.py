@@ -1,4 +1,4 @@
-"""One point of a sweep: what is to be computed, and what came out. Runs in any process, on any machine."""
+"""One point of a sweep: its task and its result. Runs in any process, on any machine."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ THRESHOLD = "threshold"
 
 @dataclass(frozen=True)
 class SweepPoint:
-    """One point of a sweep and what came out.
+    """One point of a sweep and its result.
 
     number: from 1; settings: key -> value as text; status: that of its run, or "input-error" (no case, or a file that
     cannot be written), "error" (a bug, or its process died), "interrupted" (not computed yet); message: why, where the

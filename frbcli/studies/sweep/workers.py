@@ -19,7 +19,7 @@ from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
 BACKENDS = ("loky", "dask")
 CONNECT_WITHIN_s = 10.0
 QUEUE = 2  # tasks given out per worker: the next one waits where the last one ends
-DIED = "its process died: it was killed, or the memory was short."
+DIED = "its process ended: it was killed, or there was too little memory."
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Workers:
 def check_workers(workers: Workers) -> None:
     """Raises InputError if there can be no such workers."""
     if workers.backend not in BACKENDS:
-        raise _refuse("--backend", workers.backend, "is no backend.", f"There are: {', '.join(BACKENDS)}.")
+        raise _refuse("--backend", workers.backend, "is not a backend.", f"There are: {', '.join(BACKENDS)}.")
     if workers.backend == "dask" and not workers.scheduler:
         raise _refuse("--scheduler", "", "is missing.", "Write e.g. --scheduler tcp://10.0.0.1:8786.")
     if workers.backend == "dask" and find_spec("distributed") is None:
@@ -44,14 +44,14 @@ def check_workers(workers: Workers) -> None:
     if workers.backend != "dask" and workers.scheduler:
         raise _refuse("--scheduler", workers.scheduler, "is for a cluster.", "Add --backend dask.")
     if workers.jobs != -1 and workers.jobs < 1:
-        raise _refuse("--jobs", str(workers.jobs), "is no number of processes.", "Write 1 or more.")
+        raise _refuse("--jobs", str(workers.jobs), "is not a number of processes.", "Write 1 or more.")
 
 
 def solved(tasks: Iterable[Task], workers: Workers) -> Generator[SweepPoint, None, None]:
     """The points of all tasks, each as soon as it is computed.
 
-    A process that dies takes what is under way with it. These tasks then run again, one at a time, so that the one that
-    kills its process is known and fails alone. Raises InputError if the cluster cannot be reached.
+    If a process ends, its tasks run again, one at a time, so that the task that ends its process is found and fails
+    alone. Raises InputError if the cluster cannot be reached.
     """
     waiting = {task.number: task for task in tasks}
     with _deaths(workers) as deaths:
@@ -78,7 +78,7 @@ def _together(tasks: Iterable[Task], jobs: int) -> Generator[SweepPoint, None, N
 
 @contextmanager
 def _dropped_at_the_end(points: Generator[SweepPoint, None, None]) -> Iterator[Iterator[SweepPoint]]:
-    """What is under way when nobody wants more of `points` is dropped; joblib warns of it, but it is meant so."""
+    """Drops the running tasks when no more of `points` are needed, without the warning of joblib."""
     try:
         yield points
     finally:
@@ -116,7 +116,7 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
 
 
 def _start(jobs: int) -> None:
-    """Start the processes deaf to Ctrl-C, which reaches them, too."""
+    """Start processes that ignore Ctrl-C, which the terminal sends to them as well."""
     with deaf():
         joblib.Parallel(n_jobs=jobs)(joblib.delayed(abs)(0) for _ in range(joblib.effective_n_jobs(jobs)))
 
