@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flows import net_flow
 from numba import njit
 from numpy.typing import NDArray
 from scipy.optimize import brentq
@@ -24,7 +25,7 @@ from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
-from frbcli.runs.oil import net_flow, oil_defect
+from frbcli.runs.oil import oil_defect
 from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
