@@ -61,7 +61,7 @@ def test_a_wrong_number_is_seen() -> None:
     off = {name: [value + 0.01 for value in row] for name, row in reference.values.items()}
     result = hard_case_result((hard, replace(reference, values=off)))
     assert result.error == pytest.approx(0.01, abs=1e-4)
-    assert [problem.split(",")[0] for problem in result.problems] == ["off by 1.0e-02"]
+    assert [problem.split(",")[0] for problem in result.problems] == ["error 1.0e-02"]
 
 
 def test_another_end_and_other_events_are_seen() -> None:

@@ -445,8 +445,9 @@ def wrong_slopes(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, b
         (BearingModel("mine", "mine", 3.0), "force: is no function"),  # type: ignore[arg-type]
         (BearingModel("short", "mine", spring), "name: is that of a key or model of the program"),
         (BearingModel("two-phase", "mine", spring), "name: is that of a key or model of the program"),
-        (BearingModel("My Bearing", "mine", spring), "name: is not made of small letters"),
-        (BearingModel("mine", "mine", spring, keys=(frbcli.BearingKey("width", 1.0),)), "keys.width: is a name that"),
+        (BearingModel("My Bearing", "mine", spring), "name: has other characters than small letters"),
+        (BearingModel("mine", "mine", spring, keys=(frbcli.BearingKey("width", 1.0),)),
+         "keys.width: is already the name of another field"),
         ("mine", "is not a BearingModel"),
     ],
 )
@@ -512,7 +513,7 @@ def test_a_run_is_read_and_drawn_without_its_model(tmp_path: Path, capsys: pytes
     frbcli.remove_bearing("short-pi")
     run = frbcli.read_run(path)
     assert described(run) == "short-pi"
-    assert run.versions["bearing_model"].startswith("short-pi, added from Python, not of this program")
+    assert run.versions["bearing_model"].startswith("short-pi, added from Python; forces ")
     for words in (["waterfall", str(path)], ["plot", str(path)], ["plot", str(path), "--what", "summary"]):
         assert frb(words) == 0
     case = tmp_path / "case.toml"
