@@ -48,7 +48,7 @@ from frbcli.solve.time_loop import advance
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
-FIRST_BUDGET, BUDGET, GROWTH = 4, 500, 8.0
+FIRST_BUDGET, BUDGET, GROWTH = 4, 5000, 8.0
 CHUNK_s = 0.1
 # A run with this many times the expected steps makes no progress and is stopped.
 RUNAWAY, FEWEST_STEPS = 100, 2_000_000
