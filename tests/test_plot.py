@@ -26,7 +26,7 @@ from frbcli.plot.ring_speed import ring_speed_figure
 from frbcli.plot.signals import clearance, labels, model
 from frbcli.plot.style import save_figure
 from frbcli.plot.summary import summary_figure
-from frbcli.plot.waterfall import LEVELS_dB, waterfall_figure
+from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
@@ -180,6 +180,13 @@ def test_ring_speed_is_drawn_over_the_torque_balance(ringed: Run) -> None:
     assert np.nanmax(curve.get_ydata()) == pytest.approx(0.25)
     inner, outer = 12.0 * 12.5**3 * 20 / 40, 14.0 * 20.0**3 * 16 / 50
     assert np.unique(concentric.get_ydata()) == pytest.approx([inner / (inner + outer)])
+
+
+def test_the_waterfall_of_a_rotor_that_turns_the_other_way_round_is_the_same(ringed: Run) -> None:
+    other = as_run({name: -ringed[name] if name.endswith("_Hz") else ringed[name] for name in ringed.signals})
+    here, there = (run_spectra(one, "journal", None, "x") for one in (ringed, other))
+    assert (here.window_s, here.frequency_Hz[-1]) == (there.window_s, there.frequency_Hz[-1])
+    np.testing.assert_array_equal(here.speed_Hz, -there.speed_Hz)
 
 
 def test_ring_speed_and_oil_content_need_their_signals(run: Run, ringed: Run) -> None:

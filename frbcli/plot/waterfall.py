@@ -89,7 +89,8 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
         window_s = window_length(time_s, speed, _apart(run, signal))
     if window_s > MOST_IN_WINDOW * (end - begin) / (len(run) - 1):
         raise refuse(run.path, f"has more than {MOST_IN_WINDOW} samples in a window.", "Shorten --window.")
-    highest = max(ABOVE_SYNCHRONOUS * extremes(speed, 0, len(run))[1], FEWEST_LINES / max(window_s, 1e-9))
+    fastest = max(map(abs, extremes(speed, 0, len(run))))
+    highest = max(ABOVE_SYNCHRONOUS * fastest, FEWEST_LINES / max(window_s, 1e-9))
     most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * window_s))))
     length = clearance(run, bearing_of(run, signal))
     return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)
@@ -109,8 +110,10 @@ def _apart(run: Run, signal: str) -> float | None:
         return None
     places = np.unique(np.linspace(0, len(run) - 1, COLUMNS).round().astype(np.int64))
     speed, ring = samples(run.signal(SPEED), places), samples(RingSpeed(run, bearing), places)
-    slow = np.flatnonzero(speed >= FROM_SPEED * np.max(speed))[0]
-    lines = sorted((float(speed[slow]), 0.5 * float(speed[slow] + ring[slow]), 0.5 * float(ring[slow])))
+    size = np.abs(speed)  # a rotor may turn the other way round all the time
+    slow = np.flatnonzero(size >= FROM_SPEED * np.max(size))[0]
+    frequencies = speed[slow], 0.5 * (speed[slow] + ring[slow]), 0.5 * ring[slow]
+    lines = sorted(abs(float(frequency)) for frequency in frequencies)
     gaps = [above - below for below, above in itertools.pairwise(lines)]
     return min((gap for gap in gaps if gap > SAME_LINE * lines[-1]), default=None)
 
