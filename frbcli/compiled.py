@@ -20,7 +20,7 @@ from numba.core.sigutils import normalize_signature
 from numpy.typing import NDArray
 
 _PACKAGE = Path(__file__).parent
-_IMPORTS = re.compile(r"^from frbcli\.([\w.]+) import", re.MULTILINE)
+_IMPORTS = re.compile(r"^\s*from frbcli((?:\.\w+)*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -82,7 +82,11 @@ def sources_digest(*files: Path) -> str:
 @cache
 def _source(file: Path) -> tuple[str, tuple[Path, ...]]:
     """(digest of a file, the files of this package that it imports)."""
-    text = file.read_text(encoding="utf-8")
-    places = (_PACKAGE.joinpath(*name.split(".")) for name in _IMPORTS.findall(text))
-    imported = (place / "__init__.py" if place.is_dir() else place.with_suffix(".py") for place in places)
-    return hashlib.sha256(text.encode()).hexdigest(), tuple(path for path in imported if path.exists())
+    text, places = file.read_text(encoding="utf-8"), list[Path]()
+    for module, names in _IMPORTS.findall(text):
+        place = _PACKAGE.joinpath(*module.split("."))
+        if place.is_dir():  # what is imported from a folder may be a file of it
+            places += [place / "__init__.py", *(place / f"{name}.py" for name in re.findall(r"\w+", names))]
+        else:
+            places.append(place.with_suffix(".py"))
+    return hashlib.sha256(text.encode()).hexdigest(), tuple(path for path in places if path.exists())

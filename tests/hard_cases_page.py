@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 from textwrap import fill
 
-from frbcli.cli.hard import write_page
+from frbcli.cli.common import short_number
+from frbcli.cli.hard import cause_of
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 PAGE = Path(__file__).parents[1] / "docs" / "hard-cases.md"
@@ -66,6 +67,21 @@ def doubtful(found: HardResults) -> str:
 
 def _list(names: list[str]) -> str:
     return ", ".join(f"`{name}`" for name in names) or "no case"
+
+
+def write_page(found: HardResults, page: Path, introduction: str) -> None:
+    """The results as a page of the documentation."""
+    rows = "".join(f"| {' | '.join(cells)} |\n" for cells in map(_cells, found.results))
+    head = "| case | difficulty | expected | ended | error | reference uncertainty | stated error | CPU s | cause |\n"
+    head += "| --- " * 9 + "|\n"
+    page.write_text(f"{introduction}\n{head}{rows}", encoding="utf-8")
+
+
+def _cells(result: HardResult) -> tuple[str, ...]:
+    hard = result.hard
+    notes = "; ".join(filter(None, (cause_of(result), *result.problems))).replace("|", "\\|")
+    errors = map(short_number, (result.error, result.certain, result.reported))
+    return f"`{hard.name}`", hard.hard, hard.end, result.status, *errors, f"{result.cpu_s:.1f}", notes
 
 
 if __name__ == "__main__":

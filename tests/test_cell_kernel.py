@@ -21,10 +21,11 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balances import FLOWS, SIDES, balances
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_ring
 from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.film import Motion, VolumeFilm
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.grid import volume_grid
+from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.newton_step import film_newton
-from frbcli.film.cells.plain.balance import Balance, Storage
+from frbcli.film.cells.plain.balance import Balance
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.states import STATES, cell_states, follow_law
 from frbcli.film.gap import Hole, Section, gap_height, gap_rate

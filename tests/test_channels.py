@@ -21,7 +21,7 @@ from frbcli.film.cells.balances import CHANNELS_NET
 from frbcli.film.cells.channels import Channel, channel_resistance, with_channels
 from frbcli.film.cells.data import FLOW_SCALE, volume_films
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of

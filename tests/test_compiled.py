@@ -12,16 +12,21 @@ import pytest
 
 from frbcli.case.load import load_case
 from frbcli.cli.common import Terminal
-from frbcli.cli.compiling import compiling_told
+from frbcli.cli.compiling import compilation_shown
 
 KERNEL = """
 from frbcli.compiled import compiled
-from frbcli.film.inner import inner
+{imported}
 
 @compiled()
 def outer(x):
     return inner(x)
 """
+IMPORTS = (
+    "from frbcli.film.inner import inner",
+    "from frbcli.film import inner as of\ninner = of.inner",
+    "from frbcli.film.inner import (\n    inner,\n)",
+)
 INNER = """
 from frbcli.compiled import compiled
 
@@ -32,7 +37,7 @@ def inner(x):
 ASK = "from frbcli.film.outer import outer; print(outer(1.0), sum(outer.stats.cache_hits.values()))"
 
 
-def package(folder: Path) -> Path:
+def package(folder: Path, imported: str) -> Path:
     """A package of the program's name with its compiler of kernels and two kernels in two files."""
     from frbcli import compiled
 
@@ -41,7 +46,7 @@ def package(folder: Path) -> Path:
     for place in (room.parent, room):
         (place / "__init__.py").touch()
     (room.parent / "compiled.py").write_text(Path(str(compiled.__file__)).read_text())
-    (room / "outer.py").write_text(KERNEL)
+    (room / "outer.py").write_text(KERNEL.format(imported=imported))
     (room / "inner.py").write_text(INNER.format(added="1.0"))
     return room
 
@@ -56,9 +61,10 @@ def answer(folder: Path) -> tuple[float, int]:
     return float(value), int(hits)
 
 
-def test_a_kernel_follows_those_it_calls_in_other_files(tmp_path: Path) -> None:
+@pytest.mark.parametrize("imported", IMPORTS)
+def test_a_kernel_follows_those_it_calls_in_other_files(tmp_path: Path, imported: str) -> None:
     """The cache of numba alone would go on with the old machine code of the inner one."""
-    room = package(tmp_path)
+    room = package(tmp_path, imported)
     assert answer(tmp_path) == (2.0, 0)
     assert answer(tmp_path) == (2.0, 1)
     (room / "inner.py").write_text(INNER.format(added="2.0"))
@@ -88,7 +94,7 @@ def test_the_first_start_is_told_and_the_next_is_not(capsys: pytest.CaptureFixtu
 
     kernel = njit(fresh)
     for told in (True, False):
-        with compiling_told(Terminal(), load_case("jeffcott")):
+        with compilation_shown(Terminal(), load_case("jeffcott")):
             assert kernel(2.0) == 6.0
         assert ("Compiling the kernels, once: about 35 s of CPU time." in capsys.readouterr().err) is told
 
@@ -97,7 +103,7 @@ def test_what_moves_on_the_screen_counts_the_kernels() -> None:
     from numba import njit
 
     shown = list[str]()
-    with compiling_told(Terminal(), load_case("jeffcott-two-phase"), shown.append):
+    with compilation_shown(Terminal(), load_case("jeffcott-two-phase"), shown.append):
         njit(lambda x: x + 1.0)(1.0)
     assert shown[0] == "Compiling the kernels, once: about 80 s of CPU time."
     assert re.fullmatch(r"Compiling the kernels, once: 1 functions in \d+ s of about 80\.", shown[1])

@@ -20,7 +20,7 @@ from frbcli.bearing_tests.resting import resting_displacement
 from frbcli.bearing_tests.steady_film import film_force
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.cells.film import Motion
+from frbcli.film.cells.motion import Motion
 
 DATA = Path(__file__).parent / "data"
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}

@@ -23,8 +23,8 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.frame import path_seen_from, seen_from, turned
 from frbcli.film.cells.grid import fitted_grid, volume_grid
 from frbcli.film.cells.loads import Loads, loads
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.openings import hole_area
-from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.supply import supplied, supply_share
 from frbcli.film.gap import AxialGroove, Hole, Lobes, Section, gap_height, graded_ring, smallest_gap

@@ -17,7 +17,7 @@ from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.data import COS, GAP, SIN, VolumeFilms
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.states import FRACTION
 from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.published.data import ElementFilm

@@ -16,7 +16,7 @@ from frbcli.case.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import artificial_diffusion, assemble

@@ -15,7 +15,7 @@ import frbcli
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.published.data import ElementFilm, make_room
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import oil_flows, open_area, published_loads

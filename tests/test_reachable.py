@@ -22,12 +22,6 @@ PLAIN = {
     ("frbcli.film.rectangles.plain", "solve_plain"): "frbcli.film.rectangles.modal",
     ("frbcli.film.rectangles.short", "short_pressure"): "frbcli.film.rectangles.short",
 }
-# Pages of the documentation are made by them, with commands that tests/README tells.
-TOOLS = {
-    ("frbcli.studies.hard.reference", "make_reference"),
-    ("frbcli.cli.hard", "write_page"),
-}
-
 Name = tuple[str, str]  # module, name of what it defines
 
 
@@ -123,7 +117,7 @@ def roots() -> list[Name]:
 
 def test_commands_and_public_names_reach_all_that_is_there() -> None:
     modules = dict(map(read, PACKAGE.rglob("*.py")))
-    found = reached(modules, [*roots(), *PLAIN, *TOOLS])
+    found = reached(modules, [*roots(), *PLAIN])
     unused = [
         f"{here}.{name}"
         for here, module in modules.items()

@@ -15,7 +15,7 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.grid import fitted_grid
 from frbcli.film.cells.loads import force
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
 from frbcli.film.grid import Array

@@ -23,7 +23,8 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells import solver
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import Torque, estimate, loads
-from frbcli.film.cells.plain.balance import Balance, Motion, Storage
+from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.plain.balance import Balance
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 

@@ -15,7 +15,7 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import AxialGroove, Section
 
 Row = dict[str, str]

@@ -12,7 +12,7 @@ from frbcli.bearing_tests.plan import KinematicPlan
 from frbcli.bearing_tests.steady_film import Array, FilmMoment
 from frbcli.case.schema import Case
 from frbcli.film.cells.loads import Loads, OilBalance, Torque
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.rectangles.bearing import evaluate
 from frbcli.scene.bearing_models import bearing_film
 

@@ -19,8 +19,8 @@ from frbcli.bearing_tests.resting import resting_displacement
 from frbcli.bearing_tests.steady_film import FilmField, film_moment
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.cells.film import Motion
 from frbcli.film.cells.loads import Loads
+from frbcli.film.cells.motion import Motion
 from frbcli.scene.remedies import advised, film_advice
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from frbcli.bearing_tests.journal_path import Path
 from frbcli.errors import NotConverged
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
 

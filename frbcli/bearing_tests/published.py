@@ -13,7 +13,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.loads import estimate
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads

@@ -14,7 +14,7 @@ from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
 from frbcli.bearing_tests.steady_film import film_force as solved_force
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.cells.film import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.section_faults import no_inflow
 
 Array = NDArray[np.float64]

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import CavitationFactor, Loads, estimate, loads
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.rectangles.table import Mesh

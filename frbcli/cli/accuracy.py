@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
-from frbcli.cli.compiling import compiling_told
+from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, SECONDS, here
 from frbcli.cli.transient import live_lines, progress_line
@@ -52,7 +52,7 @@ def command(
 
     target = output or here(case.name, "-accuracy.png")
     check_place(target if picture else None)
-    with live_lines(terminal) as show, compiling_told(terminal, case, show):
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         watch = None if show is None else lambda rung, progress: show(f"{rung.name}\n{progress_line(progress)}")
         found = accuracy(case, until, theory, coupling, watch)
     _report(found, terminal)

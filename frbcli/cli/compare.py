@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
-from frbcli.cli.compiling import compiling_told
+from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import exit_code, live_lines, progress_line
@@ -70,7 +70,7 @@ def command(
             raise InputError(case.name, (Fault("--coupling", ",".join(coupling), None, problem, "Leave it out."),))
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
     check_place(target if picture else None)
-    with live_lines(terminal) as show, compiling_told(terminal, case, show):
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
         found = compare(case, cavitation, theory, test, keep, watch, coupling)
     _report(found, bool(coupling), terminal)

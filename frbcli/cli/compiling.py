@@ -16,7 +16,7 @@ EVERY_s = 10.0  # between two lines where no line moves on the screen
 
 
 @contextmanager
-def compiling_told(terminal: Terminal, case: Case, show: Callable[[str], None] | None = None) -> Iterator[None]:
+def compilation_shown(terminal: Terminal, case: Case, show: Callable[[str], None] | None = None) -> Iterator[None]:
     """Within it, the terminal shows the progress of the compilation.
 
     case: determines the number of kernels; show: see Terminal.progress.
@@ -27,7 +27,7 @@ def compiling_told(terminal: Terminal, case: Case, show: Callable[[str], None] |
 
     about_s = compile_s(case)
 
-    class Told(Listener):
+    class Count(Listener):
         """Counts the compiled functions, with those that they call."""
 
         def __init__(self) -> None:
@@ -46,5 +46,5 @@ def compiling_told(terminal: Terminal, case: Case, show: Callable[[str], None] |
                 line = f"Compiling the kernels, once: {self._count} functions in {now - self._begun:.0f} s"
                 terminal.progress(f"{line} of about {about_s:.0f}.", show)
 
-    with install_listener("numba:compile", Told()):
+    with install_listener("numba:compile", Count()):
         yield

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from textwrap import fill
 from typing import Any
 
@@ -11,7 +10,7 @@ from frbcli.case.hard import HardCase, hard_cases
 from frbcli.cli.common import Terminal, short_number
 from frbcli.cli.transient import live_lines
 from frbcli.errors import INTERRUPTED
-from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
+from frbcli.studies.hard.cases import HardResult, run_hard_cases
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
 COLUMNS = ("case", "difficulty", "end", "error", "stated", "CPU s")
@@ -47,7 +46,7 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
     terminal.result(EXPLANATION)
     for result in found.results:
         if result.message:
-            terminal.result(fill(f"{result.hard.name}: {_cause(result)}", WIDTH))
+            terminal.result(fill(f"{result.hard.name}: {cause_of(result)}", WIDTH))
     wrong = [result for result in found.results if not result.ok]
     for result in wrong:
         terminal.result(fill(f"NOT AS LISTED: {result.hard.name}: {'; '.join(result.problems)}", WIDTH))
@@ -64,14 +63,6 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
     return 0 if found.ok else NOT_AS_LISTED
 
 
-def write_page(found: HardResults, page: Path, introduction: str) -> None:
-    """The results as a page of the documentation."""
-    rows = "".join(f"| {' | '.join(cells)} |\n" for cells in map(_page_cells, found.results))
-    head = "| case | difficulty | expected | ended | error | reference uncertainty | stated error | CPU s | cause |\n"
-    head += "| --- " * 9 + "|\n"
-    page.write_text(f"{introduction}\n{head}{rows}", encoding="utf-8")
-
-
 def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[HardResult, int, int], None]:
     def tell(result: HardResult, done: int, whole: int) -> None:
         line = f"{done}/{whole}  {result.hard.name}: {result.status}{'' if result.ok else ', NOT AS LISTED'}"
@@ -80,7 +71,7 @@ def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callabl
     return tell
 
 
-def _cause(result: HardResult) -> str:
+def cause_of(result: HardResult) -> str:
     """Why a case ended early: its message, and the cause from the list."""
     return "; ".join(text.rstrip(".") for text in (result.message, result.hard.why) if text)
 
@@ -89,13 +80,6 @@ def _cells(result: HardResult) -> tuple[str, ...]:
     hard = result.hard
     end = result.status if result.status == hard.end else f"{result.status}, not {hard.end}"
     return hard.name, hard.hard, end, short_number(result.error), short_number(result.reported), f"{result.cpu_s:.1f}"
-
-
-def _page_cells(result: HardResult) -> tuple[str, ...]:
-    hard = result.hard
-    name, what, _, error, stated, cpu_s = _cells(result)
-    notes = "; ".join(filter(None, (_cause(result), *result.problems))).replace("|", "\\|")
-    return f"`{name}`", what, hard.end, result.status, error, short_number(result.certain), stated, cpu_s, notes
 
 
 def _entry(hard: HardCase) -> dict[str, object]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Names, Terminal
-from frbcli.cli.compiling import compiling_told
+from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import INTERRUPTED, NotConverged
@@ -58,7 +58,7 @@ def run_test(
     target = output or here(case.name, f"-{test}.png")
     check_place(target if picture else None)
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
-    with compiling_told(terminal, case):
+    with compilation_shown(terminal, case):
         found = tests[test](case, cavitation)
     report(found, terminal)
     results = [result_document(result) for result in found.results]

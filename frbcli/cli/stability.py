@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.compiling import compiling_told
+from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT
@@ -75,7 +75,7 @@ def command(
     if stiffness is not None:
         emit_modes(terminal, case, stiffness, speeds, picture)
         return None
-    with compiling_told(terminal, case):
+    with compilation_shown(terminal, case):
         found = stability(case, speeds or None)
     _tell(terminal, found, bool(speeds))
     if picture is not None:

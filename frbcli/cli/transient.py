@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.compiling import compiling_told
+from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
 
@@ -70,7 +70,7 @@ def transient(
     cost = run_cost(command, case)
     if cost.total_s > TOLD_s:
         terminal.remark(cost_line(cost))
-    with live_lines(terminal) as show, compiling_told(terminal, case, show):
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         run = run_case(case, path, resume=resume, observe=_watch(terminal, show), force=force)
     _report(case, run, terminal)
     terminal.result(f"run: {path}")

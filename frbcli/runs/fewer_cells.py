@@ -20,10 +20,8 @@ from frbcli.solve.state import RUNNING
 
 Observer = Callable[[Progress], None]
 
-SHARE, SHARE_WITH_HOLES = (
-    1 / 2,
-    2 / 3,
-)  # of the cells in each direction; on fewer cells the feed holes would have another size
+# Of the cells in each direction; on fewer cells the feed holes would have another size.
+SHARE, SHARE_WITH_HOLES = 1 / 2, 2 / 3
 COARSER_BY = 1.2  # least ratio of the cells around
 
 

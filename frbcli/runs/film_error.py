@@ -12,7 +12,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import force
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import steady_solution
 from frbcli.film.published.film import PublishedFilm, published_force
 from frbcli.film.rectangles.bearing import evaluate

@@ -6,7 +6,7 @@ import numpy as np
 
 from frbcli.film.cells.balances import INFLOW, OUTFLOW
 from frbcli.film.cells.frame import turned
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.published.data import ElementFilm
 from frbcli.scene.supply import is_unfed
 from frbcli.scene.system import System

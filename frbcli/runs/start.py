@@ -11,7 +11,7 @@ from frbcli.case.schema import Start
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balances import FLOWS
 from frbcli.film.cells.data import VolumeFilms
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import steady_solution
 from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.film import PublishedFilm

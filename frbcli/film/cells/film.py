@@ -8,7 +8,7 @@ import numpy as np
 
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cells.grid import VolumeGrid, fitted_grid, volume_grid
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 

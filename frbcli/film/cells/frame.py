@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 
 
 def turned(vector: tuple[float, float], angle: float) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.axial import axial_weights
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 

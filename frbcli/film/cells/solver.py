@@ -20,7 +20,7 @@ from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, 
 from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
-from frbcli.film.cells.plain.balance import Motion, Storage
+from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE, SOURCE, STATES, cell_states
 from frbcli.film.gap import gap_rate
 from frbcli.film.grid import Array

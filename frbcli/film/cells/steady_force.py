@@ -11,8 +11,8 @@ from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.newton_step import film_newton
-from frbcli.film.cells.plain.balance import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.states import STATES
 from frbcli.film.grid import Array

@@ -12,7 +12,8 @@ from frbcli.film.cavitation.law import CellState
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.axial import axial_weights
 from frbcli.film.cells.grid import VolumeGrid, fitted_grid
-from frbcli.film.cells.plain.balance import Balance, Motion, Storage
+from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.plain.balance import Balance
 from frbcli.film.gap import Section, gap_rate
 from frbcli.film.grid import Array
 from frbcli.film.penalty_table.rows import LIMIT, row_forces

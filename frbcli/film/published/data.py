@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import DIRECTIONS, Elements
 from frbcli.film.published.film import PublishedFilm

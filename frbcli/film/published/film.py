@@ -9,7 +9,7 @@ import numpy as np
 
 from frbcli.errors import FilmUnsolved, NotConverged
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section, gap_height, gap_rate
 from frbcli.film.grid import Array
 from frbcli.film.published.assembly import Gap

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.film.cells.loads import CavitationFactor, Loads, OilBalance, Torque
-from frbcli.film.cells.plain.balance import Motion
+from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.plain import AROUND_DIRECTION, terms

@@ -5,8 +5,6 @@ Lengths are scaled by R and b, pressures by 12 eta / psi^2: a flow is an area ti
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -16,27 +14,11 @@ from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.axial import BEND, EndSlope, end_slopes
 from frbcli.film.cells.ends import end_outflow
 from frbcli.film.cells.grid import VolumeGrid
+from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
 NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Motion of the journal relative to the shell.
-
-    d: displacement over the clearance; v: its rate in 1/s; omega: omega_J + omega_S in rad/s.
-    """
-
-    d: tuple[float, float]
-    v: tuple[float, float]
-    omega: float
-
-    @property
-    def rate(self) -> float:
-        """How fast the gap changes, in 1/s: what drives pressure and flow."""
-        return max(0.5 * abs(self.omega), math.hypot(*self.v), 1e-3)
 
 
 class EndFlow(NamedTuple):
@@ -56,13 +38,6 @@ class Conductances(NamedTuple):
     near: Array
     far: Array
     carried: Array
-
-
-class Storage(NamedTuple):
-    """Oil kept in the cells per area and time, factor theta - past: factor and past are (m, 1) or (m, k), in 1/s."""
-
-    factor: Array
-    past: Array
 
 
 class Stencil(NamedTuple):
