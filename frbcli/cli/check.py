@@ -32,7 +32,7 @@ def command(case: Case, terminal: Terminal) -> None:
     from frbcli.scene.limits import require_affordable
     from frbcli.scene.operating import operating_points
     from frbcli.scene.plan import make_plan
-    from frbcli.scene.system import run_up_profile
+    from frbcli.scene.profiles import run_up_profile
 
     listed = values(case)
     rows = [(value.key, _in_si(value.value, value.unit), value.shown if value.unit else "") for value in listed]

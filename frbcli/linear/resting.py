@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.errors import NotConverged
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
+from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.system import System
 

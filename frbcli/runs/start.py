@@ -18,7 +18,7 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.moving import oil_held
 from frbcli.film.published.unknown import unknowns_of
 from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
-from frbcli.rotor.excitation import SpeedProfile
+from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.system import System
 from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.element_films import BOOKS, HELD

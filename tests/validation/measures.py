@@ -14,7 +14,7 @@ from scipy.linalg import eigh, null_space
 
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
-from frbcli.film.rectangles.bearing import evaluate
+from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.rectangles.untabulated import largest_pressure
 from frbcli.linear.stability import Stability, stability
