@@ -19,8 +19,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from frbcli.cli.live import progress_line
 from frbcli.cli.main import run as frb
-from frbcli.cli.transient import progress_line
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import Progress
 
