@@ -30,6 +30,7 @@ COMMANDS = {
     "waterfall": ("frbcli.cli.waterfall", "Draw the spectra of a run over time or rotor speed."),
     "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits or displacements of runs."),
     "compare": ("frbcli.cli.compare", "Run one case with several models and compare them."),
+    "bearing": ("frbcli.cli.bearing", "A bearing's sheet over speed or eccentricity: position, K, C, loss, flow."),
     "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
     "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
     "sweep": ("frbcli.cli.sweep", "Run one case with many settings, on all cores or a cluster."),
