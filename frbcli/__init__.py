@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.bearing_sheet import bearing_sheet as bearing_sheet
     from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
     from frbcli.linear.modes import natural_modes as natural_modes
+    from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
     from frbcli.results.store import read_run as read_run
     from frbcli.runs.run import rundown as rundown
@@ -67,6 +68,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "read_run": "frbcli.results.store",
     "remove_bearing": "frbcli.case.schema",
     "remove_law": "frbcli.case.schema",
+    "response": "frbcli.linear.response",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",
     "runup": "frbcli.runs.run",

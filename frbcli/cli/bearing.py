@@ -75,11 +75,12 @@ def command(
     """Resting position, coefficients, power loss, oil flow and pressure of every film of CASE."""
     from frbcli.errors import NotConverged
     from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
+    from frbcli.results.place import require_place
 
     _check_options(over, speeds, load, output, no_picture, ross)
     picture = None if no_picture else output or here(case.name, "-bearing.png")
     check_place(picture)
-    _check_files(csv, ross)
+    require_place(csv, ross)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
 
         def observe(number: int, count: int) -> None:
@@ -126,16 +127,6 @@ def _check_options(
         raise click.UsageError("Over eccentricity there is one --speed and no --load: the films tell it.")
     if over == "eccentricity" and ross is not None:
         raise click.UsageError("--ross is a table over speed.")
-
-
-def _check_files(*files: Path | None) -> None:
-    """Raises InputError for a file that cannot be written, before anything is computed."""
-    from frbcli.errors import Fault, InputError
-    from frbcli.results.place import wrong_place
-
-    for file in files:
-        if file is not None and (wrong := wrong_place(file)):
-            raise InputError(str(file), (Fault("", "", None, *wrong),))
 
 
 def _tell(terminal: Terminal, found: BearingSheet) -> None:
