@@ -20,7 +20,7 @@ from frbcli.errors import InputError
 from frbcli.film.cells.balances import CHANNELS_NET
 from frbcli.film.cells.channel_data import with_channels
 from frbcli.film.cells.channels import Channel, channel_resistance
-from frbcli.film.cells.data import FLOW_SCALE, volume_films
+from frbcli.film.cells.data import FLOW_SCALE, UNKNOWN, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
@@ -106,7 +106,7 @@ def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> N
         assert brought[0] > 0.0
         assert brought.sum() == pytest.approx(0.0, abs=1e-10 * brought[0])
     for i, film in enumerate(system.volumes):
-        own = system.films.cells[i, 4] != 0.0  # type: ignore[union-attr]
+        own = system.films.cells[i, UNKNOWN] != 0.0  # type: ignore[union-attr]
         gained = (film.grid.area * (last.wet[OIL, i] - first.wet[OIL, i]))[own].sum()
         assert gained == pytest.approx(net_flow(last, i), abs=1e-10 * last.flows[PASSED, i].max())
     defect = oil_defect(system, last)

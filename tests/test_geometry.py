@@ -173,12 +173,12 @@ def test_cells_cover_the_area_of_a_hole_exactly(position: float, round_: bool) -
     for axial in (PLAIN.width, 0.63 * PLAIN.width):  # on the plane of symmetry only half of it is within the section
         section = with_hole(position, axial, round_=round_)
         grid = volume_grid(section, RING + 0.2, np.linspace(0.0, 1.0, 13))
-        covered = float((grid.cover * grid.area).sum()) * section.radius * section.width
+        covered = float((grid.cover * grid.size).sum()) * section.radius * section.width
         assert covered == pytest.approx(hole_area(section, section.holes[0]), rel=1e-12)
         assert np.all((grid.cover >= -1e-14) & (grid.cover <= 1.0))
 
 
-@pytest.mark.parametrize(("law", "bound"), [(Reynolds(), 1e-3), (Elrod(), 2e-3)], ids=["reynolds", "elrod"])
+@pytest.mark.parametrize(("law", "bound"), [(Reynolds(), 1e-4), (Elrod(), 1.5e-3)], ids=["reynolds", "elrod"])
 def test_force_changes_smoothly_as_a_bore_moves_across_the_cells(law: Law, bound: float) -> None:
     """A bore with 2 bar in the loaded part of the film, over two cells in steps of a tenth: what is left beside a
     smooth curve. By whole cells it would be 0.8 % (Reynolds) and 2.9 % (Elrod) on these cells."""

@@ -181,8 +181,8 @@ def test_cells_of_a_bore_have_its_area(half_width: float) -> None:
     grid = volume_grid(section, np.linspace(-1.0, TURN - 1.0, 193), np.linspace(0.0, 1.0, 25))
     area = 0.5 * math.pi * half_width**2  # the other half lies beyond the plane of symmetry
     assert hole_area(section, section.holes[0]) == pytest.approx(area, rel=1e-12)
-    covered = float(grid.area[grid.fixed].sum()) * section.radius * section.width
-    cell = float(grid.area.max()) * section.radius * section.width
+    covered = float(grid.size[grid.fixed].sum()) * section.radius * section.width
+    cell = float(grid.size.max()) * section.radius * section.width
     assert abs(covered - 3 * area) < 3 * 2 * cell
     assert set(np.unique(grid.fixed_pressure[grid.fixed])) == {5e4 / section.pressure_scale}
 

@@ -43,7 +43,8 @@ CHAIN_FLOOR = 8.5e-4
 # Cells (around, along) by target; their order is a little above 1.
 COARSE_CELLS, DEFAULT_CELLS, FINE_CELLS = (40, 5), (48, 6), (96, 10)
 FEWEST_CELLS = (12, 3)
-CELL_ERROR, OPENING_ERROR, CELL_ORDER = 2e-3, 1.2e-2, 1.5  # on DEFAULT_CELLS; with feed holes, pockets or starved
+# Errors on DEFAULT_CELLS: of plain films and grooves, with feed holes or a pocket, starved.
+CELL_ERROR, HOLE_ERROR, STARVED_ERROR, CELL_ORDER = 2e-3, 5e-3, 1.2e-2, 1.5
 LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4
 
 
@@ -196,5 +197,7 @@ def _cells(case: Case) -> tuple[int, int]:
 
 def _cell_error(case: Case, cells: tuple[int, int]) -> float:
     sections = [film_section(case, place.geometry, place.feed_holes) for place in film_places(case)]
-    hard = any(section.holes or starves(section) for section in sections)
-    return float((OPENING_ERROR if hard else CELL_ERROR) * (DEFAULT_CELLS[0] / cells[0]) ** CELL_ORDER)
+    error = HOLE_ERROR if any(section.holes for section in sections) else CELL_ERROR
+    if any(starves(section) for section in sections):
+        error = STARVED_ERROR
+    return float(error * (DEFAULT_CELLS[0] / cells[0]) ** CELL_ORDER)

@@ -14,7 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.channel_data import with_channels
-from frbcli.film.cells.data import AREA, FEED_HOLE, REMEMBERS, UNKNOWN, VolumeFilms, volume_films
+from frbcli.film.cells.data import REMEMBERS, SHEARED, VolumeFilms, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.gap import AxialGroove, Section
@@ -101,9 +101,7 @@ class System:
         """(films,) share of each gap in which oil is sheared: all but its bores and grooves."""
         if not isinstance(self.films, VolumeFilms):
             return np.ones(len(self.names))
-        cells = self.films.cells
-        film = (cells[:, UNKNOWN] != 0.0) & (cells[:, FEED_HOLE] == 0.0)
-        return np.asarray((cells[:, AREA] * film).sum(axis=(1, 2)) / (2.0 * math.pi))
+        return np.asarray(self.films.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * math.pi))
 
     def omegas(self, omega: float, ring_speeds: Array) -> Array:
         """(films,) omega_J + omega_S of each film, rad/s."""

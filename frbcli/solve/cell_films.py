@@ -16,14 +16,12 @@ from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, SIDES, balances
 from frbcli.film.cells.block_cyclic import solve_ring
 from frbcli.film.cells.channel_flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
-    AREA,
     CENTRIFUGAL,
     COS,
-    FEED_HOLE,
     GAP,
     REMEMBERS,
+    SHEARED,
     SIN,
-    UNKNOWN,
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.states import FRACTION, cell_states, follow_law
@@ -114,7 +112,7 @@ def cell_numbers(
             for j in range(k):
                 fields[i, j, k + BY_ITSELF] = 0.0
                 fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, 0], fields[i, j, 1]
-        f_x, f_y, _, _, _, _ = film_loads(numbers, ring, width, states, fields)
+        f_x, f_y, _, _, _, _ = film_loads(numbers, ring, cells, states, fields)
     else:
         grid[UNSETTLED] = 1.0
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
@@ -122,7 +120,7 @@ def cell_numbers(
         if slots > 0:
             ask_of_channels(cells, fields)
         solve_ring(stencil, blocks, fields)
-        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, width, states, fields)
+        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, cells, states, fields)
         m, k = w.shape
         for i in range(m):
             for j in range(k):
@@ -177,9 +175,8 @@ def oil_fraction(cells: Array, states: Array) -> float:
     area, oil = 0.0, 0.0
     for i in range(m):
         for j in range(k):
-            if cells[UNKNOWN, i, j] != 0.0 and cells[FEED_HOLE, i, j] == 0.0:
-                area += cells[AREA, i, j]
-                oil += cells[AREA, i, j] * states[FRACTION, i, j]
+            area += cells[SHEARED, i, j]
+            oil += cells[SHEARED, i, j] * states[FRACTION, i, j]
     return oil / area
 
 
@@ -193,9 +190,8 @@ def sheared(ring: Array, cells: Array, states: Array, d_x: float, d_y: float, fa
     for i in range(m):
         h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
         for j in range(k):
-            if cells[UNKNOWN, i, j] != 0.0 and cells[FEED_HOLE, i, j] == 0.0:
-                whole += cells[AREA, i, j] / h
-                weighed += cells[AREA, i, j] * states[FRACTION, i, j] / h
+            whole += cells[SHEARED, i, j] / h
+            weighed += cells[SHEARED, i, j] * states[FRACTION, i, j] / h
     if factor == LOCAL_FACTOR:
         return weighed
     return whole * oil_fraction(cells, states) if factor == GLOBAL_FACTOR else whole

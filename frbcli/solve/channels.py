@@ -95,7 +95,7 @@ def join(
     for q in range(count):
         f, slot = int(films.feed_holes[q, FILM]), int(films.feed_holes[q, SLOT])
         changes[f, slot] = answers[q, 0]
-        x, y = push_of_channel(films.numbers[f], films.ring[f], films.width[f], states[f], fields[f], slot)
+        x, y = push_of_channel(films.numbers[f], films.ring[f], films.cells[f], states[f], fields[f], slot)
         c, s = math.cos(grids[GRID_TURN, f]), math.sin(grids[GRID_TURN, f])
         push_x, push_y = c * x - s * y, s * x + c * y
         force[2 * f] += push_x * answers[q, 0]

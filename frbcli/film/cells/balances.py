@@ -18,8 +18,14 @@ from frbcli.film.cells.data import (
     AREA,
     AROUND,
     ASPECT,
+    BORED,
     CLOSED,
     COS,
+    EDGE,
+    EDGE_COS,
+    EDGE_GAP,
+    EDGE_SIN,
+    EXCESS,
     FACE_COS,
     FACE_GAP,
     FACE_SIN,
@@ -33,6 +39,7 @@ from frbcli.film.cells.data import (
     NEAR,
     NEAR_BEND,
     NEAR_RISE,
+    SHARE,
     SIN,
     UNKNOWN,
 )
@@ -71,39 +78,90 @@ def _end_flow(
 
 @compiled()
 def _flow_around(
-    ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float, g: float,
-    stencil: Array, right: Array,
+    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float,
+    g: float, stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
+    bored, half = numbers[BORED] != 0.0, 0.5 * omega
+    here, next_ = (1.0, 0.0) if omega >= 0.0 else (0.0, 1.0)
+    taken = 0.0  # by the openings in cells that are film in part
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
         s, c = ring[FACE_SIN, i], ring[FACE_COS, i]
         h = ring[FACE_GAP, i] + d_x * s - d_y * c
-        cube, square, half = h * h * h, 3.0 * h * h, 0.5 * omega
-        here, next_ = (1.0, 0.0) if omega >= 0.0 else (0.0, 1.0)
+        cube, cube_x, cube_y = h * h * h, 3.0 * h * h * s, -3.0 * h * h * c
+        if bored:
+            h_i = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
+            h_n = ring[GAP, n] + d_x * ring[SIN, n] - d_y * ring[COS, n]
+            cube = h_i * h * h_n
+            cube_x = ring[SIN, i] * h * h_n + h_i * s * h_n + h_i * h * ring[SIN, n]
+            cube_y = -ring[COS, i] * h * h_n - h_i * c * h_n - h_i * h * ring[COS, n]
         for j in range(k):  # through the face after the cell
-            open_, dz = cells[AROUND, i, j], width[0, j]
+            open_, carried = cells[AROUND, i, j], half * width[0, j]
+            through, by_x, by_y = cube * open_, cube_x * open_, cube_y * open_
+            if cells[EDGE, i, j] != 0.0:
+                at_s, at_c = cells[EDGE_SIN, i, j], cells[EDGE_COS, i, j]
+                at = cells[EDGE_GAP, i, j] + d_x * at_s - d_y * at_c
+                square = at * at * cells[EDGE, i, j]
+                through, by_x, by_y = at * square, 3.0 * square * at_s, -3.0 * square * at_c
             p, p_n = states[PRESSURE, i, j], states[PRESSURE, n, j]
             t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
+            share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
             over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
             theta = here * (t - over) + next_ * (t_n - over_n) + 0.5 * (over + over_n)
-            fall, carried = open_ * (p - p_n), half * dz
-            flow = cube * fall + carried * h * theta
-            share = 0.5 if t > 1.0 else here
-            share_n = 0.5 if t_n > 1.0 else next_
-            by_own = cube * open_ * states[PRESSURE_SLOPE, i, j] + carried * h * share * states[FRACTION_SLOPE, i, j]
-            by_next = carried * h * share_n * states[FRACTION_SLOPE, n, j] - cube * open_ * states[PRESSURE_SLOPE, n, j]
-            by_gap = g * (square * fall + carried * theta)
-            right[i, j, k] -= flow
-            right[n, j, k] += flow
-            right[i, j, k + 1] -= by_gap * s
-            right[n, j, k + 1] += by_gap * s
-            right[i, j, k + 2] += by_gap * c
-            right[n, j, k + 2] -= by_gap * c
-            stencil[CENTRE, i, j] += by_own
-            stencil[BEHIND, i, j] += by_next
-            stencil[CENTRE, n, j] -= by_next
-            stencil[BEFORE, n, j] -= by_own
+            fall = p - p_n
+            pressed, drawn = through * fall, carried * h * theta
+            own = carried * h * (0.5 if t > 1.0 else here) * states[FRACTION_SLOPE, i, j]
+            other = carried * h * (0.5 if t_n > 1.0 else next_) * states[FRACTION_SLOPE, n, j]
+            by_own, by_next = through * states[PRESSURE_SLOPE, i, j], through * states[PRESSURE_SLOPE, n, j]
+            taken += (share - share_n) * drawn
+            right[i, j, k] -= pressed + share * drawn
+            right[n, j, k] += pressed + share_n * drawn
+            by_x, by_y = g * by_x * fall, g * by_y * fall
+            drawn_x, drawn_y = g * carried * theta * s, -g * carried * theta * c
+            right[i, j, k + 1] -= by_x + share * drawn_x
+            right[n, j, k + 1] += by_x + share_n * drawn_x
+            right[i, j, k + 2] -= by_y + share * drawn_y
+            right[n, j, k + 2] += by_y + share_n * drawn_y
+            stencil[CENTRE, i, j] += by_own + share * own
+            stencil[BEHIND, i, j] += share * other - by_next
+            stencil[CENTRE, n, j] += by_next - share_n * other
+            stencil[BEFORE, n, j] -= by_own + share_n * own
+    _take(taken, flows)
+
+
+@compiled()
+def _take(taken: float, flows: Array) -> None:
+    """Openings take oil out of cells that are film in part, or give it to them where it is less than 0."""
+    flows[SUPPLY_NET] -= taken
+    if taken > 0.0:
+        flows[OUTFLOW] += taken
+    else:
+        flows[INFLOW] -= taken
+
+
+@compiled()
+def _carry_out_of_excess(
+    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float, g: float, stencil: Array,
+    right: Array, flows: Array,
+) -> None:  # fmt: skip
+    """What the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
+    m, k = states.shape[1], states.shape[2]
+    half, taken = 0.5 * omega, 0.0
+    for i in range(m):
+        b = i - 1 if i > 0 else m - 1
+        s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
+        rise = half * (ring[FACE_GAP, i] - ring[FACE_GAP, b]) + d_x * s - d_y * c
+        for j in range(k):
+            excess = cells[EXCESS, i, j]
+            if excess != 0.0:
+                oil = excess * states[FRACTION, i, j]
+                taken += oil * rise
+                right[i, j, k] -= oil * rise
+                right[i, j, k + 1] -= g * oil * s
+                right[i, j, k + 2] += g * oil * c
+                stencil[CENTRE, i, j] += excess * rise * states[FRACTION_SLOPE, i, j]
+    _take(taken, flows)
 
 
 @compiled()
@@ -251,7 +309,9 @@ def balances(
                 right[i, j, k + side] = 0.0
     for flow in range(FLOWS):
         flows[flow] = 0.0
-    _flow_around(ring, width, cells, states, d_x, d_y, omega, g, stencil, right)
+    _flow_around(numbers, ring, width, cells, states, d_x, d_y, omega, g, stencil, right, flows)
+    if numbers[BORED] != 0.0:
+        _carry_out_of_excess(ring, cells, states, d_x, d_y, omega, g, stencil, right, flows)
     _flow_along(ring, cells, states, d_x, d_y, g, stencil, right)
     _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil, right)
     _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right, flows)

@@ -25,6 +25,7 @@ from frbcli.film.cells.data import (
     FORCE_SCALE,
     GROOVE_PRESSURE,
     INNER,
+    LOAD,
     OUTER,
     PRESSURE_SCALE,
     PUSH_X,
@@ -133,7 +134,7 @@ def mean_changes(cells: Array, states: Array, fields: Array, feed_hole: Array, p
 
 @compiled()
 def push_of_channel(
-    numbers: Array, ring: Array, width: Array, states: Array, fields: Array, slot: int,
+    numbers: Array, ring: Array, cells: Array, states: Array, fields: Array, slot: int,
 ) -> tuple[float, float]:  # fmt: skip
     """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
     m, k = states.shape[1], states.shape[2]
@@ -143,7 +144,7 @@ def push_of_channel(
         for j in range(k):
             slope = states[PRESSURE_SLOPE, i, j]
             if not (clips and states[PRESSURE, i, j] + slope * fields[i, j, k] < numbers[CAVITY]):
-                p += width[1, j] * slope * fields[i, j, k + SIDES + slot]
+                p += cells[LOAD, i, j] * slope * fields[i, j, k + SIDES + slot]
         x += ring[PUSH_X, i] * p
         y += ring[PUSH_Y, i] * p
     return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
-from frbcli.film.cells.axial import axial_weights, end_slopes
+from frbcli.film.cells.axial import end_slopes
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.grid import force_weights
 from frbcli.film.cells.plain.balance import NO_DISTANCE
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
@@ -20,7 +21,8 @@ ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
 # Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; CENTRIFUGAL: by which given pressures fall
-# with the square of the grid's speed, in s; from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
+# with the square of the grid's speed, in s; BORED: 1 where flows around take the gaps of both cells, as beside bores;
+# from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
@@ -39,17 +41,38 @@ CLOSED, GIVEN, FREE = range(3)
     FAR_BEND,
     FORCE_SCALE,
     CENTRIFUGAL,
+    BORED,
     PARAMETERS,
-) = range(18)
+) = range(19)
 SCALES_END = AMBIENT + 1  # REFERENCE, CAVITY and AMBIENT stand beside each other, as Scales has them
 FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
 # length of the cell; what a unit of pressure on it pushes the journal by.
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
-# Layers of cells: area; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where
-# the pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that hole in
-# its film, 0: none.
-AREA, AROUND, ALONG, GIVEN_PRESSURE, UNKNOWN, EXCHANGE, FEED_HOLE, CELL_LAYERS = range(8)
+# Layers of cells: area in the balance; share of the cell that is film, and by how much the area exceeds it over the
+# cell's length; conductance of a gap of 1 to the next cell around and
+# along, 0: none; given pressure; 1 where the pressure is an unknown; conductance to the channel of a ring that opens
+# there, and 1 + the number of that hole in its film, 0: none; weight in the force; area in which oil is sheared;
+# conductance to the next cell around with a gap of its own, beside the edge of an opening, 0: none, and sine, cosine
+# and gap of the centred journal there.
+(
+    AREA,
+    SHARE,
+    EXCESS,
+    AROUND,
+    ALONG,
+    GIVEN_PRESSURE,
+    UNKNOWN,
+    EXCHANGE,
+    FEED_HOLE,
+    LOAD,
+    SHEARED,
+    EDGE,
+    EDGE_SIN,
+    EDGE_COS,
+    EDGE_GAP,
+    CELL_LAYERS,
+) = range(16)
 # Numbers of a feed hole: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s,
 # and a pressure of 1 in Pa; the sum of its cells' conductances.
 FILM, SLOT, FLOW_SCALE, PRESSURE_SCALE, CONDUCTANCE, FEED_HOLE_NUMBERS = range(6)
@@ -61,7 +84,7 @@ INNER, OUTER, RESISTANCE, GROOVE_PRESSURE, CHANNEL_CENTRIFUGAL, CHANNEL_NUMBERS 
 
 class VolumeFilms(NamedTuple):
     """Films of equal numbers of cells m x k. numbers: (films, FILM_NUMBERS); ring: (films, RING_ROWS, m); width:
-    (films, 2, k) cells along the axis and weights of the integral; cells: (films, CELL_LAYERS, m, k). Of coupled
+    (films, 1, k) sizes of the cells along the axis; cells: (films, CELL_LAYERS, m, k). Of coupled
     channels: channels (channels, CHANNEL_NUMBERS), feed_holes (holes, FEED_HOLE_NUMBERS) and their cells,
     feed_hole_cells (holes, n, 2), filled up with -1."""
 
@@ -83,7 +106,7 @@ def volume_films(
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
         np.zeros((len(films), RING_ROWS, m)),
-        np.zeros((len(films), 2, k)),
+        np.zeros((len(films), 1, k)),
         np.zeros((len(films), CELL_LAYERS, m, k)),
         np.zeros((0, CHANNEL_NUMBERS)),
         np.zeros((0, FEED_HOLE_NUMBERS)),
@@ -116,6 +139,7 @@ def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Ar
         NEAR_BEND: near.bend,
         FAR_RISE: far.rise,
         FAR_BEND: far.bend,
+        BORED: float(grid.has_bores),
         FORCE_SCALE: section.copies * section.radius * section.width * section.pressure_scale,
     }
     for place, value in values.items():
@@ -130,9 +154,15 @@ def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Ar
     ring[FACE_SIN], ring[FACE_COS], ring[FACE_GAP] = np.sin(face), np.cos(face), gap_height(section, centred, face)
     ring[LENGTH] = np.diff(grid.phi)
     ring[PUSH_X], ring[PUSH_Y] = -np.diff(np.cos(grid.phi)), -np.diff(np.sin(grid.phi))
-    width[0], width[1] = np.diff(grid.z), axial_weights(grid.z, section.far == "symmetry")
-    cells[AREA] = grid.area
-    cells[AROUND] = np.where(grid.around > 0.0, width[0] / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    width[0] = np.diff(grid.z)
+    cells[AREA], cells[SHARE], cells[EXCESS] = grid.area, grid.share, grid.excess
+    cells[SHEARED] = (1.0 - grid.cover) * grid.size
+    cells[LOAD] = force_weights(section, grid)
+    around = np.where(grid.around > 0.0, width[0] / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    edge = grid.at != grid.phi[1:, None]
+    cells[AROUND], cells[EDGE] = np.where(edge, 0.0, around), np.where(edge, around, 0.0)
+    cells[EDGE_SIN], cells[EDGE_COS] = np.sin(grid.at), np.cos(grid.at)
+    cells[EDGE_GAP] = gap_height(section, centred, grid.at.ravel()).reshape(grid.shape)
     open_along = np.where(grid.along > 0.0, ring[LENGTH][:, None] / np.maximum(grid.along, NO_DISTANCE), 0.0)
     cells[ALONG, :, :-1] = section.aspect * open_along
     cells[GIVEN_PRESSURE], cells[UNKNOWN] = grid.fixed_pressure, np.where(grid.fixed, 0.0, 1.0)

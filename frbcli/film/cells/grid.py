@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.film.cells.around_bores import Cells, around_bores
+from frbcli.film.cells.axial import axial_weights
 from frbcli.film.cells.openings import Opening, groove_opening, hole_opening
 from frbcli.film.gap import AxialGroove, Section, graded_ring, groove_pressure
 from frbcli.film.grid import Array
@@ -22,8 +24,10 @@ class VolumeGrid:
 
     fixed: (m, k) cells where the pressure is given; fixed_pressure: (m, k) scaled gauge pressure there; around: (m, k)
     distance in rad over which oil flows through the face after each cell, along: (m, k - 1) the same over the width,
-    from middle to middle or to the edge of a groove or hole, 0 within one; cover: (m, k) share of a cell's area that
-    grooves and holes take.
+    from middle to middle or to the edge of a groove or hole, 0 within one; at: (m, k) angle at which the flow around
+    takes its gap, that of the face or of the middle of the way to the edge of a bore; area: (m, k) by which a cell
+    counts in the balance, over R b, that of a given one whole; load: (m, k) share of a cell's area by which its
+    pressure counts in the force; cover: (m, k) share of it that grooves and holes take.
     """
 
     phi: Array
@@ -32,6 +36,9 @@ class VolumeGrid:
     fixed_pressure: Array
     around: Array
     along: Array
+    at: Array
+    area: Array
+    load: Array
     cover: Array
 
     @property
@@ -50,9 +57,25 @@ class VolumeGrid:
         return 0.5 * (self.z[1:] + self.z[:-1])
 
     @property
-    def area(self) -> Array:
+    def size(self) -> Array:
         """(m, k) areas of the cells over R b."""
         return np.diff(self.phi)[:, None] * np.diff(self.z)[None, :]
+
+    @property
+    def share(self) -> Array:
+        """(m, k) of each cell that is film, out of which the surfaces carry oil; 1 of a given one."""
+        return np.where(self.fixed | (self.area == self.size), 1.0, 1.0 - self.cover)
+
+    @property
+    def excess(self) -> Array:
+        """(m, k) of the area of a cell over that of its film, over its length: the surfaces carry the oil out of this,
+        too, as far as the gap changes."""
+        return np.asarray((self.area - self.share * self.size) / np.diff(self.phi)[:, None])
+
+    @property
+    def has_bores(self) -> bool:
+        """Whether round holes open to the film, around which flows take the gaps of their cells, too."""
+        return bool(np.any(self.load != 1.0))
 
 
 def fitted_grid(section: Section, d: tuple[float, float], around: int, along: int) -> VolumeGrid:
@@ -76,14 +99,16 @@ def volume_grid(section: Section, phi: Array, z: Array) -> VolumeGrid:
     """Cells with the section's grooves and holes cut out of those whose middles they hold, their edges where they are.
 
     The flow between the middle of a cell and a groove or hole runs over the distance to its edge, wherever that lies
-    between the faces: so it changes smoothly as the edge moves across the cells.
+    between the faces: so it changes smoothly as the edge moves across the cells. Around a bore flows and areas are
+    those of the local solutions (bores.py).
     """
     shape = len(phi) - 1, len(z) - 1
     fixed, fixed_pressure, cover = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
     around, along = _distances(phi, z)
     height = 0.5 * (z[1:] + z[:-1])
+    holes = [hole_opening(section, hole, phi, z) for hole in section.holes]
     openings = [(groove_opening(g, phi, z), _along_groove(section, g, height)) for g in section.grooves]
-    openings += [(hole_opening(section, h, phi, z), np.full(shape[1], h.pressure)) for h in section.holes]
+    openings += [(o, np.full(shape[1], h.pressure)) for o, h in zip(holes, section.holes, strict=True)]
     for opening, pressure in openings:
         around, along = _to_edge(opening, around, along, phi, z)
         fixed |= opening.inside
@@ -91,7 +116,16 @@ def volume_grid(section: Section, phi: Array, z: Array) -> VolumeGrid:
         cover += opening.cover
     around[fixed & np.roll(fixed, -1, axis=0)] = 0.0
     along[fixed[:, :-1] & fixed[:, 1:]] = 0.0
-    return VolumeGrid(phi, z, fixed, fixed_pressure, around, along, np.minimum(cover, 1.0))
+    cover, faces = np.minimum(cover, 1.0), np.repeat(phi[1:, None], shape[1], axis=1)
+    size = np.diff(phi)[:, None] * np.diff(z)[None, :]
+    plain = Cells(around, along, faces, size, np.ones(shape))
+    near = around_bores(section, phi, z, [opening.inside for opening in holes], cover, plain)
+    return VolumeGrid(phi, z, fixed, fixed_pressure, cover=cover, **near._asdict())
+
+
+def force_weights(section: Section, grid: VolumeGrid) -> Array:
+    """(m, k) of the pressures of a section's cells in the integral over its width."""
+    return axial_weights(grid.z, section.far == "symmetry") + (grid.load - 1.0) * np.diff(grid.z)
 
 
 def _along_groove(section: Section, groove: AxialGroove, height: Array) -> Array:

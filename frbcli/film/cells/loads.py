@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 
 from frbcli.film.cavitation.law import FRONTS
-from frbcli.film.cells.axial import axial_weights
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
@@ -87,7 +87,7 @@ def force(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     """Force (3.13) in N of scaled gauge pressures (m, k) on the journal, that in grooves too, (4.8) to (4.10)."""
     grid, section = film.grid, film.section
     scale = section.copies * section.radius * section.width * section.pressure_scale
-    along = scale * (pressure @ axial_weights(grid.z, section.far == "symmetry"))
+    along = scale * (force_weights(section, grid) * pressure).sum(axis=1)
     return float(-along @ np.diff(np.cos(grid.phi))), float(-along @ np.diff(np.sin(grid.phi)))
 
 
@@ -103,11 +103,10 @@ def torque(
     theta = solution.state.fraction if factor == "local" else np.ones(grid.shape)
     pressure = film.pressure(solution.state)
     area = section.copies * section.radius * section.width
-    shear = (1.0 - grid.cover) * grid.area * theta / gap_height(section, motion.d, grid.centre)[:, None]
-    weights = axial_weights(grid.z, section.far == "symmetry")
-    face = gap_height(section, motion.d, grid.phi[1:])[:, None] * weights
-    face = face * 0.5 * (theta + np.roll(theta, -1, axis=0))
-    rise = np.roll(pressure, -1, axis=0) - pressure
+    shear = (1.0 - grid.cover) * grid.size * theta / gap_height(section, motion.d, grid.centre)[:, None]
+    pushing = force_weights(section, grid) * pressure
+    rise = np.roll(pushing, -1, axis=0) - pushing
+    face = gap_height(section, motion.d, grid.phi[1:])[:, None] * 0.5 * (theta + np.roll(theta, -1, axis=0))
     whole = oil_fraction(film, solution) if factor == "global" else 1.0
     couette = -(section.radius**2) * section.viscosity / section.clearance * slip * area * float(shear.sum())
     poiseuille = -0.5 * section.clearance * area * section.pressure_scale * float((face * rise).sum())
@@ -116,7 +115,7 @@ def torque(
 
 def oil_fraction(film: VolumeFilm, solution: VolumeSolution) -> float:
     """The factor (4.46): mean of theta over the film without grooves and holes."""
-    area = (1.0 - film.grid.cover) * film.grid.area
+    area = (1.0 - film.grid.cover) * film.grid.size
     return float((area * solution.state.fraction).sum() / area.sum())
 
 

@@ -8,13 +8,26 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import balances
 from frbcli.film.cells.block_cyclic import CENTRE, solve_ring
-from frbcli.film.cells.data import AREA, CAVITY, CENTRIFUGAL, CLIPS, COS, FORCE_SCALE, GAP, PUSH_X, PUSH_Y, SIN, UNKNOWN
+from frbcli.film.cells.data import (
+    AREA,
+    CAVITY,
+    CENTRIFUGAL,
+    CLIPS,
+    COS,
+    FORCE_SCALE,
+    GAP,
+    LOAD,
+    PUSH_X,
+    PUSH_Y,
+    SIN,
+    UNKNOWN,
+)
 from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 
 
 @compiled()
 def film_loads(
-    numbers: Array, ring: Array, width: Array, states: Array, delta: Array,
+    numbers: Array, ring: Array, cells: Array, states: Array, delta: Array,
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Force on the journal with the changes delta (m, k, k + SIDES): (x, y) after the film's own change, and its
     derivatives (xx, xy, yx, yy) by the journal's velocities, in N and N s."""
@@ -24,7 +37,7 @@ def film_loads(
     for i in range(m):
         p, x, y = 0.0, 0.0, 0.0
         for j in range(k):
-            weight, slope = width[1, j], states[PRESSURE_SLOPE, i, j]
+            weight, slope = cells[LOAD, i, j], states[PRESSURE_SLOPE, i, j]
             here = states[PRESSURE, i, j] + slope * delta[i, j, k]
             if clips and here < cavity:
                 p += weight * cavity
@@ -83,7 +96,7 @@ def film_newton(
         numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
     )
     solve_ring(stencil, blocks, fields)
-    return film_loads(numbers, ring, width, states, fields)
+    return film_loads(numbers, ring, cells, states, fields)
 
 
 @compiled()

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from frbcli.film.gap import AxialGroove, Hole, Section
 from frbcli.film.grid import Array
 
-NO_HOLE = 0.02  # of the cells at its middle: a hole smaller than this supplies nothing
+NO_HOLE = 1e-3  # of the cells at its middle: a hole smaller than this supplies nothing
 
 
 class Opening(NamedTuple):

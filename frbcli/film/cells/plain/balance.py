@@ -31,13 +31,15 @@ class EndFlow(NamedTuple):
 
 class Conductances(NamedTuple):
     """What the gap makes of pressures and motion: around (m, k) through the face after each cell, along (m, k - 1),
-    near and far (m,) at the ends; carried (m, k) by the surfaces through the face after each cell."""
+    near and far (m,) at the ends; by the surfaces carried (m, k) through the face after each cell and rise (m, k) out
+    of the areas beside the film."""
 
     around: Array
     along: Array
     near: Array
     far: Array
     carried: Array
+    rise: Array
 
 
 class Stencil(NamedTuple):
@@ -51,16 +53,21 @@ class Stencil(NamedTuple):
 
 
 class Fluxes(NamedTuple):
-    """Oil flows: around (m, k) through the face after each cell, along (m, k - 1), near and far (m,) at the ends."""
+    """Oil flows: around (m, k) by pressure and carried (m, k) by the surfaces through the face after each cell, excess
+    (m, k) carried by these out of the areas beside the film, along (m, k - 1), near and far (m,) at the ends."""
 
     around: Array
+    carried: Array
+    excess: Array
     along: Array
     near: Array
     far: Array
 
-    def net_outflow(self) -> Array:
-        """(m, k) outflow of each cell."""
-        net = self.around - np.roll(self.around, 1, axis=0)
+    def net_outflow(self, share: Array) -> Array:
+        """(m, k) outflow of each cell. share: (m, k) of a cell that is film, out of which the surfaces carry oil; what
+        they carry over the rest of it is that of a groove or hole."""
+        net = self.around - np.roll(self.around, 1, axis=0) + self.excess
+        net += share * (self.carried - np.roll(self.carried, 1, axis=0))
         net[:, :-1] += self.along
         net[:, 1:] -= self.along
         net[:, 0] += self.near
@@ -71,13 +78,18 @@ class Fluxes(NamedTuple):
 def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conductances:
     """The conductances of a section. Into a groove or hole the distance counts to its edge."""
     dphi, dz = np.diff(grid.phi), np.diff(grid.z)
-    face = gap_height(section, motion.d, grid.phi[1:])
-    cube = gap_height(section, motion.d, grid.centre)[:, None] ** 3 * dphi[:, None] * section.aspect
-    around = np.where(grid.around > 0.0, face[:, None] ** 3 * dz / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    face, centre = gap_height(section, motion.d, grid.phi[1:]), gap_height(section, motion.d, grid.centre)
+    cube = centre[:, None] ** 3 * dphi[:, None] * section.aspect
+    through = face * centre * np.roll(centre, -1) if grid.has_bores else face**3
+    beside = gap_height(section, motion.d, grid.at.ravel()).reshape(grid.shape) ** 3
+    through = np.where(grid.at == grid.phi[1:, None], through[:, None], beside)
+    around = np.where(grid.around > 0.0, through * dz / np.maximum(grid.around, NO_DISTANCE), 0.0)
     along = np.where(grid.along > 0.0, cube / np.maximum(grid.along, NO_DISTANCE), 0.0)
     first, last = end_slopes(grid.z)
     near, far = cube[:, 0] * first.rise, cube[:, 0] * last.rise
-    return Conductances(around, along, near, far, 0.5 * motion.omega * face[:, None] * dz[None, :])
+    carried = 0.5 * motion.omega * face[:, None]
+    rise = grid.excess * (carried - np.roll(carried, 1, axis=0))
+    return Conductances(around, along, near, far, carried * dz[None, :], rise)
 
 
 class Balance:
@@ -97,7 +109,7 @@ class Balance:
         packed = np.maximum(theta - 1.0, 0.0)
         loose = theta - packed if self.motion.omega >= 0.0 else np.roll(theta - packed, -1, axis=0)
         carried = c.carried * (loose + 0.5 * (packed + np.roll(packed, -1, axis=0)))
-        around = c.around * (pressure - np.roll(pressure, -1, axis=0)) + carried
+        around = c.around * (pressure - np.roll(pressure, -1, axis=0))
         along = c.along * (pressure[:, :-1] - pressure[:, 1:])
         first, last = end_slopes(self.grid.z)
         groove = self.section.far_pressure / self.section.pressure_scale if self.section.far == "groove" else 0.0
@@ -106,7 +118,7 @@ class Balance:
         far = self._end(
             self.section.far, pressure[:, inwards], self.grid.fixed[:, inwards], c.far, groove, last
         )
-        return Fluxes(around, along, near.out, far.out), near, far
+        return Fluxes(around, carried, c.rise * theta, along, near.out, far.out), near, far
 
     def _end(
         self, kind: str, pressure: Array, fixed: NDArray[np.bool_], conductance: Array, groove: float, slope: EndSlope
@@ -133,7 +145,7 @@ class Balance:
         area, fixed = self.grid.area, self.grid.fixed
         fluxes, near, far = self.fluxes(state.pressure, state.fraction)
         kept = storage.factor * state.fraction
-        residual = fluxes.net_outflow() + area * (kept - storage.past - state.source)
+        residual = fluxes.net_outflow(self.grid.share) + area * (kept - storage.past - state.source)
         return np.where(fixed, 0.0, residual), self._stencil(state, storage, near, far)
 
     def _stencil(self, state: CellState, storage: Storage, near: EndFlow, far: EndFlow) -> Stencil:
@@ -141,11 +153,12 @@ class Balance:
         half = np.where(state.fraction > 1.0, 0.5 * t_w, 0.0)
         whole = np.where(state.fraction > 1.0, 0.0, t_w)
         own, other = (half + whole, half) if self.motion.omega >= 0.0 else (half, half + whole)
-        from_cell = c.around * p_w + c.carried * own  # through the face after it, by its own w
-        from_next = c.carried * np.roll(other, -1, axis=0) - c.around * np.roll(p_w, -1, axis=0)  # by w of the next
+        share = self.grid.share
+        by_own, by_next = c.around * p_w, c.around * np.roll(p_w, -1, axis=0)  # through the face after each cell
+        own, other = c.carried * own, c.carried * np.roll(other, -1, axis=0)
         low, high = c.along * p_w[:, :-1], c.along * p_w[:, 1:]
-        centre = from_cell - np.roll(from_next, 1, axis=0)
-        centre += self.grid.area * (storage.factor * t_w - state.source_slope)
+        centre = by_own + share * own + np.roll(by_next, 1, axis=0) - share * np.roll(other, 1, axis=0)
+        centre += c.rise * t_w + self.grid.area * (storage.factor * t_w - state.source_slope)
         centre[:, :-1] += low
         centre[:, 1:] += high
         centre[:, 0] += near.by_last * p_w[:, 0]
@@ -158,8 +171,8 @@ class Balance:
         free = ~self.grid.fixed
         return Stencil(
             centre=np.where(free, centre, 1.0),
-            before=free * -np.roll(from_cell, 1, axis=0),
-            behind=free * from_next,
+            before=free * (-np.roll(by_own, 1, axis=0) - share * np.roll(own, 1, axis=0)),
+            behind=free * (share * other - by_next),
             below=free * below,
             above=free * above,
         )
