@@ -28,6 +28,7 @@ from frbcli.film.cells.data import (
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.states import FRACTION, cell_states, follow_law
+from frbcli.solve.stage import lagrange
 
 # How a film's grid stands, where the journal is in it, whether its cells balance (see OPEN), how far the journals were
 # moved last and over the time before, and from LAW on its law as follow_law has it.
@@ -72,15 +73,31 @@ def law_of(grid: Array) -> Array:
 
 
 @compiled()
-def guess_unknowns(w: Array, start: Array, before: Array, s: int, ahead: float, lag: float) -> None:
-    """w of a stage by a straight line: in the first through the step before, later through the last stage."""
+def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights: Array, s: int, ahead: float) -> None:
+    """w of stage s: by the straight line through the step before, and once that serves as a third point by parabolas,
+    through both steps and the first stage, later through the last stage in place of the step before.
+
+    w, first: of the last and of the first stage, the latter is kept here; weights: of the method; ahead: how far the
+    stage lies from the start of the step, over the step before.
+    """
     m, k = w.shape
+    if s == 1:
+        for i in range(m):
+            for j in range(k):
+                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
+        return
+    at, at_first, at_last = weights[s].sum(), weights[1].sum(), weights[s - 1].sum()
+    if s == 2:
+        first[:] = w
+        a, b, c = lagrange(-at / ahead, 0.0, at_first, at)
+        for i in range(m):
+            for j in range(k):
+                w[i, j] = a * before[i, j] + b * start[i, j] + c * w[i, j]
+        return
+    a, b, c = lagrange(0.0, at_first, at_last, at)
     for i in range(m):
         for j in range(k):
-            if s == 1:
-                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
-            else:
-                w[i, j] = start[i, j] + lag * (w[i, j] - start[i, j])
+            w[i, j] = a * start[i, j] + b * first[i, j] + c * w[i, j]
 
 
 @compiled()
@@ -124,7 +141,7 @@ def cell_numbers(
                 fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, 0], fields[i, j, 1]
         f_x, f_y, _, _, _, _ = film_loads(numbers, ring, width, states, fields)
     else:
-        # What a film passes on is known as it is alone, so that one that remembers or shares its oil has to balance then.
+        # What a film passes on is known as it is alone, so that one that remembers or shares its oil must balance then.
         alone = not remembers and slots == 0
         grid[BALANCE] = SOLVED if balanced or (alone and left < NEWTON_GAINS) else OPEN
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
@@ -193,10 +210,7 @@ def left_of_cells(grids: Array, smooth: float, moved: float) -> float:
         before = max(grids[MOVED, f] if held else moved, 1e-300)
         grids[RATIO, f] = min((moved if held else smooth) / before, 1.0)
         grids[MOVED, f] = moved
-        if grids[BALANCE, f] == OPEN:
-            left = math.inf
-        else:
-            left = max(left, moved * grids[RATIO, f])
+        left = math.inf if grids[BALANCE, f] == OPEN else max(left, moved * grids[RATIO, f])
     return left
 
 

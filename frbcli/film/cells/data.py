@@ -22,7 +22,8 @@ ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
 # Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; CENTRIFUGAL: by which given pressures fall
-# with the square of the grid's speed, in s; SETTLED: share of its pace that its balances may be off by in the mean; from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
+# with the square of the grid's speed, in s; SETTLED: share of its pace that its balances may be off by in the mean;
+# from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
