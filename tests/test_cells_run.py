@@ -95,10 +95,11 @@ def test_pauses_do_not_change_the_run(name: str) -> None:
 @pytest.mark.parametrize("cavitation", ["reynolds", "elrod", "peeken", "two-phase"])
 def test_measured_order_in_time_is_that_of_the_method(cavitation: str, method: str) -> None:
     """With oil of their own and without, in steps of equal length, while fronts cross a fifth of the cells. A fourth
-    order does not show: films settle to 1e-4 of their pace, which leaves 1e-6 of the clearance in all."""
+    order does not show: films of a plan with a small tolerance settle to 1e-4 of their pace, which leaves 1e-6 of the
+    clearance in all."""
     settings = [f"film.cavitation={cavitation}", "speed.duration=0.02s", "speed.from=60Hz", "speed.to=60Hz"]
     case = case_of("jeffcott", "bearing.supply.pressure=2bar", "rotor.unbalance=60 g*mm", *settings)
-    _, system = planned(case)
+    _, system = planned(case, tolerance=1e-5)
     profile = run_up_profile(case)
     rotor, end = rotor_data(system, profile), float(profile.end)
 

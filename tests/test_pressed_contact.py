@@ -30,7 +30,7 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System, make_system
-from frbcli.solve.cell_films import EMPTY, LAW, UNSETTLED, cell_numbers, move_cells
+from frbcli.solve.cell_films import BALANCE, EMPTY, LAW, OPEN, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work
 from frbcli.solve.films import make_work
@@ -135,7 +135,7 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
         rows = rows_of(system, d, v, omega, g)
         for iteration in range(24):
             forces(data, work, clearances, touches, stiffness, g, 1, iteration, rows)
-            if not cells or work.grids[UNSETTLED, 0] == 0.0:
+            if not cells or work.grids[BALANCE, 0] != OPEN:
                 return rows
             move_cells(work.w[0], work.fields[0], work.grids[:, 0], 0.0, 0.0, g, np.zeros(0))
         raise AssertionError(f"{kind} did not settle at {d}")
@@ -278,7 +278,7 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
             work.stencil, work.blocks, work.fields[0], work.stage_oil[1, 0], work.stage_flows[1, 0], grid,
             work.slopes[0], work.w[0], felt[0], felt[1], 0.0, 0.0, 1700.0, g, iteration,
         )[:2])  # fmt: skip
-        if grid[UNSETTLED] == 0.0:
+        if grid[BALANCE] != OPEN:
             return iteration, force, states[FRACTION]
         if leaps:
             grid[LAW + EMPTY] = -math.inf

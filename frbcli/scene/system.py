@@ -47,6 +47,10 @@ from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTIONS
 from frbcli.scene.turbocharger import make_turbocharger
 
+# What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
+# off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.
+SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 5.0, (2e-5, 1e-3)
+
 
 @dataclass(frozen=True)
 class System:
@@ -140,7 +144,7 @@ def make_system(case: Case, plan: Plan) -> System:
         return replace(system, films=element_film(film), published=film)
     if plan.cells is not None:
         volumes = tuple(volume_film(case, place, plan.cells) for place in places)
-        data = volume_films(volumes, centrifugal_pressures(case, volumes))
+        data = volume_films(volumes, centrifugal_pressures(case, volumes), settled_share(plan.tolerance))
         data = with_channels(data, volumes, coupled_channels(case, volumes))
         factor = case.film.cavitation_factor
         return replace(system, films=data, volumes=volumes, cavitation_factor=factor)
@@ -167,6 +171,12 @@ def published_film(case: Case, section: Section, elements: tuple[int, int]) -> P
     """The film of a section with elements around and along."""
     two_phase = case.film.two_phase
     return PublishedFilm(section, TwoPhase(two_phase.steepness), two_phase.diffusion, *elements)
+
+
+def settled_share(tolerance: float) -> float:
+    """What the balances of the cells may be off by in a stage, over the pace of their film; tolerance: of a step."""
+    tightest, loosest = SETTLED_RANGE
+    return min(max(SETTLED_OVER_TOLERANCE * tolerance, tightest), loosest)
 
 
 def film_drag(case: Case, film: FilmGeometry) -> float:

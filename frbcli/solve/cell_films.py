@@ -20,23 +20,31 @@ from frbcli.film.cells.data import (
     COS,
     GAP,
     REMEMBERS,
+    SETTLED,
     SHEARED,
     SIN,
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.states import FRACTION, cell_states, follow_law
+from frbcli.solve.stage import lagrange
 
-# How a film's grid stands, where the journal is in it, and from LAW on its law as follow_law has it.
+# How a film's grid stands, where the journal is in it, whether its cells balance (see OPEN), how far the journals were
+# moved last and over the time before, and from LAW on its law as follow_law has it.
 (
     GRID_TURN,
     GRID_SPEED,
     GRID_X,
     GRID_Y,
-    UNSETTLED,
+    BALANCE,
+    MOVED,
+    RATIO,
     LAW,
-) = range(6)
+) = range(8)
 GRIDS = LAW + LAW_NUMBERS
-SETTLED = 1e-4  # share of the pace of a film that its balances may be off by in the mean
+# The cells balance as they are, or will after the correction that is under way, or are to be asked again.
+HELD, SOLVED, OPEN = range(3)
+SLOW = 0.2  # RATIO above which a film that balances is linearised anew: its journal does not settle
+NEWTON_GAINS = 10.0  # by which a correction reduces what does not balance, at least: 20 to 100 in most
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.1, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
@@ -63,15 +71,31 @@ def law_of(grid: Array) -> Array:
 
 
 @compiled()
-def guess_unknowns(w: Array, start: Array, before: Array, s: int, ahead: float, lag: float) -> None:
-    """w of a stage by a straight line: in the first through the step before, later through the last stage."""
+def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights: Array, s: int, ahead: float) -> None:
+    """w of stage s: by the straight line through the step before, and once that serves as a third point by parabolas,
+    through both steps and the first stage, later through the last stage in place of the step before.
+
+    w, first: of the last and of the first stage, the latter is kept here; weights: of the method; ahead: how far the
+    stage lies from the start of the step, over the step before.
+    """
     m, k = w.shape
+    if s == 1:
+        for i in range(m):
+            for j in range(k):
+                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
+        return
+    at, at_first, at_last = weights[s].sum(), weights[1].sum(), weights[s - 1].sum()
+    if s == 2:
+        first[:] = w
+        a, b, c = lagrange(-at / ahead, 0.0, at_first, at)
+        for i in range(m):
+            for j in range(k):
+                w[i, j] = a * before[i, j] + b * start[i, j] + c * w[i, j]
+        return
+    a, b, c = lagrange(0.0, at_first, at_last, at)
     for i in range(m):
         for j in range(k):
-            if s == 1:
-                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
-            else:
-                w[i, j] = start[i, j] + lag * (w[i, j] - start[i, j])
+            w[i, j] = a * start[i, j] + b * first[i, j] + c * w[i, j]
 
 
 @compiled()
@@ -102,11 +126,12 @@ def cell_numbers(
         exchange(cells, states, channel, stencil, fields, flows)
     mean, largest = imbalance(cells, fields)
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
-    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest)
-    if left < SETTLED * pace and iteration > 0:
-        grid[UNSETTLED] = 0.0
-        if remembers:
-            store_rates(ring, cells, states, x, y, g, past, fields, rates)
+    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (numbers[SETTLED] * pace)
+    balanced = left < 1.0
+    if balanced and remembers:
+        store_rates(ring, cells, states, x, y, g, past, fields, rates)
+    if balanced and iteration > 0 and grid[RATIO] < SLOW:
+        grid[BALANCE] = HELD
         m, k = w.shape
         for i in range(m):  # the journal takes the film along as it did before
             for j in range(k):
@@ -114,7 +139,9 @@ def cell_numbers(
                 fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, 0], fields[i, j, 1]
         f_x, f_y, _, _, _, _ = film_loads(numbers, ring, cells, states, fields)
     else:
-        grid[UNSETTLED] = 1.0
+        # What a film passes on is known as it is alone, so that one that remembers or shares its oil must balance then.
+        alone = not remembers and slots == 0
+        grid[BALANCE] = SOLVED if balanced or (alone and left < NEWTON_GAINS) else OPEN
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
         if slots > 0:
@@ -145,7 +172,7 @@ def cell_numbers(
 @compiled()
 def move_cells(w: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: float, changes: Array) -> int:
     """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
-    pressures, changes (slots,); 1 if the film had not settled.
+    pressures, changes (slots,); 1 if the film is to be asked again.
 
     Of a small gap in a short step the oil counts far more than its flow, and a cell's oil is an S over w: steep between
     empty and full, flat on both sides. From one flat side Newton's method would leap to the other and back for ever; a
@@ -165,7 +192,24 @@ def move_cells(w: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: 
                 w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
             if max(before, w[i, j]) > 0.0 and min(before, w[i, j]) < empty:
                 w[i, j] = 0.5 * empty
-    return 1 if grid[UNSETTLED] != 0.0 else 0
+    return 1 if grid[BALANCE] == OPEN else 0
+
+
+@compiled()
+def left_of_cells(grids: Array, smooth: float, moved: float) -> float:
+    """What a correction of the journals by `moved` may leave of their error.
+
+    Behind films that have all been linearised where they were, that is `smooth`, as without cells. One that balanced
+    already has followed with older slopes: then corrections become smaller by the same ratio again and again.
+    """
+    left = smooth
+    for f in range(grids.shape[1]):
+        held = grids[BALANCE, f] == HELD
+        before = max(grids[MOVED, f] if held else moved, 1e-300)
+        grids[RATIO, f] = min((moved if held else smooth) / before, 1.0)
+        grids[MOVED, f] = moved
+        left = math.inf if grids[BALANCE, f] == OPEN else max(left, moved * grids[RATIO, f])
+    return left
 
 
 @compiled()

@@ -12,7 +12,7 @@ from numba import types
 from numba.extending import overload
 
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.solve.cell_films import GRID_X, GRID_Y, cell_numbers, move_cells, sheared
+from frbcli.solve.cell_films import GRID_X, GRID_Y, cell_numbers, left_of_cells, move_cells, sheared
 from frbcli.solve.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.element_films import back_off, element_numbers, left_of_elements, move_elements
 from frbcli.solve.films import Work, have_cells, have_elements
@@ -203,8 +203,7 @@ def _left_over(films, work, smooth, moved, unsettled, allowed):  # type: ignore[
         return lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, unsettled, allowed)
     if not have_cells(films):
         return lambda films, work, smooth, moved, unsettled, allowed: smooth
-    # A film with cells has kinks: no guess at what is left, but the balances themselves.
-    return lambda films, work, smooth, moved, unsettled, allowed: math.inf if unsettled > 0 else moved
+    return lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved)
 
 
 @overload(move_film, inline="always")

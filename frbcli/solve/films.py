@@ -40,16 +40,17 @@ CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer
 
 class Work(NamedTuple):
     """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k,
-    k + SIDES + S); w, past (F, m, k) of the stage; stage_oil (stages, F, m, k) rates of the stages; stage_flows
-    (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4). Of coupled channels with Q feed holes, S of one film at most:
-    channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F), see channels.py; all but changes without
-    rows if there are none."""
+    k + SIDES + S); w, first, past (F, m, k) of the stage, first being w of the first stage; stage_oil (stages, F, m, k)
+    rates of the stages; stage_flows (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4). Of coupled channels with Q
+    feed holes, S of one film at most: channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F), see
+    channels.py; all but changes without rows if there are none."""
 
     states: Array
     stencil: Array
     blocks: Array
     fields: Array
     w: Array
+    first: Array
     past: Array
     stage_oil: Array
     stage_flows: Array
@@ -94,6 +95,7 @@ def make_work(films: Any, wet: Array, stages: int) -> Work | ElementWork | NoCel
         np.zeros((ENTRIES, m, k)),
         np.zeros((m, k, k)),
         np.zeros((count, m, k, k + SIDES + slots)),
+        np.zeros((count, m, k)),
         np.zeros((count, m, k)),
         np.zeros((count, m, k)),
         np.zeros((stages, count, m, k)),
@@ -156,7 +158,7 @@ def _begin_stage(films, work, wet, flows, weights, s, step, g, ahead, lag):  # t
         count, m, k = work.w.shape
         for f in range(count):
             if films.numbers[f, REMEMBERS] == 0.0:
-                guess_unknowns(work.w[f], wet[W, f], wet[W_BEFORE, f], s, ahead, lag)
+                guess_unknowns(work.w[f], work.first[f], wet[W, f], wet[W_BEFORE, f], weights, s, ahead)
                 continue
             if s == 1:
                 for i in range(m):
@@ -170,7 +172,7 @@ def _begin_stage(films, work, wet, flows, weights, s, step, g, ahead, lag):  # t
                     for p in range(s):
                         total += weights[s, p] * work.stage_oil[p, f, i, j]
                     work.past[f, i, j] = (wet[OIL, f, i, j] + step * total) / g
-            guess_unknowns(work.w[f], wet[W, f], wet[W_BEFORE, f], s, ahead, lag)
+            guess_unknowns(work.w[f], work.first[f], wet[W, f], wet[W_BEFORE, f], weights, s, ahead)
 
     return volumes
 

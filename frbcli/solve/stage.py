@@ -120,12 +120,13 @@ def guess(
 def accelerate(
     s: int, g: float, lag: float, products: Array, spread: Array, selection: Array, at: Array, film: Array,
     stage_v: Array, stage_a: Array,
-) -> None:  # fmt: skip
+) -> float:  # fmt: skip
     """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
+    Returns the largest change of U_0 in m/s.
 
     lag: g times the difference between the stage's speed and that of the inverse, for the rest of the gyroscopic term.
     """
-    n, m = at.shape[1], selection.shape[0]
+    n, m, change = at.shape[1], selection.shape[0], 0.0
     row = FREE if lag == 0.0 else LATE
     for i in range(n):
         total = at[row, i]
@@ -143,4 +144,6 @@ def accelerate(
             rate = 0.0
             for i in range(n):
                 rate += selection[k, i] * (at[V, i] + g * at[LATE, i])
+            change = max(change, abs(rate - film[U_0, k]))
             film[U_0, k] = rate
+    return change

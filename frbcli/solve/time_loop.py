@@ -15,7 +15,7 @@ from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import left_over
 from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterations, write_oil
-from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
+from frbcli.solve.inverse import outdated, prepare
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
@@ -105,6 +105,7 @@ def _advance(
     tolerance, contact_at, contact_stiffness = (
         control.tolerance, control.contact_eccentricity, control.contact_stiffness)
     m, stages = 2 * clearances.shape[0], moments.shape[0]
+    smallest = clearances.min()
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
     newton, past, q_new, bodies, angles_now, torque = own
@@ -142,14 +143,14 @@ def _advance(
                     break
                 left = left_over(films, work, left, moved, unsettled, NEWTON_SHARE * tolerance)
                 if share == 1.0:
-                    accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
+                    late = accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
+                    left = max(left, g * late / smallest)
                     if spins.shape[0] > 0:
                         turned = spin_up(films, work, rotor, s, g, clearances, contact_at, contact_stiffness, at, film,
                                          bodies, angles_now, torque, stage_v, stage_a)
                         left = max(left, turned)
                         set_speeds(turning, bodies, angles_now, film, grids)
-                    settled = control.linearised or left < NEWTON_SHARE * tolerance
-                    if settled and (lag == 0.0 or iteration >= LAG_SWEEPS):
+                    if control.linearised or left < NEWTON_SHARE * tolerance:
                         solved = True
                         break
             if not solved:

@@ -14,11 +14,13 @@ from typing import Any
 import numpy as np
 
 from frbcli.compiled import Array, compiled
+from frbcli.film.cells.vectors import eliminate_column, next_column, row_length, take_in_border, take_in_next
 
 CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
-# The usual lengths of columns and the usual number of right-hand sides, as tuples: the compiler knows how long they are
-# and unrolls the loops, which takes about half the time.
-FIVE, SIX, USUAL_RIGHTS = (0,) * 5, (0,) * 6, (0,) * 3
+# Lengths of columns that are eliminated on the vector units, with the usual number of right-hand sides: those of plans,
+# of the runs on fewer cells that errors follow from, and of references.
+THREE, FOUR, FIVE, SIX, TEN, TWELVE = (0,) * 3, (0,) * 4, (0,) * 5, (0,) * 6, (0,) * 10, (0,) * 12
+USUAL = (0,) * 3
 
 
 @compiled(fastmath={"contract", "reassoc"})
@@ -141,18 +143,74 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
             for c in range(k, n):
                 fields[i, a, c] = held[a, c]
 
+
+@compiled(fastmath={"contract", "reassoc"})
+def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
+    """As solve_ring, for columns of a length and right-hand sides of a number that the compiler knows, see vectors.py.
+
+    A column is coupled to the next as x_i = right_i - inverse_i behind_i x_i+1 - border_i x_last. The rows hold inverse,
+    border and right of each, the two latter first without and then with what the columns behind it bring.
+    """
+    m, k, r = stencil.shape[1], len(column), len(sides)
+    last, rows = m - 1, np.zeros((m, k, row_length(k, r)))
+    for i in range(0, m, last):  # the first and the last column
+        for a in range(k):
+            rows[i, a, a] = stencil[CENTRE, i, a]
+            if a > 0:
+                rows[i, a, a - 1] = stencil[BELOW, i, a]
+            if a < k - 1:
+                rows[i, a, a + 1] = stencil[ABOVE, i, a]
+            for side in range(r):
+                rows[i, a, 2 * k + side] = fields[i, a, k + side]
+    for a in range(k):
+        rows[0, a, k + a] = stencil[BEFORE, 0, a]
+    eliminate_column(rows[0], column, sides)
+    for i in range(1, last):
+        next_column(
+            stencil[CENTRE, i], stencil[BELOW, i], stencil[ABOVE, i], stencil[BEFORE, i], stencil[BEHIND, i - 1],
+            fields[i], rows[i - 1], rows[i], column, sides,
+        )  # fmt: skip
+    for a in range(k):
+        for b in range(k):
+            rows[last - 1, a, k + b] += rows[last - 1, a, b] * stencil[BEHIND, last - 1, b]
+    for i in range(last - 2, -1, -1):
+        take_in_next(stencil[BEHIND, i], rows[i + 1], rows[i], column, sides)
+    for a in range(k):
+        low, high = stencil[BEFORE, last, a], stencil[BEHIND, last, a]
+        for b in range(k):
+            rows[last, a, b] -= low * rows[last - 1, a, k + b] + high * rows[0, a, k + b]
+        for side in range(2 * k, 2 * k + r):
+            rows[last, a, side] -= low * rows[last - 1, a, side] + high * rows[0, a, side]
+    eliminate_column(rows[last], column, sides)
+    for i in range(last):
+        take_in_border(rows[last], rows[i], fields[i], column, sides)
+    for a in range(k):
+        for side in range(r):
+            fields[last, a, k + side] = rows[last, a, 2 * k + side]
+
+
 @compiled()
 def solve_ring(stencil: Array, blocks: Array, fields: Array) -> None:
     """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
 
     stencil: (ENTRIES, m, k) entries of the cell itself, of the cells before and behind it around the ring, of those
-    below and above it in its column. blocks: (m, k, k) scratch, as are the first k layers of fields: what a column
-    takes from the last one, so that both are one product. m >= 3. Not finite where the matrix is singular.
+    below and above it in its column, all arrays in one piece. blocks: (m, k, k) scratch, as are the first k layers of
+    fields: what a column takes from the last one, so that both are one product. m >= 3. Not finite where the matrix is
+    singular.
     """
     k, n = fields.shape[1:]
-    if n == k + len(USUAL_RIGHTS) and k == len(FIVE):
-        solve_blocks(stencil, blocks, fields, FIVE, FIVE + USUAL_RIGHTS)
-    elif n == k + len(USUAL_RIGHTS) and k == len(SIX):
-        solve_blocks(stencil, blocks, fields, SIX, SIX + USUAL_RIGHTS)
+    known = n == k + len(USUAL)
+    if known and k == len(SIX):
+        solve_known(stencil, fields, SIX, USUAL)
+    elif known and k == len(FIVE):
+        solve_known(stencil, fields, FIVE, USUAL)
+    elif known and k == len(FOUR):
+        solve_known(stencil, fields, FOUR, USUAL)
+    elif known and k == len(THREE):
+        solve_known(stencil, fields, THREE, USUAL)
+    elif known and k == len(TEN):
+        solve_known(stencil, fields, TEN, USUAL)
+    elif known and k == len(TWELVE):
+        solve_known(stencil, fields, TWELVE, USUAL)
     else:
         solve_blocks(stencil, blocks, fields, stencil[0, 0], fields[0, 0])

@@ -17,12 +17,15 @@ from frbcli.film.cells.plain.balance import NO_DISTANCE
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 
+TIGHTLY = 1e-4  # settled, where nothing is said of it
+
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
 # Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; CENTRIFUGAL: by which given pressures fall
 # with the square of the grid's speed, in s; BORED: 1 where flows around take the gaps of both cells, as beside bores;
-# from PARAMETERS on: those of its law, of a centred journal at 1 rad/s.
+# SETTLED: share of its pace that its balances may be off by in the mean; from PARAMETERS on: those of its law, of a
+# centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
@@ -42,8 +45,9 @@ CLOSED, GIVEN, FREE = range(3)
     FORCE_SCALE,
     CENTRIFUGAL,
     BORED,
+    SETTLED,
     PARAMETERS,
-) = range(19)
+) = range(20)
 SCALES_END = AMBIENT + 1  # REFERENCE, CAVITY and AMBIENT stand beside each other, as Scales has them
 FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
@@ -100,8 +104,9 @@ class VolumeFilms(NamedTuple):
 def volume_films(
     films: Sequence[VolumeFilm],
     centrifugal: Sequence[float] = (),
+    settled: float = TIGHTLY,
 ) -> VolumeFilms:
-    """The films as arrays; all have grids of the same shape. centrifugal: in s."""
+    """The films as arrays; all have grids of the same shape. centrifugal: in s; settled: see SETTLED."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
         np.zeros((len(films), FILM_NUMBERS)),
@@ -115,6 +120,7 @@ def volume_films(
     for index, film in enumerate(films):
         _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
         data.numbers[index, CENTRIFUGAL] = centrifugal[index] if centrifugal else 0.0
+        data.numbers[index, SETTLED] = settled
     return data
 
 
