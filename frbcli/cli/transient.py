@@ -12,6 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.events import EVENT_COLUMNS, event_row
 from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, live_lines, progress_line
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
@@ -179,9 +180,7 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     for sentence in run_advice(case, run_end(run)):
         terminal.remark(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
     if run.events:
-        terminal.table(
-            "events", ("event", "time in s", "speed in Hz", "frequency in Hz", "ratio"), map(_event_row, run.events)
-        )
+        terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
     terminal.table("cost and error", ("", "", ""), _cost_rows(run))
 
 
@@ -196,20 +195,6 @@ def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
         made = 1e9 * run.cost["oil_created_m3"]
         defect = f", {made:.3g} mm^3 created" if made >= 0.0 else f", {-made:.3g} mm^3 destroyed"
     return [("oil", f"{came:.3g} mm^3 in", f"{left:.3g} mm^3 out{defect}")]
-
-
-def _event_row(event: dict[str, Any]) -> tuple[str, ...]:
-    def number(value: float | None, form: str) -> str:
-        return "-" if value is None else format(value, form)
-
-    name = event["kind"] if event["film"] is None else f"{event['kind']} {event['film']}"
-    return (
-        name,
-        number(event["t_s"], ".3f"),
-        number(event["speed_Hz"], ".1f"),
-        number(event["frequency_Hz"], ".1f"),
-        number(event["frequency_ratio"], ".3f"),
-    )
 
 
 def _cost_rows(run: Run) -> list[tuple[str, str, str]]:

@@ -24,7 +24,8 @@ from frbcli.film.cells.loads import estimate, force, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.gap import gap_height
-from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
+from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.film_choice import CELLS as ON_CELLS
 from frbcli.scene.films import FilmPlace, film_places, turning, volume_film

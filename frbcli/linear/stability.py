@@ -21,7 +21,8 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
+from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.channels import coupled

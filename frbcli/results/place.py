@@ -40,7 +40,7 @@ def require_place(*files: Path | None) -> None:
     """Raises InputError for the first file that cannot be written, before anything is computed; None is no file."""
     for file in files:
         if file is not None and (wrong := wrong_place(file)):
-            raise InputError(str(file), (Fault("", "", None, *wrong),))
+            raise InputError(f"file {file}", (Fault("file", "", None, *wrong),))
 
 
 def _exists(path: Path) -> bool:

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.bearing import AxialGrooves, FilmGeometry, SingleFilmBearing
-from frbcli.case.rotor import JeffcottRotor, RigidRotor
+from frbcli.case.bearing import AxialGrooves, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.two_phase import TwoPhase
@@ -25,10 +24,8 @@ from frbcli.film.published.film import PublishedFilm, published_force
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.rigid import rigid_rotor
-from frbcli.rotor.ring import with_rings, with_spins
+from frbcli.rotor.ring import with_spins
 from frbcli.scene.bearing_model_films import bearing_film
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.channels import coupled_channels
@@ -36,16 +33,15 @@ from frbcli.scene.films import (
     centrifugal_pressures,
     film_places,
     make_law,
-    rings,
     turning,
     turning_rings,
     volume_film,
 )
 from frbcli.scene.plan import Plan
 from frbcli.scene.published import PUBLISHED
+from frbcli.scene.rotors import make_rotor
 from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTIONS
-from frbcli.scene.turbocharger import make_turbocharger
 
 # What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
 # off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.
@@ -187,29 +183,6 @@ def film_drag(case: Case, film: FilmGeometry) -> float:
 def planned_film(plan: Plan, bearing: RectangularBearing, cavitation: str, mesh: Mesh) -> FilmData:
     """The film that the plan has chosen for a bearing, on a mesh of its own."""
     return make_film(bearing, plan.theory, cavitation, mesh)
-
-
-def make_rotor(case: Case) -> LinearRotor:
-    """The linear system of a case's rotor, with the masses of floating rings."""
-    rotor = case.rotor
-    if isinstance(rotor, RigidRotor):
-        made = rigid_rotor(rotor.mass, rotor.unbalance, rotor.external_damping, rotor.gravity)
-    elif isinstance(rotor, JeffcottRotor):
-        made = jeffcott_rotor(
-            rotor.mass,
-            rotor.journal_mass,
-            rotor.shaft_stiffness,
-            rotor.unbalance,
-            rotor.external_damping,
-            rotor.shaft_damping,
-            rotor.gravity,
-        )
-    else:
-        return make_turbocharger(case)
-    if not rings(case):
-        return made
-    masses = [None if isinstance(item, SingleFilmBearing) else item.ring.mass for item in case.bearings]
-    return with_rings(made, masses, rotor.gravity, [bearing.name for bearing in case.bearings])
 
 
 def sections_of(film: FilmGeometry) -> int:

@@ -21,7 +21,8 @@ from frbcli.linear.stability import Stability, stability
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_rotor, make_system, planned_film
+from frbcli.scene.rotors import make_rotor
+from frbcli.scene.system import make_system, planned_film
 
 DATA = Path(__file__).parent.parent / "data"
 
