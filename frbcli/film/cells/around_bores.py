@@ -85,7 +85,9 @@ def _place(section: Section, phi: Array, z: Array, number: int, inside: Mask, co
     a, middle, room = hole.half_angle, hole.axial / section.width, 0.5 * _distance_to_next(section, number)
     dx, dy = np.diff(phi), np.diff(z) * width
     x, y = wrapped(0.5 * (phi[1:] + phi[:-1]) - hole.position), (0.5 * (z[1:] + z[:-1]) - middle) * width
-    near_x, near_y = (np.abs(at) < a + np.minimum(REACH * size, room) for at, size in ((x, dx), (y, dy)))
+    around_it = np.abs(x) < a + dx  # the longer sides of the cells count
+    reach = a + min(REACH * max(dx[around_it].max(), dy.max()), room)
+    near_x, near_y = np.abs(x) < reach, np.abs(y) < reach
     columns, rows = np.flatnonzero(near_x), np.flatnonzero(near_y)
     columns = columns[np.argsort(x[columns])]
     held = inside[np.ix_(columns, rows)]

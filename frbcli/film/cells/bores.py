@@ -68,18 +68,12 @@ def fit(patch: Patch, around: Array, along: Array) -> Fitted:
     values[:, patch.held] = 0.0
     flows, beyond = _flows(values, around, along), _beyond(patch, values)
     flows[:, patch.held], beyond[:, patch.held] = 0.0, 0.0
-    smallest = float(min(patch.dx.min(), patch.dy.min()))
-    kept = np.clip(1.0 + _changes(values[:-1], flows[:-1], beyond[:-1], smallest), LEAST, None)
-    split = around.size
+    kept = np.clip(1.0 + _changes(patch, values[:-1], flows[:-1], beyond[:-1]), LEAST, None)
+    split, chosen = around.size, values[_chosen(patch)]
     out = beyond[-1] + flows[-1] @ kept  # of the solution with a source
-    chosen = values[_chosen(patch)]
     source = _areas(patch, chosen, _products(chosen, (out - patch.open_)[None])[:, 0])
-    return Fitted(
-        around * kept[:split].reshape(around.shape),
-        along * kept[split:].reshape(along.shape),
-        source,
-        _load(patch, chosen),
-    )
+    kept_around, kept_along = kept[:split].reshape(around.shape), kept[split:].reshape(along.shape)
+    return Fitted(around * kept_around, along * kept_along, source, _load(patch, chosen))
 
 
 def solutions(x: Array, y: Array, a: float, mirrored: bool) -> Array:
@@ -146,9 +140,8 @@ def _products(values: Array, fields: Array) -> Array:
     return np.asarray(np.tensordot(values, fields, axes=([1, 2], [1, 2])))
 
 
-def _changes(values: Array, flows: Array, beyond: Array, smallest: float) -> Array:
-    """(faces,) relative changes of the conductances by which the solutions without a source balance. smallest: size of
-    a cell."""
+def _changes(patch: Patch, values: Array, flows: Array, beyond: Array) -> Array:
+    """(faces,) relative changes of the conductances by which the solutions without a source balance."""
     count, faces = len(values), flows.shape[-1]
     pairs = np.einsum("aij,bijf->abf", values, flows)
     size = np.sqrt(np.abs(np.einsum("aaf->af", pairs)).sum(axis=1))
@@ -159,6 +152,7 @@ def _changes(values: Array, flows: Array, beyond: Array, smallest: float) -> Arr
         rows.append(weight * (pairs[p, q] + pairs[q, p])[None])
         wanted.append(np.array([-weight * (left[p, q] + left[q, p])]))
     each = EACH * beyond[0].size / np.abs(flows).sum(axis=(1, 2, 3))[:, None, None]
+    smallest = float(min(patch.dx.min(), patch.dy.min()))
     each = each * np.minimum(values[0] / smallest, 1.0)  # what does not balance near the edge flows into the bore
     rows.append((each[..., None] * flows).reshape(-1, faces))
     wanted.append((-each * (beyond + flows.sum(axis=3))).ravel())
@@ -175,8 +169,7 @@ def _load(patch: Patch, chosen: Array) -> Array:
     have = _products(fields, patch.open_[None])[:, 0]
     want = np.append(integrals(patch, chosen), (lever * size).sum())
     change = np.where(patch.held, 0.0, _areas(patch, fields, want - have) - size)
-    change = np.where(patch.held, -change.sum() / patch.held.sum(), change)
-    return size + change * min(1.0, LARGEST / float(np.abs(change / size).max()))
+    return size + _limited(np.where(patch.held, -change.sum() / patch.held.sum(), change), size)
 
 
 def _areas(patch: Patch, fields: Array, lacking: Array) -> Array:
@@ -190,7 +183,12 @@ def _areas(patch: Patch, fields: Array, lacking: Array) -> Array:
     matrix = np.vstack([rows * scale[:, None], np.eye(size.size)])
     changes = np.linalg.lstsq(matrix, np.concatenate([lacking * scale, np.zeros(size.size)]), rcond=None)[0]
     change = np.where(patch.held, 0.0, patch.open_ + close * changes.reshape(size.shape) - size)
-    return np.where(patch.held, 0.0, size + change * min(1.0, LARGEST / float(np.abs(change / size).max())))
+    return np.where(patch.held, 0.0, size + _limited(change, size))
+
+
+def _limited(change: Array, size: Array) -> Array:
+    """The changes (nx, ny) of areas, all by the same factor smaller where one is larger than LARGEST."""
+    return np.asarray(change * LARGEST / max(LARGEST, float(np.abs(change / size).max())))
 
 
 def _cut_cell(patch: Patch, x: Array, y: Array) -> Array:
