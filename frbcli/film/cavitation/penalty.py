@@ -103,8 +103,8 @@ def steepness_exponent(eccentricity: float) -> float:
 
 
 def wright_omega(x: float) -> float:
-    """The real solution of omega + ln omega = x, to 1e-13: by a step of Fritsch, Shafer and Crowley's iteration, and one
-    of Newton's method."""
+    """The real solution of omega + ln omega = x, to 1e-13: by a step of Fritsch, Shafer and Crowley's iteration, and
+    one of Newton's method."""
     if x < -36.0:
         return math.exp(x) if x > NOTHING else 0.0
     if x < 1.0:
