@@ -49,7 +49,9 @@ GRIDS = LAW + LAW_NUMBERS
 HELD, SOLVED, AHEAD, OPEN = range(4)
 KEPT = 0.2  # of what a smooth force would leave of an error: a hundredth was seen, of films of all laws
 SLOW = 0.2  # RATIO above which a film that balances is linearised anew: its journal does not settle
-NEWTON_GAINS = 5.0  # by which a correction reduces what does not balance, at least: 20 to 100 in most
+# By which a correction reduces what does not balance: 20 to 100 in most, 4 where many fronts cross cells. A film that
+# remembers carries the rest on.
+NEWTON_GAINS, GAINS_CARRIED = 5.0, 10.0
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.03, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
@@ -145,7 +147,7 @@ def cell_numbers(
         f_x, f_y, _, _, _, _ = film_loads(numbers, ring, width, states, fields)
     else:
         # Films that share oil have to balance as they are: what passes between them is known for that alone.
-        soon = left < NEWTON_GAINS and iteration < PLAIN and slots == 0
+        soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and iteration < PLAIN and slots == 0
         grid[BALANCE] = SOLVED if balanced else AHEAD if soon else OPEN
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
@@ -268,11 +270,14 @@ def sheared(ring: Array, cells: Array, states: Array, d_x: float, d_y: float, fa
     m, k = states.shape[1], states.shape[2]
     whole, weighed = 0.0, 0.0
     for i in range(m):
-        h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
+        per_gap = 1.0 / max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
+        area, oil = 0.0, 0.0
         for j in range(k):
             if cells[UNKNOWN, i, j] != 0.0 and cells[FEED_HOLE, i, j] == 0.0:
-                whole += cells[AREA, i, j] / h
-                weighed += cells[AREA, i, j] * states[FRACTION, i, j] / h
+                area += cells[AREA, i, j]
+                oil += cells[AREA, i, j] * states[FRACTION, i, j]
+        whole += per_gap * area
+        weighed += per_gap * oil
     if factor == LOCAL_FACTOR:
         return weighed
     return whole * oil_fraction(cells, states) if factor == GLOBAL_FACTOR else whole
