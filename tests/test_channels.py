@@ -179,7 +179,7 @@ def test_a_channel_without_resistance_has_one_pressure_less_what_is_thrown_outwa
 def test_bores_too_small_for_the_mesh_are_closed(tmp_path: Path) -> None:
     """The films are then plain ones."""
     few = ("speed.from=20 Hz", "speed.to=21 Hz", "speed.duration=5 ms", "film.cavitation=penalty")
-    few += ("accuracy.tolerance=2e-5", *AT_END)
+    few += ("accuracy.tolerance=1e-6", *AT_END)
     shut = runup(ringed(*few, "bearing.inner.supply.diameter=0.05 mm"), tmp_path / "shut.h5")
     plain = 'bearing.inner.supply={kind="none"}'
     none = runup(load_case("floating-ring", (*COUPLED[1:], *few, plain)), tmp_path / "none.h5")

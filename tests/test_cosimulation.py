@@ -137,6 +137,7 @@ def test_all_couplings_of_a_jeffcott_rotor_agree() -> None:
 
 def test_a_co_simulation_of_a_floating_ring(tmp_path: Path) -> None:
     settings = [*QUICK, "film.cavitation=half-sommerfeld", "accuracy.mesh=[3, 12]", "speed.duration=2 ms"]
+    settings.append("accuracy.tolerance=2e-5")
     runs = [runup(load_case("floating-ring", [*settings, f"film.coupling={name}"]), tmp_path / f"{name}.h5")
             for name in ("monolithic", "co-simulation")]  # fmt: skip
     for name in ("eccentricity_inner", "eccentricity_outer"):

@@ -13,7 +13,7 @@ from frbcli.runs.run import runup
 from frbcli.scene.cost import STAGES, expected_cost, solve_us
 from frbcli.scene.expected_error import expected_error
 from frbcli.scene.film_choice import CELLS, CHAINS, CLOSED_FORM, FIELDS, TABLE, choose_films, short_error
-from frbcli.scene.plan import make_plan
+from frbcli.scene.plan import CELL_SHARE, LOOSE_SHARE, TIGHT_SHARE, Plan, make_plan
 from frbcli.scene.profiles import run_down_profile, run_up_profile
 from frbcli.solve.tableau import METHODS
 
@@ -72,6 +72,23 @@ def test_predicted_is_near_real_cost(name: str, tmp_path: Path) -> None:
     assert run.cost["predicted_cpu_s"] == pytest.approx(cost.cpu_s)
     assert 1 / WITHIN < run.cost["film_solves"] / cost.film_solves < WITHIN
     assert 1 / WITHIN < run.cost["steps"] / cost.steps < WITHIN
+
+
+def test_steps_are_as_exact_as_the_cells_deserve() -> None:
+    """The local error is a share of the target, or of the error of the cells where that is larger."""
+
+    def plan(name: str, *settings: str) -> Plan:
+        return make_plan(load_case(name, settings))
+
+    for name in ("jeffcott-two-phase", "axial-groove-two-phase", "turbocharger-car"):
+        assert plan(name).tolerance == pytest.approx(CELL_SHARE * plan(name).film_error)
+        assert plan(name).tolerance > LOOSE_SHARE * 1e-3
+    finest = plan("jeffcott-two-phase", "accuracy.mesh=[60, 480]")
+    assert finest.tolerance == pytest.approx(LOOSE_SHARE * 1e-3)
+    assert plan("jeffcott-two-phase", "accuracy.tolerance=3e-7").tolerance == 3e-7
+    assert plan("jeffcott").tolerance == pytest.approx(TIGHT_SHARE * 1e-3)  # no cells
+    coarse, fine = (plan("jeffcott-two-phase", f"accuracy.mesh={mesh}").tolerance for mesh in ("[6, 48]", "[12, 96]"))
+    assert coarse > 2.0 * fine
 
 
 def test_the_short_bearing_is_taken_where_it_holds_the_target() -> None:

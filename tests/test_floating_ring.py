@@ -284,7 +284,8 @@ def test_channels_throw_oil_outwards_unless_told_not_to() -> None:
 # --------------------------------------------------------------------------------------- a cavitation model per film
 
 
-MIXED = (*COARSE, "bearing.inner.cavitation=two-phase", "film.two-phase.steepness=0.9", *constant(60.0, 0.02))
+MIXED = (*COARSE, "bearing.inner.cavitation=two-phase", "film.two-phase.steepness=0.9", *constant(60.0, 0.02),
+         "accuracy.tolerance=2e-5")  # fmt: skip
 
 
 def test_each_film_has_its_own_cavitation_model(tmp_path: Path) -> None:

@@ -11,8 +11,20 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
+from frbcli.film.cells.data import REMEMBERS
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.solve.cell_films import GRID_X, GRID_Y, cell_numbers, left_of_cells, move_cells, sheared
+from frbcli.solve.cell_films import (
+    AHEAD,
+    BALANCE,
+    GRID_X,
+    GRID_Y,
+    STAGE,
+    cell_numbers,
+    left_of_cells,
+    move_cells,
+    sheared,
+    store_ahead,
+)
 from frbcli.solve.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.element_films import back_off, element_numbers, left_of_elements, move_elements
 from frbcli.solve.films import Work, have_cells, have_elements
@@ -121,6 +133,7 @@ def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  
         )
 
     def volumes(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
+        work.grids[STAGE, f] = s
         return cell_numbers(
             films.numbers[f],
             films.ring[f],
@@ -214,7 +227,14 @@ def _move_film(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-d
         return lambda films, work, f, u_x, u_y, share, g: 0
 
     def volumes(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
-        return move_cells(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g, work.changes[f])
+        unsettled = move_cells(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g, work.changes[f])
+        if films.numbers[f, REMEMBERS] != 0.0 and work.grids[BALANCE, f] == AHEAD:
+            s = int(work.grids[STAGE, f])
+            store_ahead(
+                films.ring[f], films.cells[f], work.states[f], work.past[f], work.fields[f], work.grids[:, f],
+                u_x, u_y, g, work.stage_oil[s, f], work.stage_flows[s, f],
+            )  # fmt: skip
+        return unsettled
 
     return volumes
 

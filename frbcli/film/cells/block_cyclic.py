@@ -148,8 +148,8 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
 def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
     """As solve_ring, for columns of a length and right-hand sides of a number that the compiler knows, see vectors.py.
 
-    A column is coupled to the next as x_i = right_i - inverse_i behind_i x_i+1 - border_i x_last. The rows hold inverse,
-    border and right of each, the two latter first without and then with what the columns behind it bring.
+    A column is coupled to the next as x_i = right_i - inverse_i behind_i x_i+1 - border_i x_last. The rows hold
+    inverse, border and right of each, the two latter first without and then with what the columns behind it bring.
     """
     m, k, r = stencil.shape[1], len(column), len(sides)
     last, rows = m - 1, np.zeros((m, k, row_length(k, r)))

@@ -17,7 +17,7 @@ from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_ring
 
-SETTLED = 1e-3  # of the largest pressure: a correction after which what is left is its square
+SETTLED = 2e-4  # of the largest pressure: a correction after which what is left is its square
 PLAIN, DAMPING, LIMIT = 8, 0.5, 60  # iterations without damping; how it goes on from one to the next; all
 # Layers of the states of the cells: pressure above that of cavitation and source, and their slopes by w.
 ABOVE_CAVITY, SOURCE, RISE, FALL, LAYERS = range(5)
