@@ -10,11 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.bearing_tests.bearing_model import model_forces
-from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
+from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.bearing_tests.steady_film import film_force as solved_force
+from frbcli.bearing_tests.steady_film import settled
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.motion import Motion
+from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.section_faults import no_inflow
 
 Array = NDArray[np.float64]
@@ -25,6 +29,7 @@ SETTLED = 1e-5  # force left over, relative to the load
 NUDGE = 1e-3  # share of the gap by which the position is moved for a derivative
 GAP_KEPT = 0.3  # a step may shrink the narrowest gap to this share of it
 COARSE_CELLS = (80, 20)
+TABLE_MESH = Mesh(4, 64)  # of the film that tells where to begin
 SMALLEST_SHARE = 0.05  # of a step that is tried
 STARTS = (0.6, 0.85, 0.3, 0.95)
 ATTITUDE = math.radians(20.0)
@@ -45,18 +50,17 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
             "Raise the supply pressure, or supply it through axial grooves or bores."
         )
     target = np.array([0.0, load])
-    position: Array | None = None
-    if plan.model is None and plan.rectangle is not None and not plan.modal:
-        position = resting_displacement(case, kinematic_plan(case, "half-sommerfeld"), load, omega)
-    starts = [] if position is None else [position]
     side = math.copysign(1.0, omega)  # the journal gives way in the sense of rotation
-    starts += [e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)]) for e in STARTS]
+    starts = [e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)]) for e in STARTS]
+    if plan.model is None and plan.rectangle is not None and not plan.modal:
+        starts = [*_in_a_table(plan.rectangle, target, omega, starts), *starts]
     problems = []
     for start in starts:
         try:
-            without_cells = plan.modal or plan.model is not None
-            coarse = start if without_cells else _newton(case, plan, target, omega, start, COARSE_CELLS)
-            return _newton(case, plan, target, omega, coarse, plan.cells)
+            coarse = start
+            if not plan.modal and plan.model is None:
+                coarse = _newton(_missing(case, plan, target, omega, COARSE_CELLS), target, start)
+            return _newton(_missing(case, plan, target, omega, plan.cells), target, coarse)
         except NotConverged as problem:
             problems.append(str(problem))
     raise NotConverged(
@@ -88,15 +92,39 @@ def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int
     return solved_force(case, plan, motion, cells)
 
 
-def _newton(
-    case: Case, plan: KinematicPlan, target: Array, omega: float, start: Array, cells: tuple[int, int]
-) -> Array:
-    """Newton's method with derivatives by differences, kept up to date by Broyden's formula while that works."""
-    size = float(np.linalg.norm(target))
+def _in_a_table(bearing: RectangularBearing, target: Array, omega: float, starts: list[Array]) -> list[Array]:
+    """The resting position in the tabulated half-Sommerfeld film, to begin from, if there is one."""
+    film, c, still = make_film(bearing, "finite", "half-sommerfeld", TABLE_MESH), bearing.clearance, np.zeros(2)
+    for start in starts:
+        with suppress(NotConverged):
+            return [_newton(lambda d: evaluate(film, c, c * d, still, omega).force - target, target, start)]
+    return []
+
+
+def _missing(
+    case: Case, plan: KinematicPlan, target: Array, omega: float, cells: tuple[int, int]
+) -> Callable[[Array], Array]:
+    """Force (2,) in N that a displacement over the clearance leaves over; cells begin with their last state."""
+    before: Array | None = None
 
     def missing(d: Array) -> Array:
-        return film_force(case, plan, Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega), cells) - target
+        nonlocal before
+        motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
+        if plan.model is not None or plan.modal:
+            return film_force(case, plan, motion, cells) - target
+        law = law_at(case, plan, math.hypot(*motion.d))
+        try:
+            force, before = settled(plan.section, law, motion, cells, before)
+        except NotConverged:
+            force, before = settled(plan.section, law, motion, cells, None)
+        return force - target
 
+    return missing
+
+
+def _newton(missing: Callable[[Array], Array], target: Array, start: Array) -> Array:
+    """Newton's method with derivatives by differences, kept up to date by Broyden's formula while that works."""
+    size = float(np.linalg.norm(target))
     position, fresh = start, True
     residual = missing(position)
     slope = _differences(missing, position, residual)

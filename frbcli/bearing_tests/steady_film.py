@@ -12,7 +12,7 @@ from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
-from frbcli.film.cells.loads import CavitationFactor, Loads, estimate, loads
+from frbcli.film.cells.loads import CavitationFactor, Loads, estimate, force, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
@@ -56,7 +56,7 @@ def steady_film(
     cells: around and along the whole film; one cut at its plane of symmetry gets half of those along; factor: of the
     torque, for a shell at rest. Raises NotConverged.
     """
-    around, along = cells[0], cells[1] // 2 if section.far == "symmetry" else cells[1]
+    around, along = _cells_of(section, cells)
     reference = reference_pressure(section, motion)
     coarse = VolumeFilm(section, fitted_grid(section, motion.d, around // 2, along // 2), law, reference)
     first = FilmSolver(coarse).steady(motion)
@@ -70,6 +70,29 @@ def steady_film(
         int(np.count_nonzero(~film.grid.fixed)),
         first.iterations + solution.iterations,
     )
+
+
+def settled(
+    section: Section, law: Law, motion: Motion, cells: tuple[int, int], start: Array | None
+) -> tuple[Array, Array]:
+    """Force (2,) in N on the journal by the whole bearing, and the unknown of the cells, from which to start a motion
+    that is nearly the same: it is sought from `start`, or from half the cells. Raises NotConverged."""
+    film = VolumeFilm(
+        section, fitted_grid(section, motion.d, *_cells_of(section, cells)), law, reference_pressure(section, motion)
+    )
+    solver = FilmSolver(film)
+    if start is None or start.shape != film.grid.shape:  # the edges of openings cut other cells
+        around, along = _cells_of(section, cells)
+        grid = fitted_grid(section, motion.d, around // 2, along // 2)
+        coarse = VolumeFilm(section, grid, law, film.scales.reference)
+        start = film.from_coarser(coarse, FilmSolver(coarse).steady(motion).w)
+    solution = solver.steady(motion, start)
+    return np.array(force(film, film.pressure(solution.state))), solution.w
+
+
+def _cells_of(section: Section, cells: tuple[int, int]) -> tuple[int, int]:
+    """Around and along a section; one cut at its plane of symmetry has half of those along the whole film."""
+    return cells[0], cells[1] // 2 if section.far == "symmetry" else cells[1]
 
 
 def film_moment(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> FilmMoment:

@@ -31,6 +31,7 @@ EXIT_CODES = {"finished": 0, "input-error": 2, "interrupted": 130}
 ENDED_EARLY = 3  # for any other reason, which is named
 SUMMARY = "-summary.png"
 TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
+TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
 SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
 
@@ -115,15 +116,19 @@ def cost_line(cost: ExpectedCost) -> str:
 
 
 def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
-    """Shows the progress on a terminal, and warns once if a run takes much longer than its plan expected."""
+    """Shows the progress on a terminal, elsewhere as a line every now and then, and warns once if a run takes much
+    longer than its plan expected."""
     from frbcli.scene.limits import clock
 
-    said = False
+    said, told_s = False, 0.0
 
     def observe(progress: Progress) -> None:
-        nonlocal said
+        nonlocal said, told_s
         if show is not None:
             show(progress_line(progress))
+        elif progress.cpu_s > told_s + TOLD_EVERY_s:
+            told_s = progress.cpu_s
+            terminal.remark(progress_line(progress))
         if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
             said = True
             left = (
