@@ -28,7 +28,10 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.errors import InputError as InputError
     from frbcli.errors import NotConverged as NotConverged
     from frbcli.errors import RunFileError as RunFileError
+    from frbcli.linear.bearing_sheet import bearing_sheet as bearing_sheet
+    from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
     from frbcli.linear.modes import natural_modes as natural_modes
+    from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
     from frbcli.results.store import read_run as read_run
     from frbcli.runs.run import rundown as rundown
@@ -53,6 +56,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "accuracy": "frbcli.studies.accuracy",
     "add_bearing": "frbcli.case.schema",
     "add_law": "frbcli.case.schema",
+    "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.load",
     "compare": "frbcli.studies.compare",
     "find_events": "frbcli.analysis.events",
@@ -64,10 +68,12 @@ _PUBLIC = {  # module, or module:attribute of another name
     "read_run": "frbcli.results.store",
     "remove_bearing": "frbcli.case.schema",
     "remove_law": "frbcli.case.schema",
+    "response": "frbcli.linear.response",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",
     "runup": "frbcli.runs.run",
     "shipped_cases": "frbcli.case.shipped",
+    "sommerfeld_chart": "frbcli.linear.bearing_sheet",
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from frbcli.film.rectangles.bearing import RectangularBearing, evaluate, make_film
+from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.rectangles.table import Mesh
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.film_choice import DEFAULT_MESH
 from frbcli.scene.films import HOUSING, ROTOR

@@ -10,11 +10,12 @@ from films import system_of
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from frbcli.film.rectangles.bearing import RectangularBearing, evaluate, make_film
-from frbcli.film.rectangles.table import Mesh
-from frbcli.rotor.excitation import SpeedProfile
+from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.system import System
 from frbcli.solve.state import OUTPUTS, RUNNING, Control, State

@@ -99,6 +99,20 @@ assert not loaded, loaded
     assert "waterfall" in done.stdout
 
 
+@pytest.mark.parametrize("case", ["jeffcott", "axial-groove-two-phase", "floating-ring", "bearing"])
+def test_a_plan_is_made_without_a_compiler(case: str) -> None:
+    """Those are slow to import: of kernels, of matrices (which turbochargers have), of pictures."""
+    code = f"""
+import sys
+from frbcli.cli.main import run
+assert run(["check", "{case}"]) == 0
+loaded = sorted({{"numba", "scipy.linalg", "scipy.sparse", "matplotlib"}} & set(sys.modules))
+assert not loaded, loaded
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 def test_public_names_resolve_lazily() -> None:
     code = f"""
 import sys, frbcli

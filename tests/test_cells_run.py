@@ -21,7 +21,8 @@ from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.plan import Plan, make_plan
-from frbcli.scene.system import System, make_system, run_up_profile
+from frbcli.scene.profiles import run_up_profile
+from frbcli.scene.system import System, make_system
 from frbcli.solve.state import FINISHED, REJECTED, RUNNING, STEP, STEPS, State
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

@@ -18,7 +18,8 @@ from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balances import CHANNELS_NET
-from frbcli.film.cells.channels import Channel, channel_resistance, with_channels
+from frbcli.film.cells.channel_data import with_channels
+from frbcli.film.cells.channels import Channel, channel_resistance
 from frbcli.film.cells.data import FLOW_SCALE, UNKNOWN, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
@@ -30,7 +31,8 @@ from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system, run_up_profile
+from frbcli.scene.profiles import run_up_profile
+from frbcli.scene.system import System, make_system
 from frbcli.solve.films import begin_stage, make_work
 from frbcli.solve.micro_step import _solve_films
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U

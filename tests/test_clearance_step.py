@@ -15,12 +15,13 @@ from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.linear.resting import resting_position
-from frbcli.rotor.excitation import speed_profile
+from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.march import March
 from frbcli.scene.clearance_steps import case_at
 from frbcli.scene.plan import make_plan
+from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import Segment, make_segments
-from frbcli.scene.system import make_system, run_up_profile
+from frbcli.scene.system import make_system
 from frbcli.solve.state import FINISHED, OIL, RUNNING, State
 
 Array = NDArray[np.float64]

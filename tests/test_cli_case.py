@@ -50,10 +50,11 @@ def test_every_command_of_the_table_has_help(name: str, capsys: pytest.CaptureFi
 
 @pytest.mark.usefixtures("_planned")
 def test_check_shows_values_and_plan_to_people(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["check", "jeffcott", "--set", "bearing.clearance=40 um"]) == 0
+    assert run(["check", "jeffcott", "--all", "--set", "bearing.clearance=40 um"]) == 0
     captured = capsys.readouterr()
     assert captured.err == ""
-    for expected in ("bearing.clearance", "4e-05 m", "40 um", "[width] of jeffcott", "expected error", "of CPU time"):
+    values = ("[bearing]", "clearance", "4e-05 m", "40 um", "[width] of jeffcott")
+    for expected in (*values, "expected error", "of CPU time"):
         assert expected in captured.out
 
 

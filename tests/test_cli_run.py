@@ -19,8 +19,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from frbcli.cli.live import progress_line
 from frbcli.cli.main import run as frb
-from frbcli.cli.transient import progress_line
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import Progress
 
@@ -264,3 +264,16 @@ def test_a_killed_run_opens_and_resumes_to_the_same_numbers(whole_run: Run) -> N
     assert frb(list(words)) == 0
     assert_same(read_run(path), whole_run)
     assert os.listdir() == ["a.h5"]
+
+
+def test_without_a_terminal_a_line_now_and_then_tells_the_progress(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["runup", "jeffcott", "-o", str(tmp_path / "run.h5"), "--no-picture", "--force"]
+    assert frb(words) == 0
+    assert "steps/rev" not in capsys.readouterr().err
+    monkeypatch.setattr("frbcli.cli.transient.TOLD_EVERY_s", 0.02)
+    assert frb(words) == 0
+    assert "steps/rev" in capsys.readouterr().err
+    assert frb([*words, "--quiet"]) == 0
+    assert capsys.readouterr().err == ""

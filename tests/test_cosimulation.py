@@ -19,7 +19,8 @@ from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system, run_up_profile
+from frbcli.scene.profiles import run_up_profile
+from frbcli.scene.system import make_system
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.micro_step import MICRO_STEPS, parabola
 from frbcli.solve.state import FINISHED, STEPS, State

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from frbcli.case.load import load_case
-from frbcli.film.rectangles.table import Mesh
+from frbcli.film.grid import Mesh
 from frbcli.runs.run import runup
 from frbcli.scene.cost import STAGES, expected_cost, solve_us
 from frbcli.scene.expected_error import expected_error
 from frbcli.scene.film_choice import CELLS, CHAINS, CLOSED_FORM, FIELDS, TABLE, choose_films, short_error
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import run_down_profile, run_up_profile
+from frbcli.scene.profiles import run_down_profile, run_up_profile
 from frbcli.solve.tableau import METHODS
 
 WITHIN = 3.0  # of the real cost, as issue 6 asks

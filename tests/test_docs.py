@@ -21,6 +21,11 @@ def named(page: Path) -> str:
     return str(page.relative_to(ROOT))
 
 
+def test_every_key_of_the_case_file_has_a_meaning() -> None:
+    empty = [line for line in case_reference.page().splitlines() if line.startswith("| `") and line.endswith("|  |")]
+    assert empty == []
+
+
 def test_case_file_page_is_what_the_schema_says() -> None:
     assert case_reference.PAGE.read_text(encoding="utf-8") == case_reference.page(), (
         "run `cd tests && python -m case_reference`"

@@ -18,8 +18,9 @@ from frbcli.runs.fewer_cells import fewer_cells, on_fewer_cells
 from frbcli.runs.film_error import FilmErrors
 from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
+from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import make_segments
-from frbcli.scene.system import make_system, run_up_profile
+from frbcli.scene.system import make_system
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
 from frbcli.studies.differences import difference

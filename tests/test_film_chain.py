@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from frbcli.case.load import load_case
 from frbcli.film.gap import AxialGroove
-from frbcli.film.grid import axial_modes, axial_vertices
-from frbcli.film.rectangles.bearing import FilmForce, RectangularBearing, evaluate, make_film
+from frbcli.film.grid import Mesh, axial_modes, axial_vertices
+from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.chain import chain_grid, element_matrices, mode_fields
+from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.rectangles.table import Mesh
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
 

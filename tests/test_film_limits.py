@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from films import AMBIENT, CLEARANCE, GROOVED, PLAIN, RADIUS, VISCOSITY, film_of, polar, sommerfeld_number
 
-from frbcli.film.grid import axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles import short
-from frbcli.film.rectangles.bearing import RectangularBearing, evaluate
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.modal import unit_fields
 from frbcli.film.rectangles.plain import solve_plain
 from frbcli.film.rectangles.short import short_closed, short_general, short_pressure
-from frbcli.film.rectangles.table import Mesh, ring_contraction
+from frbcli.film.rectangles.table import ring_contraction
 from frbcli.film.rectangles.untabulated import direct_force, section_pressure
 
 OMEGA = 300.0

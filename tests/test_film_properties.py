@@ -11,7 +11,7 @@ from films import AMBIENT, EQUAL_PRESSURES, KINDS, film_of, force, polar
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frbcli.film.rectangles.bearing import evaluate
+from frbcli.film.rectangles.film import evaluate
 
 ROUND_OFF = 1e-7  # of the force: directions are found by atan2 and cut by acos
 STEP = 1e-6  # relative, of a difference quotient

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from films import GROOVED, PLAIN, film_of, polar
 
-from frbcli.film.rectangles.bearing import RectangularBearing, evaluate
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
 from frbcli.scene.film_choice import DEFAULT_MESH
 

@@ -17,10 +17,11 @@ from frbcli.case.listing import values
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
+from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.linear.ring_speed import concentric_ratios
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
+from frbcli.rotor.held import held_rotor
 from frbcli.runs.run import runup
 from frbcli.scene.films import centrifugal_pressures
 from frbcli.scene.plan import make_plan

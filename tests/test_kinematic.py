@@ -18,8 +18,8 @@ from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.supply import supplied
-from frbcli.film.rectangles.bearing import evaluate, make_film
-from frbcli.film.rectangles.table import Mesh
+from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.film import evaluate, make_film
 
 SQUEEZE = list(csv.DictReader((Path(__file__).parent / "data" / "squeeze-forces.csv").read_text().splitlines()))
 AT = "motion={eccentricity=0.6, angle='-60 deg', speed='20 Hz'}"

@@ -28,10 +28,10 @@ from marches import (
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag
 
-from frbcli.film.rectangles.bearing import evaluate
-from frbcli.rotor.excitation import speed_profile
+from frbcli.film.rectangles.film import evaluate
 from frbcli.rotor.linear import LinearRotor, planar
 from frbcli.rotor.rigid import rigid_rotor
+from frbcli.rotor.speed_profile import speed_profile
 from frbcli.solve.state import FINISHED, STEP, STEPS, State
 from frbcli.solve.tableau import METHODS, Method, Tableau
 

@@ -9,9 +9,9 @@ import pytest
 from marches import BEARING, GRAVITY, control, forces, jeffcott, march, modal_rotor, start, with_short_films
 from scipy.integrate import simpson
 
-from frbcli.rotor.excitation import speed_profile
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
+from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.start import rotor_data
 from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME
 from frbcli.solve.tableau import METHODS

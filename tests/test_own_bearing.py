@@ -37,9 +37,10 @@ from frbcli.errors import InputError
 from frbcli.film.bearing_model import table
 from frbcli.film.bearing_model.checks import model_film
 from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
-from frbcli.film.rectangles.bearing import RectangularBearing, evaluate, make_film
+from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.film.rectangles.table import Mesh
 from frbcli.plot.signals import model as described
 from frbcli.runs import march
 from frbcli.scene.system import make_system

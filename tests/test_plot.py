@@ -24,7 +24,7 @@ from frbcli.plot.oil_content import oil_content_figure
 from frbcli.plot.orbit import orbit_figure, visible_steps
 from frbcli.plot.ring_speed import ring_speed_figure
 from frbcli.plot.signals import clearance, labels, model
-from frbcli.plot.style import save_figure
+from frbcli.plot.style import new_figure, save_figure
 from frbcli.plot.summary import summary_figure
 from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.results.signals import pieces
@@ -295,6 +295,13 @@ def test_thinned_curves_keep_their_extremes() -> None:
     assert (np.diff(few) > 0.0).all()
     assert (kept.max(), kept.min()) == (5.0, values.min())
     assert few[-1] == 1.0
+
+
+def test_fonts_of_a_pdf_are_those_that_journals_take(tmp_path: Path) -> None:
+    figure = new_figure("title", "")
+    content = save_figure(figure, tmp_path / "a.pdf").read_bytes()
+    assert b"/Type3" not in content
+    assert b"/TrueType" in content or b"/CIDFontType2" in content
 
 
 @pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".pdf", b"%PDF"), (".svg", b"<?xml")])

@@ -20,15 +20,16 @@ from frbcli.film.cells.data import COS, GAP, SIN, VolumeFilms
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.states import FRACTION
 from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
+from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.unknown import unknowns_of
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.runs.march import March
 from frbcli.scene.plan import make_plan
+from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import Segment
-from frbcli.scene.system import System, make_system, run_up_profile
+from frbcli.scene.system import System, make_system
 from frbcli.solve.cell_films import EMPTY, LAW, UNSETTLED, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work

@@ -18,7 +18,7 @@ from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array
+from frbcli.film.grid import Array, Mesh
 from frbcli.film.published.assembly import artificial_diffusion, assemble
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.law import make_step, oil_fraction, step_pressure
@@ -27,7 +27,6 @@ from frbcli.film.published.plain import terms
 from frbcli.film.published.ring import make_ring, solve_ring
 from frbcli.film.published.unknown import make_unknowns, pressures_of, unknowns_of
 from frbcli.film.rectangles.bearing import RectangularBearing
-from frbcli.film.rectangles.table import Mesh
 from frbcli.film.rectangles.untabulated import direct_force
 
 OMEGA = 2.0 * math.pi * 120.0  # at 4 s of the run-up of chapter 6

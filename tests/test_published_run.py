@@ -25,7 +25,8 @@ from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_created
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.plan import Plan, make_plan
-from frbcli.scene.system import System, make_system, run_up_profile
+from frbcli.scene.profiles import run_up_profile
+from frbcli.scene.system import System, make_system
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, ElementWork, make_element_work
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U

@@ -18,14 +18,14 @@ from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
-from frbcli.film.grid import Array
+from frbcli.film.grid import Array, Mesh
 from frbcli.film.penalty_table.film import SourceFilm
-from frbcli.film.rectangles.bearing import evaluate
+from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.rectangles.table import Mesh
-from frbcli.scene.films import film_places, source_film
+from frbcli.scene.films import film_places
 from frbcli.scene.plan import make_plan
 from frbcli.scene.section import film_section
+from frbcli.scene.system import source_film
 
 READINGS = ("absolute", "dimensionless")
 MESH = Mesh(axial=6, circumferential=48)

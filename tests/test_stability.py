@@ -14,8 +14,8 @@ from films import system_of
 import frbcli
 from frbcli.case.load import load_case
 from frbcli.errors import InputError, NotConverged
-from frbcli.film.rectangles.bearing import evaluate, make_film
-from frbcli.film.rectangles.table import Mesh
+from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.linear.resting import resting_position
 from frbcli.linear.stability import Stability, StabilityPoint, eigenvalues, stability

@@ -13,8 +13,8 @@ from frbcli.bearing_tests.steady_film import Array, FilmMoment
 from frbcli.case.schema import Case
 from frbcli.film.cells.loads import Loads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion
-from frbcli.film.rectangles.bearing import evaluate
-from frbcli.scene.bearing_models import bearing_film
+from frbcli.film.rectangles.film import evaluate
+from frbcli.scene.bearing_model_films import bearing_film
 
 UNKNOWN = math.nan
 

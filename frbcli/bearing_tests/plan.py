@@ -15,7 +15,7 @@ from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.section_faults import section_faults
-from frbcli.scene.bearing_models import chosen_model, model_decisions, model_faults
+from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.films import make_law
 from frbcli.scene.plan import Decision
 from frbcli.scene.published import DIFFUSIONS, ELEMENTS
@@ -134,6 +134,8 @@ def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
         faults.append(Fault("--cavitation", cavitation, None, problem, "Leave it out."))
     motion = case.motion
     rate = TWO_PI * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
+    from frbcli.scene.bearing_model_films import model_faults  # numba takes longer to import than a plan to make
+
     faults += model_faults(case, rate)
     if faults:
         raise InputError(case.name or "case", tuple(faults))

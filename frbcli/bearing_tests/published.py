@@ -18,7 +18,7 @@ from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.solution import FilmState, PublishedSolution
-from frbcli.scene.published import published_film
+from frbcli.scene.system import published_film
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from frbcli.film.cells.loads import CavitationFactor, Loads, estimate, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
-from frbcli.film.rectangles.table import Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
 
 Array = NDArray[np.float64]

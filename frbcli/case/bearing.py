@@ -43,50 +43,50 @@ Ramp = Annotated[
 class NoSupply(Model):
     """No supply: oil enters at the ends only."""
 
-    kind: Literal["none"] = "none"
+    kind: Literal["none"] = Field(default="none", description="no groove, bore or pocket")
 
 
 class CircumferentialGroove(Model):
     """A groove around the bearing: in the middle, between two lands of half the width, or at one end."""
 
-    kind: Literal["circumferential-groove"]
+    kind: Literal["circumferential-groove"] = Field(description="a groove around the bearing")
     axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
-    pressure: Pressure
+    pressure: Pressure = Field(description="supply pressure, absolute")
     ramp: Ramp = 0.0
 
 
 class AxialGrooves(Model):
     """Axial grooves in the shell, evenly spaced."""
 
-    kind: Literal["axial-grooves"]
-    count: Annotated[int, Count(1, 24, 1)] = 1
+    kind: Literal["axial-grooves"] = Field(description="grooves along the axis, in the shell")
+    count: Annotated[int, Count(1, 24, 1)] = Field(default=1, description="number of grooves")
     position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
     opening_angle: OpeningAngle = Field(description="angle of one groove")
-    pressure: Pressure
+    pressure: Pressure = Field(description="supply pressure, absolute")
     ramp: Ramp = 0.0
 
 
 class Bores(Model):
     """Feed holes of equal diameter in the shell or the journal, evenly spaced around it."""
 
-    kind: Literal["bores"]
-    count: Annotated[int, Count(1, 100, 6)]
-    diameter: Length
+    kind: Literal["bores"] = Field(description="round feed holes")
+    count: Annotated[int, Count(1, 100, 6)] = Field(description="number of feed holes")
+    diameter: Length = Field(description="of a feed hole")
     axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
     position: Angle = Field(default=0.0, description="phi of the first feed hole")
     on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
-    pressure: Pressure
+    pressure: Pressure = Field(description="supply pressure, absolute")
     ramp: Ramp = 0.0
 
 
 class Pocket(Model):
     """A pocket in the shell, in the middle of the width."""
 
-    kind: Literal["pocket"]
+    kind: Literal["pocket"] = Field(description="one rectangular pocket in the shell")
     position: Angle = Field(description="phi of the middle of the pocket")
-    opening_angle: OpeningAngle
-    width: Length
-    pressure: Pressure
+    opening_angle: OpeningAngle = Field(description="angle of the pocket")
+    width: Length = Field(description="axial width of the pocket")
+    pressure: Pressure = Field(description="supply pressure, absolute")
     ramp: Ramp = 0.0
 
 
@@ -98,10 +98,10 @@ class ColdClearance(Model):
 
     cold: Clearance = Field(description="radial clearance at the reference temperature")
     reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="temperature of `cold`")
-    shell_temperature: Temperature
-    journal_temperature: Temperature
-    shell_expansion: Expansion
-    journal_expansion: Expansion
+    shell_temperature: Temperature = Field(description="in operation")
+    journal_temperature: Temperature = Field(description="in operation")
+    shell_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
+    journal_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
 
     def warm(self, diameter: float) -> float:
         """The warm radial clearance [m] of a bearing of `diameter` [m]."""
@@ -113,7 +113,7 @@ class ColdClearance(Model):
 class ClearanceStep(Model):
     """A clearance from a given time of a run on: the gap changes suddenly, and the oil in it stays."""
 
-    time: Duration
+    time: Duration = Field(description="from the start of the run")
     clearance: Clearance = Field(description="radial, warm, from this time on")
 
 
@@ -129,7 +129,7 @@ AnyClearance = Annotated[
 class Lobes(Model):
     """Equal lobes of the shell, machined with a larger radius than the assembled clearance (preload)."""
 
-    count: Annotated[int, Count(2, 12, 3)]
+    count: Annotated[int, Count(2, 12, 3)] = Field(description="number of lobes")
     preload: Preload = Field(
         description="1 - c_b / c_p: `clearance` is c_b, the assembled clearance at the narrowest place of a lobe; "
         "c_p is the machined clearance of a lobe"
@@ -144,11 +144,13 @@ class FilmGeometry(Model):
     """The geometry of one film, its supply and its ends."""
 
     width: Length = Field(description="axial width of the whole bearing")
-    diameter: Length
+    diameter: Length = Field(description="of the journal")
     given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
     clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
-    ends: Literal["free-to-air", "oil-bath"] = "free-to-air"
-    supply: Supply = NoSupply()
+    ends: Literal["free-to-air", "oil-bath"] = Field(
+        default="free-to-air", description="no oil comes in at the ends (4.36), or they lie in oil at ambient pressure"
+    )
+    supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
     lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
     viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
     temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
@@ -163,8 +165,8 @@ class FilmGeometry(Model):
 class SingleFilmBearing(FilmGeometry):
     """A journal in a shell with one film between them."""
 
-    kind: Literal["single-film"]
-    name: Identifier = ""
+    kind: Literal["single-film"] = Field(description="one film between journal and shell")
+    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
 
 
@@ -177,7 +179,7 @@ class RingFilm(FilmGeometry):
 class Ring(Model):
     """The floating ring itself."""
 
-    mass: Mass
+    mass: Mass = Field(description="of one ring")
     inertia: RingInertia = Field(description="about the axis of rotation")
     spin: Literal["free", "blocked"] = Field(
         default="free", description="whether the films turn the ring; a blocked one floats without turning"
@@ -187,12 +189,12 @@ class Ring(Model):
 class FloatingRingBearing(Model):
     """A ring that floats between an inner film around the journal and an outer film in the shell."""
 
-    kind: Literal["floating-ring"]
-    name: Identifier = ""
+    kind: Literal["floating-ring"] = Field(description="a ring between two films")
+    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
-    ring: Ring
-    inner: RingFilm
-    outer: RingFilm
+    ring: Ring = Field(description="mass and inertia of the ring")
+    inner: RingFilm = Field(description="film between journal and ring")
+    outer: RingFilm = Field(description="film between ring and shell; its diameter is the outer one of the ring")
     centrifugal_pressure: bool = Field(
         default=True, description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)"
     )

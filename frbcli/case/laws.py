@@ -65,7 +65,8 @@ def _table_field(law: type[Law]) -> FieldInfo:
     its: Any = law
     model = _table(its)
     alias = None if attribute(law) == law.name else law.name
-    return FieldInfo.from_annotated_attribute(model, Field(default=model(), alias=alias))
+    told = f"keys of the model {law.label}"
+    return FieldInfo.from_annotated_attribute(model, Field(default=model(), alias=alias, description=told))
 
 
 def declared(keys: Iterable[Key]) -> dict[str, Any]:

@@ -35,7 +35,7 @@ GRAVITY = 9.81
 class RigidRotor(Model):
     """A rigid rotor that does not tilt, carried by two equal bearings."""
 
-    kind: Literal["rigid"]
+    kind: Literal["rigid"] = Field(description="one mass, no tilting (2.3)")
     mass: Mass = Field(description="mass of the whole rotor")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
     external_damping: Damping = Field(default=0.0, description="damping of the rotor against the ground")
@@ -45,7 +45,7 @@ class RigidRotor(Model):
 class JeffcottRotor(Model):
     """A disk on a massless elastic shaft with a journal at each end, carried by two equal bearings."""
 
-    kind: Literal["jeffcott"]
+    kind: Literal["jeffcott"] = Field(description="a disk on an elastic shaft (2.4)")
     mass: Mass = Field(description="mass of the disk")
     journal_mass: JournalMass = Field(description="mass of both journals together")
     shaft_stiffness: Stiffness = Field(description="stiffness between disk and journals")
@@ -58,7 +58,7 @@ class JeffcottRotor(Model):
 class TurbochargerRotor(Model):
     """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
 
-    kind: Literal["turbocharger"]
+    kind: Literal["turbocharger"] = Field(description="a shaft of [[shaft]] sections with [[disk]] entries")
     file: Label = Field(
         default="", description="rotor file of the Python package ROSS, in place of [[shaft]]; from the case's folder"
     )
@@ -77,20 +77,20 @@ Rotor = Annotated[RigidRotor | JeffcottRotor | TurbochargerRotor, Field(discrimi
 class ShaftSection(Model):
     """One cylindrical section of a turbocharger's shaft; the sections follow each other along z."""
 
-    length: Length
-    diameter: Length
+    length: Length = Field(description="along the axis")
+    diameter: Length = Field(description="outer diameter")
     inner_diameter: InnerDiameter = Field(default=0.0, description="of a hollow shaft")
     density: Density = Field(default=7850.0, description="of the material")
-    youngs_modulus: Modulus = 210e9
-    poisson_ratio: Ratio = 0.3
+    youngs_modulus: Modulus = Field(default=210e9, description="of the material; steel")
+    poisson_ratio: Ratio = Field(default=0.3, description="of the material, for its shear")
 
 
 class Disk(Model):
     """A wheel, a nut or a thrust disk on a turbocharger's shaft."""
 
-    name: Identifier = ""
+    name: Identifier = Field(default="", description="of the disk in results; numbered if not given")
     position: Position = Field(description="along the shaft, from the start of its first section")
-    mass: Mass
+    mass: Mass = Field(description="of the disk")
     polar_inertia: Inertia = Field(default=0.0, description="about the axis of rotation")
     diametral_inertia: Inertia = Field(default=0.0, description="about a diameter")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")

@@ -63,8 +63,8 @@ Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-
 class Vogel(Model):
     """Vogel's law (3.12), viscosity(T) = eta_0 exp(A / (T + C)), T in kelvin."""
 
-    eta_0: Viscosity
-    A: TemperatureDifference
+    eta_0: Viscosity = Field(description="of (3.12)")
+    A: TemperatureDifference = Field(description="of (3.12)")
     C: TemperatureDifference = Field(description="about -180 K; for a fit in Celsius, its C less 273.15 K")
 
     def at(self, temperature: float) -> float:
@@ -79,10 +79,10 @@ class Oil(Model):
     """The lubricant: a viscosity, or Vogel's coefficients and a temperature."""
 
     given_viscosity: Viscosity | None = Field(default=None, alias="viscosity", description="dynamic viscosity, warm")
-    vogel: Vogel | None = None
+    vogel: Vogel | None = Field(default=None, description="viscosity over temperature, in place of `viscosity`")
     temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law")
-    density: Density = 850.0
-    ambient_pressure: Pressure = ATMOSPHERE
+    density: Density = Field(default=850.0, description="of the full oil")
+    ambient_pressure: Pressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
     cavitation_pressure: Pressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
 
     @model_validator(mode="before")
@@ -106,7 +106,7 @@ class FilmModel(Model):
     theory: Theory = Field(
         default="auto", description="of the Reynolds equation; or the name of a bearing model added from Python"
     )
-    cavitation: Cavitation = "half-sommerfeld"
+    cavitation: Cavitation = Field(default="half-sommerfeld", description="model of cavitation, for all films")
     cavitation_factor: Literal["global", "local", "none"] = Field(
         default="global",
         description="torque of missing oil: reduced by the mean oil fraction (4.46), the local one, or not",
@@ -143,9 +143,9 @@ adopt(FilmModel)
 class SpeedProfile(Model):
     """Rotor speed [Hz]: linear from `start` to `end` in `duration`; a run-down holds it and goes back."""
 
-    start: FirstSpeed = Field(alias="from")
-    end: Speed = Field(alias="to")
-    duration: Duration
+    start: FirstSpeed = Field(alias="from", description="at the start of a run; negative: it turns the other way round")
+    end: Speed = Field(alias="to", description="at the end of the run-up")
+    duration: Duration = Field(description="of the run-up")
     hold: Hold = Field(default=DEFAULT_HOLD, description="at the end speed, before a run-down")
     down_duration: Duration = Field(default=math.nan, description="of a run-down; the duration if not given")
 
@@ -158,42 +158,54 @@ class SpeedProfile(Model):
 class Motion(Model):
     """A kinematic test of a bearing: the motion of the journal is given."""
 
-    eccentricity: Eccentricity | None = None
+    eccentricity: Eccentricity | None = Field(default=None, description="displacement over the clearance")
     angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
     load: Force | None = Field(default=None, description="in place of the displacement: a resting position")
     speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is at rest")
     eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: rate of the eccentricity")
     whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: whirl speed of the displacement")
     frequency: Speed | None = Field(default=None, description="of squeeze or whirl")
-    periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = 3.0
+    periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = Field(
+        default=3.0, description="of squeeze or whirl, that are computed"
+    )
 
 
 class Start(Model):
     """Position of the journal at the start of a run."""
 
-    position: Literal["centre", "resting"] = "centre"
+    position: Literal["centre", "resting"] = Field(
+        default="centre", description="in the middle of the bearings, or where the rotor rests at the first speed"
+    )
     displacement: tuple[Displacement, Displacement] | None = Field(default=None, description="x, y over clearance")
 
 
 class Contact(Model):
     """Contact of journal and shell."""
 
-    policy: Literal["stop", "elastic"] = "stop"
-    eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = CONTACT_BEGINS
+    policy: Literal["stop", "elastic"] = Field(
+        default="stop", description="a run ends there, or an elastic shell pushes back"
+    )
+    eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = Field(
+        default=CONTACT_BEGINS, description="at which the surfaces touch"
+    )
     stiffness: Stiffness | None = Field(default=None, description="of the surfaces, for the elastic policy")
 
 
 class Accuracy(Model):
     """Accuracy of the result: one target, or mesh and tolerance."""
 
-    target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = 1e-3
+    target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = Field(
+        default=1e-3, description="error of the eccentricities that is aimed at"
+    )
     mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
         default=None, description="elements along the axis and around the circumference"
     )
     tolerance: Annotated[float, Quantity(NUMBER, "1e-6", above=0, most=0.1)] | None = Field(
         default=None, description="of the time integration, relative to the clearance"
     )
-    steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = STEPS_PER_REVOLUTION
+    steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = Field(
+        default=STEPS_PER_REVOLUTION, description="at least; films on cells take fewer if not given"
+    )
     macro_step: Annotated[float, Quantity("s", "1e-6 s", above=0)] = Field(
         default=MACRO_STEP, description="longest one of a co-simulation"
     )
@@ -202,7 +214,9 @@ class Accuracy(Model):
 class Output(Model):
     """Output of a run."""
 
-    step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = OUTPUT_STEP
+    step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = Field(
+        default=OUTPUT_STEP, description="between the samples of a run file"
+    )
 
 
 _UNCOMPUTED = {"name": "", "title": "", "confirm": ()}
@@ -212,7 +226,7 @@ class Case(Model):
     """One machine and one run, as the user describes them."""
 
     name: Label = Field(default="", description="short name for results; the file's name if not given")
-    title: Label = ""
+    title: Label = Field(default="", description="of tables and pictures")
     confirm: tuple[Confirmation, ...] = Field(
         default=(),
         description="values outside the usual range that are intended; refused if not confirmed: a surface speed of a "
@@ -222,19 +236,21 @@ class Case(Model):
     given_rotor: Rotor | None = Field(
         default=None, alias="rotor", description="must be given, but for a case with [motion]"
     )
-    shaft: tuple[ShaftSection, ...] = ()
-    disks: tuple[Disk, ...] = Field(default=(), alias="disk")
-    bearings: Bearings = Field(alias="bearing")
-    oil: Oil
-    film: FilmModel = FilmModel()
+    shaft: tuple[ShaftSection, ...] = Field(default=(), description="sections of the shaft of a turbocharger, in order")
+    disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="disks on the shaft of a turbocharger")
+    bearings: Bearings = Field(
+        alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
+    )
+    oil: Oil = Field(description="the lubricant")
+    film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
     given_speed: SpeedProfile | None = Field(
         default=None, alias="speed", description="must be given, but for a case with [motion]"
     )
-    motion: Motion | None = None
-    start: Start = Start()
-    contact: Contact = Contact()
-    accuracy: Accuracy = Accuracy()
-    output: Output = Output()
+    motion: Motion | None = Field(default=None, description="motion of the journal in a kinematic test")
+    start: Start = Field(default=Start(), description="where the rotor begins a run")
+    contact: Contact = Field(default=Contact(), description="what happens where journal and shell touch")
+    accuracy: Accuracy = Field(default=Accuracy(), description="target, or mesh and tolerance")
+    output: Output = Field(default=Output(), description="what a run file holds")
     _read: tuple[str, dict[str, Any]] | None = PrivateAttr(None)  # a text, and the values that were read from it
 
     @property

@@ -10,9 +10,9 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.live import live_lines, progress_line
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, SECONDS, here
-from frbcli.cli.transient import live_lines, progress_line
 from frbcli.errors import INTERRUPTED
 
 if TYPE_CHECKING:

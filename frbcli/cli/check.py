@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
@@ -10,36 +11,46 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from frbcli.case.listing import Value as ListedValue
     from frbcli.case.schema import Case
     from frbcli.scene.cost import ExpectedCost
     from frbcli.scene.expected_error import ExpectedError
+    from frbcli.scene.findings import Findings
     from frbcli.scene.operating import FilmOperation
     from frbcli.scene.plan import Decision
 
+COLUMNS = 80
 TURN = 2.0 * math.pi
 TURNING_TOLD = 0.02  # of the gap
 
 
 @click.command()
 @case_argument
+@click.option("--all", "everything", is_flag=True, help="All values of the case in SI, too.")
 @output_options
-def command(case: Case, terminal: Terminal) -> None:
-    """Validate CASE; show its SI values and the plan: what will be modelled, what is left out, and why."""
+def command(case: Case, everything: bool, terminal: Terminal) -> None:
+    """Validate CASE; show what it amounts to and the plan: what will be modelled, what is left out, and why."""
     from frbcli.bearing_tests.plan import kinematic_plan
     from frbcli.case.listing import values
     from frbcli.scene.cost import expected_cost
     from frbcli.scene.expected_error import expected_error
+    from frbcli.scene.findings import findings
     from frbcli.scene.limits import require_affordable
     from frbcli.scene.operating import operating_points
     from frbcli.scene.plan import make_plan
-    from frbcli.scene.system import run_up_profile
+    from frbcli.scene.profiles import run_up_profile
 
     listed = values(case)
-    rows = [(value.key, _in_si(value.value, value.unit), value.shown if value.unit else "") for value in listed]
-    terminal.table(f"{case.name}: {case.title}".rstrip(": "), ("key", "SI", "reads"), rows)
+    found = findings(case)
+    terminal.result(f"{case.name}: {case.title}".rstrip(": "))
+    _show_findings(found, terminal)
+    if everything:
+        terminal.table("values", ("key", "SI", "reads"), _values(listed))
     bare = [value for value in listed if value.bare]
     for value in bare:
-        terminal.result(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
+        _say(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.", terminal)
     films = operating_points(case)
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
@@ -73,6 +84,20 @@ def command(case: Case, terminal: Terminal) -> None:
             "title": case.title,
             "status": "ok",
             "values": [{"key": value.key, "value": value.value, "unit": value.unit} for value in listed],
+            "findings": {
+                "mass_kg": found.mass,
+                "natural_frequencies_Hz": found.frequencies_Hz,
+                "supported": found.supported,
+                "films": [
+                    {
+                        "film": film.film,
+                        "load_N": film.load,
+                        "mean_pressure_Pa": film.mean_pressure,
+                        "sommerfeld_number": film.sommerfeld_number,
+                    }
+                    for film in found.films
+                ],
+            },
             "bare_numbers": [{"key": value.key, "value": value.value, "unit": value.unit} for value in bare],
             "films": [
                 {
@@ -110,6 +135,36 @@ def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, .
     )
 
 
+def _show_findings(found: Findings, terminal: Terminal) -> None:
+    if found.mass is not None:
+        frequencies = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
+        natural = f"; natural frequencies {found.supported}: {frequencies} Hz" if frequencies else ""
+        _say(f"Rotor of {found.mass:.4g} kg{natural}.", terminal)
+    rows = [
+        (
+            film.film,
+            f"{film.load:.4g}",
+            f"{1e-5 * film.mean_pressure:.3g}",
+            "-" if math.isnan(film.sommerfeld_number) else f"{film.sommerfeld_number:.3g}",
+            film.supply,
+        )
+        for film in found.films
+    ]
+    if rows:
+        terminal.table("static loads, at the top speed", ("film", "N", "N/(D B), bar", "So", "supply"), rows)
+
+
+def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:
+    """The values under the tables that hold them, whose names would not fit beside them."""
+    table = ""
+    for value in listed:
+        holder, _, key = value.key.rpartition(".")
+        if holder != table:
+            table = holder
+            yield (f"[{holder}]" if holder else "", "", "")
+        yield (key, _in_si(value.value, value.unit), value.shown if value.unit else "")
+
+
 def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
     columns = ("film", "gap, um", "by heat, um", "by turning", "mPa*s", "Hz", "Re (3.3)")
     rows = [
@@ -125,17 +180,25 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
         for film in films
     ]
     terminal.table("films at the top speed", columns, rows)
-    for film in films:
-        if not film.laminar:
-            terminal.result(
-                f"Warning: {film.name}: the Reynolds number {film.reynolds:.0f} is not below 2300: the flow is not\n"
-                "laminar, as the Reynolds equation assumes."
-            )
-        if abs(film.turning) > TURNING_TOLD * film.clearance:
-            terminal.result(
-                f"Note: {film.name}: centrifugal growth of a steel shaft and a brass ring changes the gap by "
-                f"{film.turning / film.clearance:+.0%}\nand is not modelled. Add it to the clearance if needed."
-            )
+    turbulent = ", ".join(f"{film.reynolds:.0f} in {film.name}" for film in films if not film.laminar)
+    if turbulent:
+        _say(
+            f"Warning: Reynolds number {turbulent}, not below 2300: the flow is not laminar, as the Reynolds equation "
+            "assumes.",
+            terminal,
+        )
+    grown = [film for film in films if abs(film.turning) > TURNING_TOLD * film.clearance]
+    if grown:
+        changes = ", ".join(f"of {film.name} by {film.turning / film.clearance:+.0%}" for film in grown)
+        _say(
+            f"Note: centrifugal growth of a steel shaft and a brass ring changes the gap {changes} and is not "
+            "modelled. Add it to the clearance if needed.",
+            terminal,
+        )
+
+
+def _say(text: str, terminal: Terminal) -> None:
+    terminal.result(fill(text, COLUMNS, break_long_words=False, break_on_hyphens=False))
 
 
 def _in_si(value: float | int | str, unit: str) -> str:

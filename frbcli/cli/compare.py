@@ -9,9 +9,10 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.live import live_lines, progress_line
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
-from frbcli.cli.transient import exit_code, live_lines, progress_line
+from frbcli.cli.transient import exit_code
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any
 
 from frbcli.case.hard import HardCase, hard_cases
 from frbcli.cli.common import Terminal, short_number
-from frbcli.cli.transient import live_lines
+from frbcli.cli.live import live_lines
 from frbcli.errors import INTERRUPTED
 from frbcli.studies.hard.cases import HardResult, run_hard_cases
 

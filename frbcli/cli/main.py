@@ -11,6 +11,7 @@ import errno
 import importlib
 import io
 from collections.abc import Sequence
+from difflib import get_close_matches
 
 import click
 
@@ -30,7 +31,9 @@ COMMANDS = {
     "waterfall": ("frbcli.cli.waterfall", "Draw the spectra of a run over time or rotor speed."),
     "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits or displacements of runs."),
     "compare": ("frbcli.cli.compare", "Run one case with several models and compare them."),
+    "bearing": ("frbcli.cli.bearing", "A bearing's sheet over speed or eccentricity: position, K, C, loss, flow."),
     "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
+    "response": ("frbcli.cli.response", "Linear unbalance response: amplitudes, phases, bearing forces over speed."),
     "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
     "sweep": ("frbcli.cli.sweep", "Run one case with many settings, on all cores or a cluster."),
     "export": ("frbcli.cli.export", "Write the signals of a run as CSV, Parquet or MAT."),
@@ -58,6 +61,17 @@ class LazyGroup(click.Group):
         command.name = name
         command.help = command.help or summary
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """As click does; a name that is no command is told with the nearest ones."""
+        name = args[0]
+        if name not in COMMANDS and not name.startswith("-"):
+            near = get_close_matches(name, COMMANDS, n=2)
+            meant = f" Did you mean {' or '.join(near)}?" if near else ""
+            ctx.fail(f"No such command {name!r}.{meant}")
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):

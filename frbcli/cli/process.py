@@ -53,10 +53,10 @@ def main() -> NoReturn:
     """The console script."""
     out, err = take_streams()
     interruption = Interruption()
-    interruption.listen()
     # Pictures go into files: no window system is asked for, and one that matplotlib does not know stops nothing.
     os.environ["MPLBACKEND"] = "agg"
     try:
+        interruption.listen()
         from frbcli.cli.main import run
 
         code = run(sys.argv[1:])

@@ -17,11 +17,23 @@ if TYPE_CHECKING:
 @click.command()
 @case_argument
 @run_options
+@click.option(
+    "--onset-spread",
+    is_flag=True,
+    help="Run again with other ramps, steps and cells: between which speeds a whirl begins.",
+)
 @output_options
 def command(
-    case: Case, output: Path | None, resume: bool, force: bool, picture: bool, verify: bool, terminal: Terminal
+    case: Case,
+    output: Path | None,
+    resume: bool,
+    force: bool,
+    picture: bool,
+    verify: bool,
+    onset_spread: bool,
+    terminal: Terminal,
 ) -> int:
     """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
     from frbcli.runs.run import runup
 
-    return transient("runup", runup, case, output, resume, force, picture, verify, terminal)
+    return transient("runup", runup, case, output, resume, force, picture, verify, terminal, onset_spread)

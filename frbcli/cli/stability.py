@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from contextlib import suppress
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -16,30 +15,12 @@ from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT
+from frbcli.cli.speeds import RotorSpeed
 from frbcli.cli.stability_table import tell_points
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
-
-
-class RotorSpeed(click.ParamType[float]):
-    """A rotor speed with a unit, "25 Hz" or "1500 rpm"; a bare number is in Hz. Greater than zero."""
-
-    name = "speed"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        from frbcli.units import SPEED, quantity
-
-        with suppress(ValueError):  # then it has a unit
-            value = float(str(value))
-        try:
-            speed = quantity(value, SPEED, "25 Hz")
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
-        if speed <= 0.0:
-            self.fail(f'{value!r} is not greater than 0. Write e.g. "25 Hz".', param, ctx)
-        return speed
 
 
 @click.command()

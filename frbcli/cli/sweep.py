@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.live import live_lines
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
-from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES, live_lines
+from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:

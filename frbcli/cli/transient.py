@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -13,6 +12,8 @@ import click
 
 from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.events import EVENT_COLUMNS, event_row
+from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, live_lines, progress_line
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
 
@@ -28,11 +29,9 @@ Transient = Callable[..., "Run"]
 
 EXIT_CODES = {"finished": 0, "input-error": 2, "interrupted": 130}
 ENDED_EARLY = 3  # for any other reason, which is named
-REFRESH_Hz = 8
-COLUMNS = 80  # of a terminal
 SUMMARY = "-summary.png"
-LONGEST_LEFT_s = 1e9  # longest time that is shown
 TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
+TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
 SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
 
@@ -60,6 +59,7 @@ def transient(
     picture: bool,
     verify: bool,
     terminal: Terminal,
+    spread: bool = False,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.runs.run import run_cost
@@ -75,6 +75,9 @@ def transient(
     _report(case, run, terminal)
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
+    from frbcli.cli.onset_spread import spread_shown
+
+    onset = spread_shown(case, run, terminal) if spread and run.status != "interrupted" else None
     terminal.emit(
         {
             "command": command,
@@ -84,13 +87,14 @@ def transient(
             "events": run.events,
             "cost": run.cost,
             "error": run.error if verified is None else {**run.error, "verified": verified},
+            **({} if onset is None else {"onset_spread": onset}),
         }
     )
     if picture and len(run) > 1:
         from frbcli.plot.summary import summary_figure
 
         draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))
-    interrupted = verified is not None and verified["status"] == "interrupted"
+    interrupted = any(again is not None and again["status"] == "interrupted" for again in (verified, onset))
     return exit_code("interrupted" if interrupted else run.status)
 
 
@@ -112,15 +116,19 @@ def cost_line(cost: ExpectedCost) -> str:
 
 
 def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
-    """Shows the progress on a terminal, and warns once if a run takes much longer than its plan expected."""
+    """Shows the progress on a terminal, elsewhere as a line every now and then, and warns once if a run takes much
+    longer than its plan expected."""
     from frbcli.scene.limits import clock
 
-    said = False
+    said, told_s = False, 0.0
 
     def observe(progress: Progress) -> None:
-        nonlocal said
+        nonlocal said, told_s
         if show is not None:
             show(progress_line(progress))
+        elif progress.cpu_s > told_s + TOLD_EVERY_s:
+            told_s = progress.cpu_s
+            terminal.remark(progress_line(progress))
         if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
             said = True
             left = (
@@ -169,40 +177,6 @@ def exit_code(status: str) -> int:
     return EXIT_CODES.get(status, ENDED_EARLY)
 
 
-@contextmanager
-def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
-    """Redraws some lines on the terminal; None without a terminal."""
-    if not terminal.live:
-        yield None
-        return
-    from rich.live import Live
-    from rich.text import Text
-
-    with Live(console=terminal.live_console(), refresh_per_second=REFRESH_Hz, transient=True) as live:
-        yield lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis"))
-
-
-def progress_line(progress: Progress) -> str:
-    """One line of at most 80 columns: time, speed, eccentricity, steps per revolution, pace, time left."""
-    per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
-    whose, pace = ("its error: ", "") if progress.for_error else ("", f"{progress.simulated_ms_per_hour:.2g} ms/h  ")
-    line = (
-        f"{whose}{progress.t_s:.3f}/{progress.end_s:.4g} s  {progress.speed_Hz:5.1f} Hz  "
-        f"eps {progress.eccentricity:5.3f}  {per_turn} steps/rev  {pace}{_clock(progress.left_s)} left"
-    )
-    return line if len(line) <= COLUMNS else line[: COLUMNS - 1] + "…"
-
-
-def _clock(seconds: float) -> str:
-    """Minutes and seconds, hours or days: what fits in six columns."""
-    if not 0.0 <= seconds < LONGEST_LEFT_s:
-        return "?"
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes < 100:
-        return f"{minutes}:{rest:02d}"
-    return f"{minutes // 60} h" if minutes < 6000 else f"{minutes // 1440} d"
-
-
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
     from frbcli.runs.advice import run_advice, run_end
@@ -211,9 +185,7 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     for sentence in run_advice(case, run_end(run)):
         terminal.remark(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
     if run.events:
-        terminal.table(
-            "events", ("event", "time in s", "speed in Hz", "frequency in Hz", "ratio"), map(_event_row, run.events)
-        )
+        terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
     terminal.table("cost and error", ("", "", ""), _cost_rows(run))
 
 
@@ -228,20 +200,6 @@ def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
         made = 1e9 * run.cost["oil_created_m3"]
         defect = f", {made:.3g} mm^3 created" if made >= 0.0 else f", {-made:.3g} mm^3 destroyed"
     return [("oil", f"{came:.3g} mm^3 in", f"{left:.3g} mm^3 out{defect}")]
-
-
-def _event_row(event: dict[str, Any]) -> tuple[str, ...]:
-    def number(value: float | None, form: str) -> str:
-        return "-" if value is None else format(value, form)
-
-    name = event["kind"] if event["film"] is None else f"{event['kind']} {event['film']}"
-    return (
-        name,
-        number(event["t_s"], ".3f"),
-        number(event["speed_Hz"], ".1f"),
-        number(event["frequency_Hz"], ".1f"),
-        number(event["frequency_ratio"], ".3f"),
-    )
 
 
 def _cost_rows(run: Run) -> list[tuple[str, str, str]]:

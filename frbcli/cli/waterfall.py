@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.events import EVENT_COLUMNS, event_row
+from frbcli.cli.measured import measured_options, run_of
 from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside
 
 if TYPE_CHECKING:
+    from frbcli.analysis.measured import Measurement
     from frbcli.analysis.order_tracking import OrderTrack
     from frbcli.analysis.spectrum import Direction
     from frbcli.plot.waterfall import Over
@@ -34,7 +37,7 @@ class Orders(click.ParamType[tuple[float, ...]]):
 
 
 @click.command()
-@click.argument("run_file", metavar="RUN.h5", type=RUN)
+@click.argument("run_file", metavar="RUN", type=RUN)
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-waterfall.png]")
 @click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME, disk_NAME.")
 @click.option(
@@ -55,6 +58,7 @@ class Orders(click.ParamType[tuple[float, ...]]):
     help="One coordinate, or the motion that turns with the rotor.",
 )
 @click.option("--log", is_flag=True, help="Logarithmic frequency; with --order amplitude.")
+@measured_options
 @output_options
 def command(
     run_file: Path,
@@ -66,18 +70,21 @@ def command(
     window: float | None,
     direction: Direction,
     log: bool,
+    measurement: Measurement | None,
     terminal: Terminal,
 ) -> None:
-    """Draw the spectra of RUN.h5 in dB relative to the clearance, over time or rotor speed; or, with --order, its
-    amplitudes by order."""
+    """Draw the spectra of RUN in dB relative to the clearance, over time or rotor speed; or, with --order, its
+    amplitudes by order.
+
+    RUN is a run file, or a measurement as CSV, WAV or MAT, whose columns --x, --speed and so on name.
+    """
     from frbcli.plot.style import check_picture
-    from frbcli.results.store import read_run
 
     if orders is not None and (cascade or window is not None):
         raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_picture(target)
-    run = read_run(run_file)
+    run = run_of(run_file, measurement)
     told: dict[str, Any]
     if orders is None:
         from frbcli.plot.waterfall import reading, run_spectra, waterfall_figure
@@ -103,6 +110,10 @@ def command(
         for row in told["orders"]:
             most = f"{MICRO * row['amplitude_max_m']:.3g} um at {row['speed_Hz']:.1f} Hz"
             terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
+    if measurement is not None:
+        told["events"] = run.events
+        if run.events:
+            terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
     terminal.emit({**document, "direction": direction, **told})
 

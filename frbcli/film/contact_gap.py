@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from frbcli.compiled import compiled
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
+from frbcli.film.gap import LARGEST_ECCENTRICITY
 
 KEPT = 0.2  # of the gap at which the surfaces touch: what no load presses out
 LATEST = 1.0 - (1.0 - LARGEST_ECCENTRICITY) / KEPT  # beginning from which films can be computed in the gap that is kept

@@ -13,6 +13,7 @@ from frbcli.film.grid import Array
 Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"
 ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
 SAMPLES = 3601
+LARGEST_ECCENTRICITY = 0.9999  # end of the tables
 
 
 @dataclass(frozen=True)

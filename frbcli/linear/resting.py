@@ -7,14 +7,12 @@ rings turn with the speeds at which the torques on them balance (ring_speeds); t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.errors import NotConverged
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
-from frbcli.rotor.linear import LinearRotor
+from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.rotor.held import HeldRotor, held_rotor
 from frbcli.scene.system import System
 
 Array = NDArray[np.float64]
@@ -26,35 +24,6 @@ SMALLEST_SHARE = 1e-8  # of a Newton step that is tried
 OUTER_START = 0.9  # eccentricity of the last start that is tried
 RING_STEP = 1e-10  # of the rotor speed: a change of the rings' speeds below this ends their iteration
 RING_ITERATIONS = 40
-
-
-@dataclass(frozen=True)
-class HeldRotor:
-    """A rotor with its journals held at D (2 films,) in m.
-
-    load: (2 films,) force in N that it puts on the films at D = 0, and stiffness (2 films, 2 films) N/m: it puts on
-    load - stiffness @ D; shape: (n,) m its deflection at D = 0, and following (n, 2 films): its deflection is
-    shape + following @ D.
-    """
-
-    load: Array
-    stiffness: Array
-    shape: Array
-    following: Array
-
-
-def held_rotor(rotor: LinearRotor) -> HeldRotor:
-    """The rotor under its static load as its journals see it; what neither spring nor film holds, the angle of a
-    ring, stays at zero."""
-    n, p = rotor.size, rotor.journals.reshape(-1, rotor.size)
-    count = len(p)
-    loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
-    held = np.block([[rotor.stiffness + np.diag(loose.astype(float)), p.T], [p, np.zeros((count, count))]])
-    given = np.zeros((n + count, 1 + count))
-    given[:n, 0] = rotor.static_load
-    given[n:, 1:] = np.eye(count)
-    solution = np.linalg.solve(held, given)
-    return HeldRotor(solution[n:, 0], -solution[n:, 1:], solution[:n, 0], solution[:n, 1:])
 
 
 def resting_position(system: System, omega: float, start: Array | None = None) -> Array:

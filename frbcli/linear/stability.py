@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,8 +20,9 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.rectangles.bearing import FilmForce
-from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.channels import coupled
@@ -160,25 +161,41 @@ def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability
     """
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
-    if faults := _without_coefficients(case):
-        raise InputError(case.name or "case", tuple(faults))
-    system = make_system(case, make_plan(case))
     speeds = sorted(set(default_speeds(case)) | set(asked))
-    found: dict[float, StabilityPoint] = {}
-    start: Array | None = None
-    for speed in reversed(speeds):  # from near the centre, where a fast journal rests, outwards
-        found[speed], start = _point(case, system, speed, start)
-    sweep = tuple(found[speed] for speed in speeds)
+    system, sweep = stability_points(case, speeds)
+    found = {point.speed_Hz: point for point in sweep}
     threshold, note = _threshold(case, system, sweep)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
 
 
-def default_speeds(case: Case) -> tuple[float, ...]:
+def stability_points(
+    case: Case, speeds_Hz: Sequence[float], observe: Callable[[int, int], None] | None = None
+) -> tuple[System, tuple[StabilityPoint, ...]]:
+    """The machine, and its points at speeds_Hz, ascending.
+
+    observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, a speed
+    is not positive, or a film has no eight coefficients.
+    """
+    _check_speeds(case, speeds_Hz)
+    if faults := _without_coefficients(case):
+        raise InputError(case.name or "case", tuple(faults))
+    system = make_system(case, make_plan(case))
+    points: list[StabilityPoint] = []
+    start: Array | None = None
+    for speed in sorted(speeds_Hz, reverse=True):  # from near the centre, where a fast journal rests, outwards
+        point, start = _point(case, system, speed, start)
+        points.append(point)
+        if observe is not None:
+            observe(len(points), len(speeds_Hz))
+    return system, tuple(reversed(points))
+
+
+def default_speeds(case: Case, count: int = SPEEDS) -> tuple[float, ...]:
     """Speeds in Hz, greater than zero, that sweep the range of the case."""
     low, high = sorted((case.speed.start, case.speed.end))
     if low > 0.0:
-        return tuple(np.unique(np.linspace(low, high, SPEEDS)).tolist())
-    return tuple(np.linspace(0.0, high, SPEEDS + 1)[1:].tolist()) if high > 0.0 else ()
+        return tuple(np.unique(np.linspace(low, high, count)).tolist())
+    return tuple(np.linspace(0.0, high, count + 1)[1:].tolist()) if high > 0.0 else ()
 
 
 def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Eigenvalues:

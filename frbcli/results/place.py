@@ -6,6 +6,8 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
+from frbcli.errors import Fault, InputError
+
 
 def wrong_place(path: Path) -> tuple[str, str] | None:
     """Problem and remedy of a file that is to be written; None if there is no problem.
@@ -32,6 +34,13 @@ def remove_part(path: Path) -> None:
     with suppress(OSError):
         if path.is_file():
             path.unlink()
+
+
+def require_place(*files: Path | None) -> None:
+    """Raises InputError for the first file that cannot be written, before anything is computed; None is no file."""
+    for file in files:
+        if file is not None and (wrong := wrong_place(file)):
+            raise InputError(f"file {file}", (Fault("file", "", None, *wrong),))
 
 
 def _exists(path: Path) -> bool:

@@ -11,10 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 Array = NDArray[np.float64]
 
@@ -155,6 +158,8 @@ def _nodes(places: Array, length: float, elements: int) -> Array:
 
 def _assembled(local: Array) -> csc_array:
     """The matrix (2 k, 2 k) of a chain of k - 1 elements (k - 1, 4, 4)."""
+    from scipy.sparse import coo_array  # a plan, which needs the numbers above alone, need not wait for its import
+
     places = 2 * np.arange(len(local))[:, None] + np.arange(4)
     rows, columns = np.repeat(places, 4, axis=1).ravel(), np.tile(places, 4).ravel()
     return coo_array((local.ravel(), (rows, columns)), shape=(2 * len(local) + 2,) * 2).tocsc()

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, eigh
 
 from frbcli.errors import NotConverged
 from frbcli.rotor.beam import Plane
@@ -100,12 +99,14 @@ def free_modes(plane: Plane) -> FreeModes:
 
     Raises NotConverged if rounding leaves none: where masses or stiffnesses differ by too many powers of ten.
     """
+    from scipy.linalg import eigh
+
     try:
         if len(plane.positions) * 2 <= DENSE:
             squares, vectors = eigh(plane.stiffness.toarray(), plane.mass.toarray())
         else:
             squares, vectors = _slowest(plane)
-    except (LinAlgError, RuntimeError, ValueError) as error:
+    except (np.linalg.LinAlgError, RuntimeError, ValueError) as error:
         raise NotConverged(f"The modes of the free rotor cannot be computed: {error}.") from None
     frequencies = np.sqrt(np.maximum(squares, 0.0))
     # A solver finds the motions of the rigid body mixed and to round-off only; they are known.

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import diags_array
 
 from frbcli.rotor.beam import Plane, Section, beam
 from frbcli.rotor.linear import LinearRotor
@@ -41,6 +40,8 @@ class Journal:
 
 def wheels_on_shaft(sections: Sequence[Section], wheels: Sequence[Wheel], journals: Sequence[Journal]) -> Plane:
     """The free rotor in one plane, with nodes at all wheels and journals."""
+    from scipy.sparse import diags_array
+
     places = [wheel.position for wheel in wheels] + [journal.position for journal in journals]
     shaft = beam(sections, places)
     mass, polar = np.zeros((2, 2 * len(shaft.positions)))  # diagonals

@@ -15,7 +15,7 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
-from frbcli.rotor.excitation import SpeedProfile
+from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.cosimulation import in_turn
 from frbcli.runs.oil import displacement, grid_angle
 from frbcli.runs.start import FIRST_STEP, accelerations, settled_forces

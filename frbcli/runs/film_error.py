@@ -14,16 +14,16 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import steady_solution
+from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.grid import Mesh
 from frbcli.film.published.film import PublishedFilm, published_force
-from frbcli.film.rectangles.bearing import evaluate
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
+from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.runs.control import control_of
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.plan import Plan
-from frbcli.scene.published import published_film
-from frbcli.scene.system import System, planned_film
+from frbcli.scene.system import System, planned_film, published_film
 from frbcli.solve.contact import felt_motion
 from frbcli.solve.state import Array
 

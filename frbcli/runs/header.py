@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
-from frbcli.scene.bearing_models import model_record
+from frbcli.scene.bearing_model_films import model_record
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
-from frbcli.rotor.excitation import SpeedProfile
+from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.control import control_of

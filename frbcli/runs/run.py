@@ -14,19 +14,19 @@ from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.container import refuse
 from frbcli.results.records import untold
 from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
-from frbcli.rotor.excitation import SpeedProfile
+from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.error_budget import quiet_until
 from frbcli.runs.fewer_cells import on_fewer_cells
 from frbcli.runs.header import header
 from frbcli.runs.interrupt import held_back
 from frbcli.runs.march import March, Progress
 from frbcli.runs.restored import WrongCheckpoint
-from frbcli.scene.bearing_models import RECORD, model_record
+from frbcli.scene.bearing_model_films import RECORD, model_record
 from frbcli.scene.cost import ExpectedCost, expected_cost
 from frbcli.scene.limits import require_affordable
 from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.profiles import run_down_profile, run_up_profile
 from frbcli.scene.segments import Segment, make_segments
-from frbcli.scene.system import run_down_profile, run_up_profile
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0

@@ -17,8 +17,9 @@ from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.moving import oil_held
 from frbcli.film.published.unknown import unknowns_of
-from frbcli.linear.resting import held_rotor, resting_position, ring_speeds
-from frbcli.rotor.excitation import SpeedProfile
+from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.rotor.held import held_rotor
+from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.system import System
 from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.element_films import BOOKS, HELD

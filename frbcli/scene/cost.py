@@ -18,9 +18,8 @@ import numpy as np
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.rectangles.chain import MODES as CHAIN_MODES
-from frbcli.film.rectangles.table import Mesh
-from frbcli.rotor.excitation import Array, SpeedProfile
+from frbcli.film.grid import CHAIN_MODES, Mesh
+from frbcli.rotor.speed_profile import Array, SpeedProfile
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE

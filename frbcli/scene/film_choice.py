@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.rectangles.table import Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.section_faults import starves
 from frbcli.scene.bearing_models import GIVEN, WHY
 from frbcli.scene.films import film_places

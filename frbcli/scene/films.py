@@ -11,14 +11,11 @@ import numpy as np
 from frbcli.case.bearing import Bores, FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import FilmOil, Law
-from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.grid import VolumeGrid, volume_grid
 from frbcli.film.gap import Section, ends_at_ambient, graded_ring
 from frbcli.film.grid import Array
-from frbcli.film.penalty_table.film import SourceFilm
-from frbcli.film.rectangles.table import Mesh
 from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film
 from frbcli.scene.section import film_section
 
@@ -117,8 +114,8 @@ def centrifugal_pressures(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[fl
     return tuple(centrifugal)
 
 
-def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int]) -> VolumeFilm:
-    """A film on volumes for a run, equal cells (around, along)."""
+def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: float | None = None) -> VolumeFilm:
+    """A film on volumes for a run, equal cells (around, along). top_Hz: top rotor speed, default that of the run."""
     geometry, cavitation = place.geometry, case.cavitation(place.geometry)
     section = film_section(case, geometry, place.feed_holes)
     law_class = law_named(cavitation)
@@ -128,17 +125,10 @@ def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int]) -> VolumeF
     if (law_class.closed or only_out) and geometry.ends == "free-to-air":
         section = ends_at_ambient(section)
     law = make_law(case, cavitation, section)
-    speed = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)
+    top = max(abs(case.speed.start), abs(case.speed.end)) if top_Hz is None else top_Hz
+    speed = 2.0 * math.pi * max(top, 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect
     return VolumeFilm(section, run_grid(section, cells), law, reference)
-
-
-def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
-    """A penalty film without openings, as it is tabulated for a run."""
-    section = film_section(case, geometry)
-    law = make_law(case, case.cavitation(geometry), section)
-    assert isinstance(law, Penalty)
-    return SourceFilm(section, law, mesh)
 
 
 def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:

@@ -13,7 +13,7 @@ from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.rectangles.table import Mesh
+from frbcli.film.grid import Mesh
 from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions

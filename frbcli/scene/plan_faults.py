@@ -11,7 +11,6 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import section_faults
-from frbcli.scene.bearing_models import model_faults
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.clearance_steps import clearance_faults
 from frbcli.scene.coupling import coupling_fault
@@ -24,7 +23,11 @@ from frbcli.scene.tabulated import solution_fault
 
 def plan_faults(case: Case) -> list[Fault]:
     """Every part of a case that cannot be modelled in a run."""
-    faults = model_faults(case, 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end)))
+    faults = list[Fault]()
+    if case.film.bearing_model:
+        from frbcli.scene.bearing_model_films import model_faults  # numba takes longer to import than a plan to make
+
+        faults += model_faults(case, 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end)))
 
     def missing(key: str, value: str, known: tuple[str, ...]) -> None:
         faults.append(_missing(key, value, known))

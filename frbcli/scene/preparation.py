@@ -11,7 +11,8 @@ import math
 
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, Mesh
+from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.grid import Mesh
 from frbcli.rotor.beam import ELEMENTS
 from frbcli.rotor.reduction import DENSE, MOST, RIGID
 from frbcli.scene.bearing_models import GIVEN

@@ -1,4 +1,4 @@
-"""The two-phase model in its published form (4.31) in run-ups: which cases can have it, its elements, its film."""
+"""The two-phase model in its published form (4.31) in run-ups: which cases can have it, its elements."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.gap import Section
-from frbcli.film.published.film import PublishedFilm
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
 
 PUBLISHED = "quadratic elements, two-phase model as published"  # the form of such a film
@@ -66,9 +64,3 @@ def published_decisions(case: Case, elements: tuple[int, int], why: str) -> tupl
         ("form", "published", reason),
         ("diffusion", kind, DIFFUSIONS[kind]),
     )
-
-
-def published_film(case: Case, section: Section, elements: tuple[int, int]) -> PublishedFilm:
-    """The film of a section with elements around and along."""
-    two_phase = case.film.two_phase
-    return PublishedFilm(section, TwoPhase(two_phase.steepness), two_phase.diffusion, *elements)

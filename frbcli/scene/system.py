@@ -8,42 +8,40 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.bearing import AxialGrooves, FilmGeometry, SingleFilmBearing
-from frbcli.case.rotor import JeffcottRotor, RigidRotor
+from frbcli.case.bearing import AxialGrooves, FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.film.cells.channels import with_channels
+from frbcli.film.cavitation.penalty import Penalty
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.channel_data import with_channels
 from frbcli.film.cells.data import REMEMBERS, SHEARED, VolumeFilms, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.steady_force import steady_force
-from frbcli.film.gap import AxialGroove
-from frbcli.film.grid import Array
+from frbcli.film.gap import AxialGroove, Section
+from frbcli.film.grid import Array, Mesh
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.published.data import ElementFilm, element_film
 from frbcli.film.published.film import PublishedFilm, published_force
-from frbcli.film.rectangles.bearing import FilmForce, RectangularBearing, evaluate, make_film
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.rectangles.table import Mesh
-from frbcli.rotor.excitation import SpeedProfile, speed_profile
-from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.rigid import rigid_rotor
-from frbcli.rotor.ring import with_rings, with_spins
-from frbcli.scene.bearing_models import GIVEN, bearing_film
+from frbcli.rotor.ring import with_spins
+from frbcli.scene.bearing_model_films import bearing_film
+from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import (
     centrifugal_pressures,
     film_places,
-    rings,
-    source_film,
+    make_law,
     turning,
     turning_rings,
     volume_film,
 )
 from frbcli.scene.plan import Plan
-from frbcli.scene.published import PUBLISHED, published_film
+from frbcli.scene.published import PUBLISHED
+from frbcli.scene.rotors import make_rotor
 from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTIONS
-from frbcli.scene.turbocharger import make_turbocharger
 
 
 @dataclass(frozen=True)
@@ -153,6 +151,20 @@ def make_system(case: Case, plan: Plan) -> System:
     return replace(system, bearings=bearings, films=films)
 
 
+def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
+    """A penalty film without openings, as it is tabulated for a run."""
+    section = film_section(case, geometry)
+    law = make_law(case, case.cavitation(geometry), section)
+    assert isinstance(law, Penalty)
+    return SourceFilm(section, law, mesh)
+
+
+def published_film(case: Case, section: Section, elements: tuple[int, int]) -> PublishedFilm:
+    """The film of a section with elements around and along."""
+    two_phase = case.film.two_phase
+    return PublishedFilm(section, TwoPhase(two_phase.steepness), two_phase.diffusion, *elements)
+
+
 def film_drag(case: Case, film: FilmGeometry) -> float:
     """eta R^3 B / C of a whole bearing in N m s, see System."""
     return case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance
@@ -161,47 +173,6 @@ def film_drag(case: Case, film: FilmGeometry) -> float:
 def planned_film(plan: Plan, bearing: RectangularBearing, cavitation: str, mesh: Mesh) -> FilmData:
     """The film that the plan has chosen for a bearing, on a mesh of its own."""
     return make_film(bearing, plan.theory, cavitation, mesh)
-
-
-def make_rotor(case: Case) -> LinearRotor:
-    """The linear system of a case's rotor, with the masses of floating rings."""
-    rotor = case.rotor
-    if isinstance(rotor, RigidRotor):
-        made = rigid_rotor(rotor.mass, rotor.unbalance, rotor.external_damping, rotor.gravity)
-    elif isinstance(rotor, JeffcottRotor):
-        made = jeffcott_rotor(
-            rotor.mass,
-            rotor.journal_mass,
-            rotor.shaft_stiffness,
-            rotor.unbalance,
-            rotor.external_damping,
-            rotor.shaft_damping,
-            rotor.gravity,
-        )
-    else:
-        return make_turbocharger(case)
-    if not rings(case):
-        return made
-    masses = [None if isinstance(item, SingleFilmBearing) else item.ring.mass for item in case.bearings]
-    return with_rings(made, masses, rotor.gravity, [bearing.name for bearing in case.bearings])
-
-
-def run_up_profile(case: Case) -> SpeedProfile:
-    """From the first to the last speed of the case."""
-    speed = case.speed
-    return speed_profile([0.0, speed.duration], [2 * math.pi * speed.start, 2 * math.pi * speed.end])
-
-
-def run_down_profile(case: Case) -> SpeedProfile:
-    """Up, hold, and back down (section 7.2.2)."""
-    speed = case.speed
-    times, speeds = [0.0, speed.duration], [speed.start, speed.end]
-    if speed.hold > 0.0:
-        times.append(times[-1] + speed.hold)
-        speeds.append(speed.end)
-    times.append(times[-1] + speed.down_duration)
-    speeds.append(speed.start)
-    return speed_profile(times, [2 * math.pi * value for value in speeds])
 
 
 def sections_of(film: FilmGeometry) -> int:

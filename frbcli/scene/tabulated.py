@@ -5,7 +5,7 @@ from __future__ import annotations
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.rectangles.table import Mesh
+from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, is_plain
 
 SOLUTIONS = "table over eccentricity, direction and speed"

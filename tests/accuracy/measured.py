@@ -13,7 +13,7 @@ from frbcli.plot.style import save_figure
 from frbcli.runs.run import runup
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import run_up_profile
+from frbcli.scene.profiles import run_up_profile
 from frbcli.studies.accuracy import accuracy
 from frbcli.studies.ladder import RungResult
 

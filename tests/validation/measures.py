@@ -14,14 +14,15 @@ from scipy.linalg import eigh, null_space
 
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
-from frbcli.film.rectangles.bearing import evaluate
+from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.rectangles.untabulated import largest_pressure
 from frbcli.linear.stability import Stability, stability
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_rotor, make_system, planned_film
+from frbcli.scene.rotors import make_rotor
+from frbcli.scene.system import make_system, planned_film
 
 DATA = Path(__file__).parent.parent / "data"
 

@@ -13,7 +13,7 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from frbcli.compiled import compiled
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
+from frbcli.film.gap import LARGEST_ECCENTRICITY
 
 NUMBERS = 10  # force (x, y), its derivatives by displacement and by velocity (xx, xy, yx, yy each)
 MOTION = 5  # displacement and velocity (x, y), speed

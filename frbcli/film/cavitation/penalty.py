@@ -33,7 +33,10 @@ class Penalty(Law):
     equation = "(3.31), (3.32)"
     meaning = "Penalty model (3.31): on the absolute pressure of (3.9), or on the dimensionless one of (3.19)."
     cell_words = "a source that grows exponentially below `p_cav`, in two readings"
-    keys = (Key("pressure", "absolute", choices=("absolute", "dimensionless")),)
+    keys = (
+        Key("pressure", "absolute", "that of (3.9), or the dimensionless one of (3.19)",
+            choices=("absolute", "dimensionless")),
+    )  # fmt: skip
     conserves = False
     keeps_oil = False
     tabulated = True

@@ -1,4 +1,4 @@
-"""What channels between two films bring to them, and what pressures they take, compiled; see channels.py for the model.
+"""What channels between two films bring to them, and what pressures they take, compiled; see channel_data.py.
 
 The flow from the outer to the inner end of a channel follows from the mean pressures of the cells at its feed holes,
 

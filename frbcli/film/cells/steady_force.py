@@ -16,7 +16,7 @@ from frbcli.film.cells.newton_step import film_newton
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.states import STATES
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.bearing import FilmForce
+from frbcli.film.rectangles.film import FilmForce
 
 HELD, CARRIED = 1e-9, 1e9  # s: moved so little or so much by a velocity that one of the two derivatives is all there is
 

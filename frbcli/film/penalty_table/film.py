@@ -15,11 +15,10 @@ from frbcli.film.cells.grid import VolumeGrid, fitted_grid
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.plain.balance import Balance
 from frbcli.film.gap import Section, gap_rate
-from frbcli.film.grid import Array
+from frbcli.film.grid import Array, Mesh
 from frbcli.film.penalty_table.rows import LIMIT, row_forces
 from frbcli.film.penalty_table.table import PenaltyTableFilm, slow_speed, source_table, table_numbers
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.rectangles.table import Mesh
 
 CENTRED = 1e-6  # eccentricity that stands for the centre
 

@@ -61,12 +61,15 @@ def _matrix(stencil: Array, area: Array, cells: Array, damping: float, newton: A
 
 @compiled()
 def _settle(
-    law: Array, unit: float, stencil: Array, loads: Array, area: Array, v_r: float, v_t: float, w: Array,
-    cells: Array, newton: Array, blocks: Array, right: Array,
+    law: Array, stencil: Array, loads: Array, area: Array, unit: float, velocity: tuple[float, float], w: Array,
+    scratch: tuple[Array, Array, Array, Array],
 ) -> int:  # fmt: skip
-    """w (m, k) <- unknowns, in units of `unit`, of the film that moves with (v_r, v_t); cells (LAYERS, m, k) <- its
-    states. Returns the iterations, LIMIT if it has not settled."""
+    """w (m, k) <- unknowns, in units of `unit`, of the film that moves with the velocity; scratch: cells (LAYERS, m, k)
+    <- its states, matrix, blocks and right sides of the equations. Returns the iterations, LIMIT if it has not
+    settled."""
     m, k = w.shape
+    v_r, v_t = velocity
+    cells, newton, blocks, right = scratch
     parameters, scales = (law[0], law[1], law[2]), Scales(unit, 0.0, 0.0)
     speed = math.sqrt(v_r * v_r + v_t * v_t) + law[0]
     for iteration in range(LIMIT):
@@ -103,6 +106,7 @@ def row_forces(
     m, k = area.shape
     cells, newton = np.zeros((LAYERS, m, k)), np.zeros((ENTRIES, m, k))
     blocks, right = np.zeros((m, k, k)), np.zeros((m, k, k + 1))
+    scratch = (cells, newton, blocks, right)
     w, begun, before = np.zeros((m, k)), np.zeros((m, k)), np.zeros((m, k))
     most = 0
     for a in range(velocities.shape[0]):
@@ -114,7 +118,7 @@ def row_forces(
                     w[i, j] = begun[i, j] if b == 0 else now if b == 1 else 2.0 * now - before[i, j]
                     before[i, j] = now
             size = math.sqrt(v_r * v_r + v_t * v_t) + unit
-            most = max(most, _settle(law, size, stencil, loads, area, v_r, v_t, w, cells, newton, blocks, right))
+            most = max(most, _settle(law, stencil, loads, area, size, (v_r, v_t), w, scratch))
             if b == 0:
                 begun[:] = w
             f_r, f_t = 0.0, 0.0

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
+from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY
 
 DEPTH_STEP = 0.2  # step of x = -ln(1 - eps)
 DIRECTIONS = 13  # over half a turn; the other half is its mirror image

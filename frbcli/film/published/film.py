@@ -18,7 +18,7 @@ from frbcli.film.published.law import Step, make_step
 from frbcli.film.published.mesh import quadratic_mesh
 from frbcli.film.published.newton import NONE, Equations, Newton, Point
 from frbcli.film.published.solution import FilmState, PublishedSolution, Response
-from frbcli.film.rectangles.bearing import FilmForce
+from frbcli.film.rectangles.film import FilmForce
 
 AROUND, ALONG = 20, 10  # elements of a section, figure 6.2
 

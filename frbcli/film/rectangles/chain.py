@@ -14,13 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.grid import Array, axial_modes, axial_vertices
+from frbcli.film.grid import CHAIN_MODES, Array, axial_modes, axial_vertices
 from frbcli.film.rectangles.clip import cut_element
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, SLOPE
 from frbcli.film.rectangles.table import half_width_lines
 
 LINES = 6  # Gauss points over half the width
-MODES = 5  # of those that a load independent of z excites: the next has a hundredth of a per cent of the force
 
 # Rows of the grid, one column per element: its first angle and its length, whether it begins (1), ends (2) or is (3) a
 # piece, the integrals of its three shape functions times n_x and n_y, and n_x and n_y at its three quadrature points.
@@ -65,13 +64,13 @@ def chain_grid(edges: Array, elements: int) -> Array:
 
 
 def chain_table(axial: int, radius_to_width: float, profile: Callable[[Array], Array], constant: Array) -> Array:
-    """(1, 1, SHAPES + MODES, c) axial table.
+    """(1, 1, SHAPES + CHAIN_MODES, c) axial table.
 
     profile: scaled gauge pressure in the grooves at the axial positions (n,) in [0, 1]; constant: (2,) integral of n
     times pressure over all that is not solved: the grooves.
     """
     modes = axial_modes(axial_vertices(axial))
-    kept = min(MODES, len(modes.loads))
+    kept = min(CHAIN_MODES, len(modes.loads))
     positions, weights = half_width_lines(LINES)
     table = np.zeros((SHAPES + kept, max(kept, LINES)))
     table[DECAY, :kept] = radius_to_width**2 * modes.eigenvalues[:kept]

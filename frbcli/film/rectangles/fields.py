@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.clip import cut_element, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
-from frbcli.film.rectangles.table import DEPTH_STEP, Mesh, eccentricity_axis, half_width_lines
+from frbcli.film.rectangles.table import DEPTH_STEP, eccentricity_axis, half_width_lines
 
 CONTRACTION = 0.35  # one grid for all eccentricities, see ring_vertices
 LINES = 8  # Gauss points over half the width: the edge of the cavity crosses them at any slope

@@ -14,11 +14,12 @@ from numba.extending import overload
 
 from frbcli.compiled import compiled
 from frbcli.film.bearing_model.film import BearingModelFilm, model_force
+from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
 from frbcli.film.rectangles.chain import ChainFilm, chain_force
 from frbcli.film.rectangles.fields import FieldsFilm, fields_force
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, short_closed, short_general
-from frbcli.film.rectangles.table import LARGEST_ECCENTRICITY, TableFilm, table_force
+from frbcli.film.rectangles.table import TableFilm, table_force
 
 FilmData = ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm | BearingModelFilm
 
@@ -100,9 +101,8 @@ def _polar(
     t_t = (f_r + w_tr * w_t - w_tt * w_r) / eccentricity
     d_xx, d_xy, d_yx, d_yy = _turned(w_rr, w_rt, w_tr, w_tt, c, s)
     k_xx, k_xy, k_yx, k_yy = _turned(e_r, t_r, e_t, t_t, c, s)
-    return _with_rotation(
-        film.force_scale, omega, c * f_r - s * f_t, s * f_r + c * f_t, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy
-    )
+    force = (c * f_r - s * f_t, s * f_r + c * f_t)
+    return _with_rotation(film.force_scale, omega, force, (d_xx, d_xy, d_yx, d_yy), (k_xx, k_xy, k_yx, k_yy))
 
 
 @compiled()
@@ -116,18 +116,20 @@ def _standing(
     f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy = chain_force(
         film.table, film.grid, d_x, d_y, w_x, w_y, film.level, film.clipped == 1
     )
-    return _with_rotation(film.force_scale, omega, f_x, f_y, d_xx, d_xy, d_yx, d_yy, k_xx, k_xy, k_yx, k_yy)
+    return _with_rotation(film.force_scale, omega, (f_x, f_y), (d_xx, d_xy, d_yx, d_yy), (k_xx, k_xy, k_yx, k_yy))
 
 
 @compiled()
 def _with_rotation(
-    scale: float, omega: float, f_x: float, f_y: float, d_xx: float, d_xy: float, d_yx: float, d_yy: float,
-    k_xx: float, k_xy: float, k_yx: float, k_yy: float,
+    scale: float, omega: float, force: tuple[float, float], by_velocity: tuple[float, float, float, float],
+    by_displacement: tuple[float, float, float, float],
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """The ten numbers of film_force from derivatives at fixed w: dw/dd = -(omega/2) J adds to the stiffness."""
     half = 0.5 * omega
+    d_xx, d_xy, d_yx, d_yy = by_velocity
+    k_xx, k_xy, k_yx, k_yy = by_displacement
     return (
-        scale * f_x, scale * f_y,
+        scale * force[0], scale * force[1],
         scale * (k_xx - half * d_xy), scale * (k_xy + half * d_xx),
         scale * (k_yx - half * d_yy), scale * (k_yy + half * d_yx),
         scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy,

@@ -9,29 +9,20 @@ during it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.grid import Array, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
 
 DEPTH_STEP = 0.1  # step of x = -ln(1 - eps): forces grow at most like exp(2.5 x), interpolated to 1e-5
-LARGEST_ECCENTRICITY = 0.9999  # end of the tables
 DIRECTIONS = 33  # of w, over half a turn; the other half is its mirror image
 LINES = 8  # Gauss points over half the width
 STRETCH = 0.25  # w_t is scaled by (1 - eps)^STRETCH: keeps the force smooth in the direction of w up to contact
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """Elements of one film section: `axial` over its width, `circumferential` over the turn (quadratic)."""
-
-    axial: int
-    circumferential: int
 
 
 class TableFilm(NamedTuple):
@@ -182,15 +173,17 @@ def table_force(
     a -= i
     b -= j
     # Hermite's four polynomials in each direction and their slopes
-    a0, a1 = (1 + 2 * a) * (1 - a) ** 2, a * a * (3 - 2 * a)
-    a2, a3 = DEPTH_STEP * a * (1 - a) ** 2, DEPTH_STEP * a * a * (a - 1)
-    c1, c2, c3 = 6 * a * (1 - a) / DEPTH_STEP, (1 - a) * (1 - 3 * a), a * (3 * a - 2)
-    b0, b1 = (1 + 2 * b) * (1 - b) ** 2, b * b * (3 - 2 * b)
-    b2, b3 = step_psi * b * (1 - b) ** 2, step_psi * b * b * (b - 1)
-    d1, d2, d3 = 6 * b * (1 - b) / step_psi, (1 - b) * (1 - 3 * b), b * (3 * b - 2)
+    along_x = (
+        (1 + 2 * a) * (1 - a) ** 2, a * a * (3 - 2 * a), DEPTH_STEP * a * (1 - a) ** 2, DEPTH_STEP * a * a * (a - 1),
+    )  # fmt: skip
+    slope_x = (6 * a * (1 - a) / DEPTH_STEP, (1 - a) * (1 - 3 * a), a * (3 * a - 2))
+    along_psi = (
+        (1 + 2 * b) * (1 - b) ** 2, b * b * (3 - 2 * b), step_psi * b * (1 - b) ** 2, step_psi * b * b * (b - 1),
+    )  # fmt: skip
+    slope_psi = (6 * b * (1 - b) / step_psi, (1 - b) * (1 - 3 * b), b * (3 * b - 2))
     mirror = -1.0 if w_t < 0.0 else 1.0
-    g_r, x_r, p_r = _hermite(table, i, j, 0, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3)
-    g_t, x_t, p_t = _hermite(table, i, j, 1, a0, a1, a2, a3, c1, c2, c3, b0, b1, b2, b3, d1, d2, d3)
+    g_r, x_r, p_r = _hermite(table, i, j, 0, along_x, slope_x, along_psi, slope_psi)
+    g_t, x_t, p_t = _hermite(table, i, j, 1, along_x, slope_x, along_psi, slope_psi)
     by_u_r, by_u_t = g_r * sine + p_r * cosine, g_t * sine + p_t * cosine
     # d(u_t)/dx = -STRETCH u_t; dx/deps = 1 / (1 - eps)
     depth = 1.0 / (1.0 - eccentricity)
@@ -208,39 +201,33 @@ def table_force(
 
 @compiled()
 def _hermite(
-    table: Array, i: int, j: int, c: int, a0: float, a1: float, a2: float, a3: float, c1: float, c2: float,
-    c3: float, b0: float, b1: float, b2: float, b3: float, d1: float, d2: float, d3: float,
+    table: Array, i: int, j: int, c: int, along_x: tuple[float, float, float, float],
+    slope_x: tuple[float, float, float], along_psi: tuple[float, float, float, float],
+    slope_psi: tuple[float, float, float],
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Value, derivative by x and by psi of component c in the cell (i, j)."""
-    # along psi first, at both ends of the cell in x: value and x-derivative, and the psi-slopes of both
-    v0 = b0 * table[i, j, c, 0] + b1 * table[i, j + 1, c, 0] + b2 * table[i, j, c, 2] + b3 * table[i, j + 1, c, 2]
-    v1 = (
-        b0 * table[i + 1, j, c, 0]
-        + b1 * table[i + 1, j + 1, c, 0]
-        + b2 * table[i + 1, j, c, 2]
-        + b3 * table[i + 1, j + 1, c, 2]
-    )
-    x0 = b0 * table[i, j, c, 1] + b1 * table[i, j + 1, c, 1] + b2 * table[i, j, c, 3] + b3 * table[i, j + 1, c, 3]
-    x1 = (
-        b0 * table[i + 1, j, c, 1]
-        + b1 * table[i + 1, j + 1, c, 1]
-        + b2 * table[i + 1, j, c, 3]
-        + b3 * table[i + 1, j + 1, c, 3]
-    )
-    p0 = d1 * (table[i, j + 1, c, 0] - table[i, j, c, 0]) + d2 * table[i, j, c, 2] + d3 * table[i, j + 1, c, 2]
-    p1 = (
-        d1 * (table[i + 1, j + 1, c, 0] - table[i + 1, j, c, 0])
-        + d2 * table[i + 1, j, c, 2]
-        + d3 * table[i + 1, j + 1, c, 2]
-    )
-    q0 = d1 * (table[i, j + 1, c, 1] - table[i, j, c, 1]) + d2 * table[i, j, c, 3] + d3 * table[i, j + 1, c, 3]
-    q1 = (
-        d1 * (table[i + 1, j + 1, c, 1] - table[i + 1, j, c, 1])
-        + d2 * table[i + 1, j, c, 3]
-        + d3 * table[i + 1, j + 1, c, 3]
-    )
+    """Value, derivative by x and by psi of component c in the cell (i, j); polynomials and their slopes."""
+    a0, a1, a2, a3 = along_x
+    c1, c2, c3 = slope_x
+    # along psi first, at both ends of the cell in x: the value, its derivative by x, and the psi-slopes of both
+    v0, p0 = _along_psi(table, i, j, c, 0, along_psi, slope_psi)
+    v1, p1 = _along_psi(table, i + 1, j, c, 0, along_psi, slope_psi)
+    x0, q0 = _along_psi(table, i, j, c, 1, along_psi, slope_psi)
+    x1, q1 = _along_psi(table, i + 1, j, c, 1, along_psi, slope_psi)
     return (
         a0 * v0 + a1 * v1 + a2 * x0 + a3 * x1,
         c1 * (v1 - v0) + c2 * x0 + c3 * x1,
         a0 * p0 + a1 * p1 + a2 * q0 + a3 * q1,
     )
+
+
+@compiled()
+def _along_psi(
+    table: Array, i: int, j: int, c: int, entry: int, along_psi: tuple[float, float, float, float],
+    slope_psi: tuple[float, float, float],
+) -> tuple[float, float]:  # fmt: skip
+    """An entry of the table, 0: value, 1: its derivative by x, in line i between j and j + 1, and its slope."""
+    b0, b1, b2, b3 = along_psi
+    d1, d2, d3 = slope_psi
+    f, g = table[i, j, c, entry], table[i, j + 1, c, entry]
+    f_psi, g_psi = table[i, j, c, entry + 2], table[i, j + 1, c, entry + 2]
+    return b0 * f + b1 * g + b2 * f_psi + b3 * g_psi, d1 * (g - f) + d2 * f_psi + d3 * g_psi

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.grid import Array, AxialModes, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
-from frbcli.film.rectangles.table import Mesh, ring_contraction
+from frbcli.film.rectangles.table import ring_contraction
 
 LINES = 24  # Gauss points over the width
 MODES_AT_ONCE = 64  # solved between two looks at Ctrl-C, and held in memory

@@ -1,0 +1,195 @@
+"""`frb bearing`: the sheet of a bearing over rotor speed or eccentricity."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.live import live_lines
+from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.runs import OUTPUT, here
+from frbcli.cli.speeds import RotorSpeed
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.linear.bearing_sheet import Array as Matrix
+    from frbcli.linear.bearing_sheet import BearingSheet, FilmState
+
+COLUMNS = 80
+NUMBERS = ("Hz", "eps", "att.", "So", "h", "p", "loss", "flow", "rise", "err.")
+COEFFICIENTS = ("Hz", "eps", "xx", "xy", "yx", "yy")
+EXPLANATION = (
+    "att.: attitude angle; So: Sommerfeld number (3.14); h: smallest film thickness, um; p: largest pressure, "
+    "bar, absolute; loss: power, W; flow: oil that leaves at the ends, mm^3/s; rise: of its temperature if it took all "
+    "of the power, K; err.: relative error of the force. All per bearing."
+)
+SETTLED = "Coefficients of mass-conserving films are of oil that has settled; they do not determine stability."
+
+
+class Load(click.ParamType[float]):
+    """A load with a unit, "30 N"; a bare number is in N. Greater than zero."""
+
+    name = "load"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        from frbcli.units import quantity
+
+        try:
+            load = quantity(f"{value} N" if str(value).replace(".", "", 1).isdigit() else value, "N", "30 N")
+        except ValueError as fault:
+            self.fail(f"{value!r} {fault}", param, ctx)
+        if load <= 0.0:
+            self.fail(f'{value!r} is not greater than 0. Write e.g. "30 N".', param, ctx)
+        return load
+
+
+@click.command()
+@case_argument
+@click.option("--over", type=click.Choice(["speed", "eccentricity"]), default="speed", show_default=True,
+              help="At what the films are computed; over eccentricity the load follows.")  # fmt: skip
+@click.option("--speed", "speeds", multiple=True, type=RotorSpeed(), metavar="SPEED",
+              help='Rotor speed, e.g. "25 Hz". Repeatable over speed. [20 over the range; the highest]')  # fmt: skip
+@click.option("--load", type=Load(), metavar="LOAD", help='Along -y on a single film, e.g. "30 N". [of the rotor]')
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-bearing.png, here]")
+@click.option("--no-picture", is_flag=True, help="No picture.")
+@click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all numbers as a table, too.")
+@click.option("--ross", metavar="FILE", type=OUTPUT, help="Write stiffness and damping over speed as ROSS reads them.")
+@output_options
+def command(
+    case: Case,
+    over: str,
+    speeds: tuple[float, ...],
+    load: float | None,
+    output: Path | None,
+    no_picture: bool,
+    csv: Path | None,
+    ross: Path | None,
+    terminal: Terminal,
+) -> int | None:
+    """Resting position, coefficients, power loss, oil flow and pressure of every film of CASE."""
+    from frbcli.errors import NotConverged
+    from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
+    from frbcli.results.place import require_place
+
+    _check_options(over, speeds, load, output, no_picture, ross)
+    picture = None if no_picture else output or here(case.name, "-bearing.png")
+    check_place(picture)
+    require_place(csv, ross)
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+
+        def observe(number: int, count: int) -> None:
+            if show is not None:
+                show(f"{number} of {count}")
+
+        if over == "speed":
+            found = bearing_sheet(case, speeds or None, load, observe)
+        else:
+            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=observe)
+    _tell(terminal, found)
+    if csv is not None:
+        found.to_pandas().to_csv(csv, index=False)
+        terminal.result(f"table: {csv}")
+    if ross is not None:
+        from frbcli.results.ross import write_ross
+
+        write_ross(found.to_pandas(), ross)
+        terminal.result(f"ROSS: {ross}")
+    if picture is not None:
+        from frbcli.plot.bearing import bearing_figure
+
+        picture = draw(terminal, lambda: bearing_figure(found), picture)
+    terminal.emit(
+        {
+            "command": "bearing",
+            "case": case.name,
+            "over": over,
+            "points": [_point(point) for point in found.points],
+            "picture": picture,
+            "csv": csv,
+            "ross": ross,
+        }
+    )
+    return None if any(not point.problem for point in found.points) else NotConverged.exit_code
+
+
+def _check_options(
+    over: str, speeds: tuple[float, ...], load: float | None, output: Path | None, no_picture: bool, ross: Path | None
+) -> None:
+    if no_picture and output is not None:
+        raise click.UsageError("-o names the picture that --no-picture leaves out.")
+    if over == "eccentricity" and (load is not None or len(speeds) > 1):
+        raise click.UsageError("Over eccentricity there is one --speed and no --load: the films tell it.")
+    if over == "eccentricity" and ross is not None:
+        raise click.UsageError("--ross is a table over speed.")
+
+
+def _tell(terminal: Terminal, found: BearingSheet) -> None:
+    from frbcli.film.cavitation.table import law_named
+
+    for film, law in zip(found.films, found.laws, strict=True):
+        states = found.of(film)
+        name = " ".join(filter(None, (found.case.title or found.case.name, film)))
+        terminal.table(f"{name}, {law_named(law).label}", NUMBERS, map(_numbers, states))
+        terminal.table("stiffness in N/um", COEFFICIENTS, (_entries(state, state.stiffness, 1e-6) for state in states))
+        terminal.table("damping in N s/mm", COEFFICIENTS, (_entries(state, state.damping, 1e-3) for state in states))
+    terminal.result(fill(EXPLANATION, COLUMNS, break_long_words=False))
+    if any(law_named(law).keeps_oil for law in found.laws):
+        terminal.result(fill(SETTLED, COLUMNS))
+    problems = [point for point in found.points if point.problem]
+    if problems:
+        terminal.result(f"No state at {len(problems)} of {len(found.points)} points. The first: {problems[0].problem}")
+
+
+def _numbers(state: FilmState) -> tuple[str, ...]:
+    return (
+        f"{state.speed_Hz:.3g}",
+        f"{state.eccentricity:.3f}",
+        _told(state.attitude_deg, ".1f"),
+        _told(state.sommerfeld_number, ".3g"),
+        f"{1e6 * state.film_thickness_min:.3g}",
+        f"{1e-5 * state.p_max:.3g}",
+        f"{state.power:.4g}",
+        f"{1e9 * state.side_flow:.4g}",
+        _told(state.temperature_rise, ".3g"),
+        f"{state.force_error:.0e}".replace("e-0", "e-"),
+    )
+
+
+def _told(value: float, form: str) -> str:
+    return "-" if math.isnan(value) else format(value, form)
+
+
+def _entries(state: FilmState, matrix: Matrix | None, scale: float) -> tuple[str, ...]:
+    values = () if matrix is None else (f"{scale * value:.4g}" for value in matrix.ravel())
+    return (f"{state.speed_Hz:.4g}", f"{state.eccentricity:.3f}", *values)
+
+
+def _point(state: FilmState) -> dict[str, object]:
+    return {
+        "film": state.film,
+        "status": "not-converged" if state.problem else "resting",
+        "problem": state.problem,
+        "speed_Hz": state.speed_Hz,
+        "journal_speed_Hz": state.journal_speed_Hz,
+        "shell_speed_Hz": state.shell_speed_Hz,
+        "load_N": state.load,
+        "displacement": state.displacement,
+        "eccentricity": state.eccentricity,
+        "attitude_deg": state.attitude_deg,
+        "sommerfeld_number": state.sommerfeld_number,
+        "film_thickness_min_m": state.film_thickness_min,
+        "stiffness_N_m": state.stiffness,
+        "damping_N_s_m": state.damping,
+        "torque_N_m": state.torque,
+        "power_W": state.power,
+        "side_flow_m3_s": state.side_flow,
+        "p_max_Pa": state.p_max,
+        "temperature_rise_K": state.temperature_rise,
+        "error": {"force_relative": state.force_error},
+    }

@@ -1,0 +1,51 @@
+"""Progress of a run, redrawn on the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from frbcli.cli.common import Terminal
+
+if TYPE_CHECKING:
+    from frbcli.runs.march import Progress
+
+REFRESH_Hz = 8
+COLUMNS = 80  # of a terminal
+LONGEST_LEFT_s = 1e9  # longest time that is shown
+
+
+@contextmanager
+def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
+    """Redraws some lines on the terminal; None without a terminal."""
+    if not terminal.live:
+        yield None
+        return
+    from rich.live import Live
+    from rich.text import Text
+
+    with Live(console=terminal.live_console(), refresh_per_second=REFRESH_Hz, transient=True) as live:
+        yield lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis"))
+
+
+def progress_line(progress: Progress) -> str:
+    """One line of at most 80 columns: time, speed, eccentricity, steps per revolution, pace, time left."""
+    per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
+    whose, pace = ("its error: ", "") if progress.for_error else ("", f"{progress.simulated_ms_per_hour:.2g} ms/h  ")
+    line = (
+        f"{whose}{progress.t_s:.3f}/{progress.end_s:.4g} s  {progress.speed_Hz:5.1f} Hz  "
+        f"eps {progress.eccentricity:5.3f}  {per_turn} steps/rev  {pace}{_clock(progress.left_s)} left"
+    )
+    return line if len(line) <= COLUMNS else line[: COLUMNS - 1] + "…"
+
+
+def _clock(seconds: float) -> str:
+    """Minutes and seconds, hours or days: what fits in six columns."""
+    if not 0.0 <= seconds < LONGEST_LEFT_s:
+        return "?"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 100:
+        return f"{minutes}:{rest:02d}"
+    return f"{minutes // 60} h" if minutes < 6000 else f"{minutes // 1440} d"

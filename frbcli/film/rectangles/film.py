@@ -1,0 +1,87 @@
+"""From the dimensions of a bearing made of rectangles to its film, and the force of such a film in SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.film.bearing_model.film import BearingModelFilm
+from frbcli.film.cavitation.table import law_named
+from frbcli.film.gap import groove_pressure
+from frbcli.film.grid import Array, Mesh
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
+from frbcli.film.rectangles.fields import FieldsFilm, field_grid, field_table
+from frbcli.film.rectangles.film_force import FilmData, film_force
+from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
+from frbcli.film.rectangles.table import TableFilm, force_table
+
+EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
+
+
+def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: Mesh) -> FilmData:
+    """The film of a bearing. theory: "short" | "finite"; cavitation: a law that is closed."""
+    clipped = law_named(cavitation).clips
+    supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
+    sigma = (supply - bearing.ambient_pressure) / bearing.pressure_scale
+    level = (bearing.cavitation_pressure - bearing.ambient_pressure) / bearing.pressure_scale
+    if bearing.grooves:
+        return _grooved_film(bearing, clipped, level, mesh)
+    limit = EQUAL_PRESSURES * bearing.ambient_pressure / bearing.pressure_scale
+    # Without cavitation the hydrostatic pressure carries nothing: it is the same all around.
+    equal = not clipped or (abs(sigma) <= limit and abs(level) <= limit)
+    scale, radius_to_width = bearing.force_scale, 0.5 * bearing.diameter / bearing.section_width
+    if theory == "short":
+        slenderness = radius_to_width**-2
+        if equal:
+            return ShortFilm(scale, slenderness, int(clipped))
+        return SuppliedShortFilm(scale, slenderness, sigma, level)
+    if equal:
+        return TableFilm(scale, force_table(mesh, radius_to_width, clipped))
+    return FieldsFilm(scale, sigma, level, field_table(mesh, radius_to_width), field_grid(mesh))
+
+
+def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh: Mesh) -> ChainFilm:
+    """The film between axial grooves, finite length; all grooves have the same pressure."""
+    scale, pressure = bearing.pressure_scale, bearing.grooves[0]
+
+    def profile(z: Array) -> Array:
+        distance = np.minimum(z, 1.0 - z) * bearing.width
+        return groove_pressure(pressure, distance, bearing.width) / scale
+
+    grooves = sorted(bearing.grooves, key=lambda groove: groove.position)
+    ends = np.array([groove.position + 0.5 * groove.opening for groove in grooves])
+    starts = np.array([groove.position - 0.5 * groove.opening for groove in grooves])
+    edges = np.column_stack([ends, np.append(starts[1:], starts[0] + 2 * np.pi)])
+    grid = chain_grid(edges, mesh.circumferential)
+    # Over the grooves their own pressure acts; where the films are clipped, the level itself over the rest of the turn.
+    middles = np.asarray((np.arange(1000) + 0.5) / 1000.0, dtype=np.float64)
+    mean = float(np.mean(profile(middles)))
+    across = np.array([np.sum(np.cos(starts) - np.cos(ends)), np.sum(np.sin(starts) - np.sin(ends))])
+    constant = (mean - (level if clipped else 0.0)) * across
+    radius_to_width = 0.5 * bearing.diameter / bearing.width
+    table = chain_table(mesh.axial, radius_to_width, profile, constant)
+    clip_level = level if clipped else 0.0
+    return ChainFilm(bearing.force_scale, int(clipped), clip_level, table, grid)
+
+
+@dataclass(frozen=True)
+class FilmForce:
+    """Force on the journal by a whole bearing, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m."""
+
+    force: Array
+    by_displacement: Array
+    by_velocity: Array
+
+
+def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:
+    """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s.
+
+    Derivatives of a bearing model that does not tell them are central differences here.
+    """
+    if isinstance(film, BearingModelFilm):
+        film = film._replace(central=1)
+    d, v = np.asarray(displacement) / clearance, np.asarray(velocity) / clearance
+    values = np.array(film_force(film, d[0], d[1], v[0], v[1], omega))
+    return FilmForce(values[:2], values[2:6].reshape(2, 2) / clearance, values[6:].reshape(2, 2) / clearance)

@@ -1,0 +1,174 @@
+"""Linear unbalance response: the synchronous motion of a rotor in its films about the resting position.
+
+At each rotor speed Omega the films are the eight coefficients of stability.py, and the motion q = Re(Q exp(i alpha))
+with the angle alpha of the rotor follows from
+
+    (K + P^T K_f P + i Omega (D + Omega G + P^T D_f P) - Omega^2 M) Q = Omega^2 (u_sin + i u_cos),
+
+what (2.3) is at a constant speed. Films of unlike stiffness in x and y, or cross-coupled, make ellipses of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.linear.stability import StabilityPoint, default_speeds, stability_points
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.ring import without_spins
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+Amplitudes = NDArray[np.complex128]
+
+SPEEDS = 120  # of the default sweep
+
+
+@dataclass(frozen=True)
+class Response:
+    """The synchronous motion at n speeds.
+
+    speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex
+    amplitudes of x and y in m; films: the names of the f films; forces: (n, f, 2) those of the forces on the journals
+    in N, of one bearing; growth: (n,) in 1/s of the least damped whirl: where it is positive, the motion is not seen;
+    critical_speeds_Hz: where the largest motion of any point has a peak; resting: the resting positions.
+    """
+
+    case: Case
+    speeds_Hz: Array
+    points: tuple[str, ...]
+    motion: Amplitudes
+    films: tuple[str, ...]
+    forces: Amplitudes
+    growth: Array
+    critical_speeds_Hz: tuple[float, ...]
+    resting: tuple[StabilityPoint, ...]
+
+    @property
+    def forward(self) -> Amplitudes:
+        """(n, p) complex amplitudes in m of what turns with the rotor."""
+        return np.asarray(0.5 * (self.motion[:, :, 0] + 1j * self.motion[:, :, 1]))
+
+    @property
+    def backward(self) -> Amplitudes:
+        """(n, p) complex amplitudes in m of what turns against it, as in order_track."""
+        return np.asarray(np.conj(0.5 * (self.motion[:, :, 0] - 1j * self.motion[:, :, 1])))
+
+    @property
+    def amplitude(self) -> Array:
+        """(n, p) larger semi-axis of the orbits in m."""
+        return np.asarray(np.abs(self.forward) + np.abs(self.backward))
+
+    @property
+    def phase_deg(self) -> Array:
+        """(n, p) phase of the forward motion to the angle of the rotor, continuous over the speed."""
+        return np.asarray(np.degrees(np.unwrap(np.angle(self.forward), axis=0)))
+
+    def orbit(self, speed: int, point: int, count: int = 180) -> Array:
+        """(count, 2) places in m along the orbit of a point, by their numbers."""
+        turn = np.exp(2j * np.pi * np.arange(count) / count)
+        return np.asarray((turn[:, None] * self.motion[speed, point]).real)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per speed and point."""
+        import pandas as pd
+
+        amplitude, phase = self.amplitude, self.phase_deg
+        return pd.DataFrame(
+            {
+                "speed_Hz": speed,
+                "point": name,
+                "amplitude_m": amplitude[i, j],
+                "phase_deg": phase[i, j],
+                "x_m": abs(self.motion[i, j, 0]),
+                "y_m": abs(self.motion[i, j, 1]),
+                "forward_m": abs(self.forward[i, j]),
+                "backward_m": abs(self.backward[i, j]),
+                "growth_1_s": self.growth[i],
+            }
+            for i, speed in enumerate(self.speeds_Hz)
+            for j, name in enumerate(self.points)
+        )
+
+
+def response(
+    case: Case, speeds_Hz: Sequence[float] | None = None, observe: Callable[[int, int], None] | None = None
+) -> Response:
+    """The linear unbalance response of a case at speeds_Hz (> 0), default SPEEDS over its range.
+
+    observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, has
+    films that eight coefficients do not describe, or rests nowhere.
+    """
+    asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
+    system, points = stability_points(case, asked, observe)
+    resting = [point for point in points if point.films]
+    if not resting:
+        problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
+        raise InputError(case.name or "case", (Fault("speed", "", None, problem, "Choose other speeds."),))
+    rotor = without_spins(system.rotor, system.ring_count)
+    motions, forces = zip(*(_at(rotor, point) for point in resting), strict=True)
+    motion = np.array(motions)
+    speeds = np.array([point.speed_Hz for point in resting])
+    return Response(
+        case=case,
+        speeds_Hz=speeds,
+        points=tuple(name for name, _ in rotor.points),
+        motion=motion,
+        films=system.names,
+        forces=np.array(forces),
+        growth=np.array([point.growth for point in resting]),
+        critical_speeds_Hz=_peaks(speeds, motion),
+        resting=tuple(resting),
+    )
+
+
+def unbalance_motion(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Amplitudes:
+    """(n,) complex amplitudes of all degrees of freedom at omega rad/s on bearings of stiffness and damping (films, 2,
+    2) in N/m and N s/m."""
+    bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
+    k = rotor.stiffness + (bearings @ stiffness @ rotor.journals).sum(axis=0)
+    d = rotor.damping + omega * rotor.gyroscopic + (bearings @ damping @ rotor.journals).sum(axis=0)
+    pull = omega**2 * (rotor.unbalance_sin + 1j * rotor.unbalance_cos)
+    return np.asarray(np.linalg.solve(k + 1j * omega * d - omega**2 * rotor.mass, pull))
+
+
+def _at(rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitudes]:
+    """Motion (p, 2) of the points and forces (films, 2) at one speed."""
+    omega = 2.0 * math.pi * point.speed_Hz
+    stiffness = np.stack([film.stiffness for film in point.films])
+    damping = np.stack([film.damping for film in point.films])
+    q = unbalance_motion(rotor, omega, stiffness, damping)
+    journals = rotor.journals @ q
+    forces = -np.einsum("fij,fj->fi", stiffness + 1j * omega * damping, journals)
+    return np.array([place @ q for _, place in rotor.points]), forces
+
+
+def _peaks(speeds: Array, motion: Amplitudes) -> tuple[float, ...]:
+    """Speeds at which the larger semi-axis of a point has a peak, each by a parabola through three speeds; peaks of
+    several points within a step of the speed are one."""
+    size = np.abs(motion[:, :, 0] + 1j * motion[:, :, 1]) + np.abs(motion[:, :, 0] - 1j * motion[:, :, 1])
+    found: list[float] = []
+    for own in size.T:
+        for i in range(1, len(speeds) - 1):
+            if own[i] > own[i - 1] and own[i] >= own[i + 1]:
+                found.append(float(_vertex(speeds[i - 1 : i + 2], own[i - 1 : i + 2])))
+    step = float(np.max(np.diff(speeds), initial=0.0))
+    kept: list[float] = []
+    for peak in sorted(found):
+        if not kept or peak - kept[-1] > step:
+            kept.append(peak)
+    return tuple(kept)
+
+
+def _vertex(x: Array, y: Array) -> float:
+    bend, slope, _ = np.polyfit(x - x[1], y, 2)
+    return float(x[1] - 0.5 * slope / bend)

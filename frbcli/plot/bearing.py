@@ -1,0 +1,74 @@
+"""The sheet of a bearing over rotor speed or eccentricity: position, coefficients, loss and flow, pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
+
+from frbcli.film.cavitation.table import law_named
+from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet, FilmState
+from frbcli.plot.style import COLOURS, new_figure, styled
+
+Reading = Callable[[FilmState], float]
+DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1, 1, 1)))  # of the films of a machine
+AXES = ("xx", "xy", "yx", "yy")
+
+
+def bearing_figure(sheet: BearingSheet) -> Figure:
+    """Six panels over the rotor speed, or over the eccentricity; films by their dashes, quantities by their colours."""
+    case, chart = sheet.case, sheet.over == ECCENTRICITY
+    laws = ", ".join(dict.fromkeys(law_named(law).label for law in sheet.laws))
+    with styled():
+        figure = new_figure(case.title or case.name, f"bearing sheet, {laws}", width=8.6, height=7.4)
+        panels = figure.subplots(3, 2, sharex=True)
+        first: Reading = (lambda s: s.sommerfeld_number) if chart else (lambda s: s.eccentricity)
+        _curves(panels[0, 0], sheet, "Sommerfeld number" if chart else "eccentricity", [("", first)])
+        _curves(panels[0, 1], sheet, "attitude angle in °", [("", lambda s: s.attitude_deg)])
+        _curves(panels[1, 0], sheet, "stiffness in N/µm", [(f"k{name}", _entry("stiffness", i, 1e-6))
+                                                           for i, name in enumerate(AXES)])  # fmt: skip
+        _curves(panels[1, 1], sheet, "damping in N s/mm", [(f"c{name}", _entry("damping", i, 1e-3))
+                                                           for i, name in enumerate(AXES)])  # fmt: skip
+        loss: tuple[str, Reading] = ("power loss in W", lambda s: s.power)
+        _curves(panels[2, 0], sheet, "loss and flow", [loss, ("side flow in mm³/s", lambda s: 1e9 * s.side_flow)])
+        film: tuple[str, Reading] = ("smallest film in µm", lambda s: 1e6 * s.film_thickness_min)
+        _curves(panels[2, 1], sheet, "film and pressure", [film, ("largest pressure in bar", lambda s: 1e-5 * s.p_max)])
+        for panel in panels[2]:
+            panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
+            panel.set_yscale("log")
+            panel.yaxis.set_major_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2.0, 0.5)))
+            panel.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2.0, 0.5)))
+        if chart:
+            panels[0, 0].set_yscale("log")
+            for panel in panels[1]:
+                panel.set_yscale("symlog")
+        if len(sheet.films) > 1:
+            handles = [panels[0, 0].plot([], [], color="black", linestyle=dash)[0] for dash in _dashes(sheet)]
+            figure.legend(handles, sheet.films, loc="outside lower center", ncols=len(handles))
+    return figure
+
+
+def _dashes(sheet: BearingSheet) -> list[object]:
+    return [DASHES[number % len(DASHES)] for number in range(len(sheet.films))]
+
+
+def _curves(axes: Axes, sheet: BearingSheet, label: str, readings: list[tuple[str, Reading]]) -> None:
+    for number, (film, dash) in enumerate(zip(sheet.films, _dashes(sheet), strict=True)):
+        states = sheet.of(film)
+        x = [state.eccentricity if sheet.over == ECCENTRICITY else state.speed_Hz for state in states]
+        for colour, (name, reading) in zip(COLOURS, readings, strict=False):
+            shown = name if number == 0 and name else None
+            axes.plot(x, [reading(state) for state in states], color=colour, linestyle=dash, label=shown)
+    axes.set_ylabel(label)
+    if len(readings) > 1:
+        axes.legend(fontsize="small", ncols=2)
+
+
+def _entry(name: str, index: int, scale: float) -> Reading:
+    def read(state: FilmState) -> float:
+        return scale * float(np.ravel(getattr(state, name))[index])
+
+    return read

@@ -1,0 +1,78 @@
+"""The linear unbalance response: Bode and polar diagrams of the points, and the forces of the bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from frbcli.analysis.order_tracking import OrderTrack
+from frbcli.linear.response import Response
+from frbcli.plot.style import BLACK, COLOURS, GREY, new_figure, styled
+
+Array = NDArray[np.float64]
+MICRO = 1e6
+STABLE, GROWING = "-", (0, (1, 1.5))  # lines of motions that are seen, and of those that a whirl hides
+DASHES = ("-", (0, (5, 2)), (0, (5, 1, 1, 1)))  # of more points than there are colours
+
+
+def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
+    """Amplitude and phase over the rotor speed, the forward motion in the complex plane, and the bearing forces.
+
+    Dotted where a whirl grows, so that the motion is not seen. tracks: synchronous motion in a run, of points of the
+    response by their signals, drawn over it as thin black lines.
+    """
+    case = found.case
+    with styled():
+        figure = new_figure(case.title or case.name, "linear unbalance response about the resting position", 8.6, 7.4)
+        panels = figure.subplots(2, 2)
+        amplitude, phase, polar, force = panels.ravel()
+        for number, name in enumerate(found.points):
+            colour, dash = COLOURS[number % len(COLOURS)], DASHES[number // len(COLOURS) % len(DASHES)]
+            label = name.replace("_", " ")
+            _line(amplitude, found, MICRO * found.amplitude[:, number], colour, dash, label)
+            _line(phase, found, found.phase_deg[:, number], colour, dash, None)
+            _polar(polar, found, number, colour, dash)
+        sizes = np.abs(found.forces[:, :, 0] + 1j * found.forces[:, :, 1]) / 2
+        sizes = sizes + np.abs(found.forces[:, :, 0] - 1j * found.forces[:, :, 1]) / 2
+        for number, film in enumerate(found.films):
+            dash = DASHES[number // len(COLOURS) % len(DASHES)]
+            _line(force, found, sizes[:, number], COLOURS[number % len(COLOURS)], dash, film or "bearing")
+        for track in tracks:
+            size = np.abs(track.forward) + np.abs(track.backward)
+            amplitude.plot(track.speed_Hz, MICRO * size, color=BLACK, linewidth=0.6, label=f"{track.signal} in the run")
+        for critical in found.critical_speeds_Hz:
+            amplitude.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)))
+        amplitude.set_ylabel("amplitude in µm (larger semi-axis)")
+        phase.set_ylabel("phase of the forward motion in °")
+        force.set_ylabel("force amplitude of a bearing in N")
+        for panel in (amplitude, phase, force):
+            panel.set_xlabel("rotor speed in Hz")
+            panel.set_xlim(0.0, float(found.speeds_Hz[-1]))
+        for panel in (amplitude, force):
+            panel.set_ylim(bottom=0.0)
+        polar.set_aspect("equal", adjustable="datalim")
+        polar.set_xlabel("forward motion along the mark, µm")
+        polar.set_ylabel("across it, µm")
+        amplitude.legend(fontsize="small")
+        force.legend(fontsize="small")
+    return figure
+
+
+def _line(axes: Axes, found: Response, values: Array, colour: str, dash: object, label: str | None) -> None:
+    """A curve over the speed, dotted where a whirl grows."""
+    grows = found.growth > 0.0
+    axes.plot(found.speeds_Hz, np.where(grows, np.nan, values), color=colour, linestyle=dash, label=label)
+    if grows.any():
+        beside = grows | np.append(grows[1:], False) | np.insert(grows[:-1], 0, False)
+        axes.plot(found.speeds_Hz, np.where(beside, values, np.nan), color=colour, linestyle=GROWING)
+
+
+def _polar(axes: Axes, found: Response, number: int, colour: str, dash: object) -> None:
+    forward = MICRO * found.forward[:, number]
+    grows = found.growth > 0.0
+    axes.plot(np.where(grows, np.nan, forward.real), forward.imag, color=colour, linestyle=dash)
+    axes.plot(np.where(grows, forward.real, np.nan), forward.imag, color=colour, linestyle=GROWING)

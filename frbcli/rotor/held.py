@@ -1,0 +1,38 @@
+"""A rotor as its bearings feel it while its journals are held at given places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.rotor.linear import Array, LinearRotor
+
+
+@dataclass(frozen=True)
+class HeldRotor:
+    """A rotor with its journals held at D (2 films,) in m.
+
+    load: (2 films,) force in N that it puts on the films at D = 0, and stiffness (2 films, 2 films) N/m: it puts on
+    load - stiffness @ D; shape: (n,) m its deflection at D = 0, and following (n, 2 films): its deflection is
+    shape + following @ D.
+    """
+
+    load: Array
+    stiffness: Array
+    shape: Array
+    following: Array
+
+
+def held_rotor(rotor: LinearRotor) -> HeldRotor:
+    """The rotor under its static load as its journals see it; what neither spring nor film holds, the angle of a
+    ring, stays at zero."""
+    n, p = rotor.size, rotor.journals.reshape(-1, rotor.size)
+    count = len(p)
+    loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
+    held = np.block([[rotor.stiffness + np.diag(loose.astype(float)), p.T], [p, np.zeros((count, count))]])
+    given = np.zeros((n + count, 1 + count))
+    given[:n, 0] = rotor.static_load
+    given[n:, 1:] = np.eye(count)
+    solution = np.linalg.solve(held, given)
+    return HeldRotor(solution[n:, 0], -solution[n:, 1:], solution[:n, 0], solution[:n, 1:])

@@ -1,0 +1,213 @@
+"""The sheet of a bearing against printed tables, closed forms, and the program's own run-up films."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli.case.load import load_case, load_case_text
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError
+from frbcli.linear.bearing_sheet import BearingSheet, bearing_sheet, sommerfeld_chart
+from frbcli.linear.stability import stability
+
+Row = dict[str, float]
+DATA = Path(__file__).parent / "data"
+CASE = """
+title = "plain bearing"
+[oil]
+viscosity = "{viscosity} mPa*s"
+[bearing]
+kind = "single-film"
+width = "{width} mm"
+diameter = "{diameter} mm"
+clearance = "{clearance} um"
+supply = {supply}
+[film]
+cavitation = "reynolds"
+[motion]
+load = "{load} N"
+speed = "50 Hz"
+"""
+OMEGA = 2.0 * math.pi * 50.0
+NO_SUPPLY = '{ kind = "none" }'
+
+
+def printed(name: str) -> list[Row]:
+    lines = [line for line in (DATA / name).read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def grooves(count: int, position: float, opening: float) -> str:
+    return (
+        f'{{ kind = "axial-grooves", count = {count}, position = "{position} deg", opening_angle = "{opening} deg", '
+        'pressure = "1 bar" }'
+    )
+
+
+BUTENSCHOEN = [row for row in printed("butenschoen.csv") if row["width_over_diameter"] in (1.0, 0.5, 0.25, 0.125)]
+
+
+@pytest.mark.parametrize("row", BUTENSCHOEN, ids=lambda row: f"{row['width_over_diameter']}-{row['eccentricity']}")
+def test_load_attitude_and_side_flow_of_butenschoen(row: Row) -> None:
+    """The film begins at the widest gap: there is a groove of half a degree."""
+    radius, clearance = 0.01, 20e-6
+    width = 2e3 * radius * row["width_over_diameter"]
+    supply = grooves(1, row["attitude_deg"], 0.5)
+    case = load_case_text(
+        CASE.format(viscosity=10, width=width, diameter=20, clearance=20, supply=supply, load=1), name="plain"
+    )
+    state = sommerfeld_chart(case, [row["eccentricity"]], 50.0).points[0]
+    flow = state.side_flow / (radius**3 * (clearance / radius) * OMEGA)
+    # printed to four places: of the narrowest bearings 2 % of the smallest Sommerfeld number
+    assert state.sommerfeld_number == pytest.approx(row["sommerfeld_number"], rel=0.01, abs=6e-5)
+    assert state.attitude_deg == pytest.approx(row["attitude_deg"], abs=0.25)
+    assert flow == pytest.approx(row["side_flow"], rel=0.006)
+
+
+@pytest.mark.parametrize(
+    "row", printed("lund-thomsen.csv"), ids=lambda row: f"{row['width_over_diameter']}-{row['s']}"
+)
+def test_coefficients_of_lund_and_thomsen(row: Row) -> None:
+    """Within 2 % of the largest entry; their x lies along the load, y across."""
+    width, clearance = 0.1 * row["width_over_diameter"], 1e-4
+    load = 0.02 * 50.0 * width * 0.1 * (0.05 / clearance) ** 2 / row["s"]
+    case = load_case_text(
+        CASE.format(viscosity=20, width=1e3 * width, diameter=100, clearance=100, supply=grooves(2, 90, 20), load=load)
+    )
+    state = bearing_sheet(case).points[0]
+    assert state.stiffness is not None
+    assert state.damping is not None
+    turn = np.array([[0.0, -1.0], [1.0, 0.0]])  # to the frame of the table
+    k = turn @ state.stiffness @ turn.T * clearance / load
+    b = turn @ state.damping @ turn.T * clearance * OMEGA / load
+    assert state.eccentricity == pytest.approx(row["eccentricity"], abs=2e-3)
+    assert state.attitude_deg == pytest.approx(row["attitude_deg"], abs=0.2)
+    given = np.array([[row["kxx"], row["kxy"]], [row["kyx"], row["kyy"]]])
+    assert np.abs(k - given).max() < 0.02 * np.abs(given).max()
+    given = np.array([[row["bxx"], row["bxy"]], [row["bxy"], row["byy"]]])
+    assert np.abs(b - given).max() < 0.02 * np.abs(given).max()
+
+
+@pytest.fixture(scope="module")
+def plain() -> BearingSheet:
+    text = CASE.format(viscosity=10, width=10, diameter=20, clearance=20, supply=NO_SUPPLY, load=30)
+    return sommerfeld_chart(load_case_text(text, name="plain"), [0.01, 0.3, 0.6, 0.9], 50.0)
+
+
+def test_a_nearly_centred_journal_has_the_torque_of_petroff(plain: BearingSheet) -> None:
+    state = plain.points[0]
+    petroff = 2.0 * math.pi * 0.01 * OMEGA * 0.01**3 * 0.01 / 20e-6
+    assert -state.torque == pytest.approx(petroff, rel=1e-3)
+    assert state.power == pytest.approx(-state.torque * OMEGA, rel=1e-12)
+    assert state.film_thickness_min == pytest.approx(0.99 * 20e-6, rel=1e-6)
+
+
+def test_damping_is_symmetric_and_the_load_is_carried(plain: BearingSheet) -> None:
+    for state in plain.points:
+        assert state.damping is not None
+        assert abs(state.damping[0, 1] - state.damping[1, 0]) < 1e-3 * np.abs(state.damping).max()
+        assert abs(state.load[0]) < 1e-6 * abs(state.load[1])
+        assert state.load[1] < 0.0
+    loads = [abs(state.load[1]) for state in plain.points]
+    assert loads == sorted(loads)
+
+
+def test_the_load_of_the_chart_gives_its_eccentricity_back(plain: BearingSheet) -> None:
+    state = plain.points[2]
+    found = bearing_sheet(plain.case, [50.0], load=-float(state.load[1])).points[0]
+    assert found.displacement == pytest.approx(state.displacement, abs=1e-6)
+    assert found.power == pytest.approx(state.power, rel=1e-6)
+
+
+def test_a_run_s_film_has_the_same_coefficients() -> None:
+    """Half-Sommerfeld: the run's film is a table of solutions on elements."""
+    case = load_case("jeffcott")
+    state, film = bearing_sheet(case, [50.0]).points[0], stability(case, [50.0]).points[0].films[0]
+    assert state.displacement == pytest.approx(film.displacement, abs=3e-3)
+    assert state.stiffness == pytest.approx(film.stiffness, rel=0.02)
+    assert state.damping == pytest.approx(film.damping, rel=0.02)
+
+
+def test_coefficients_of_settled_oil_are_those_of_the_forces() -> None:
+    """A mass-conserving film: the force changes by -K times a small displacement."""
+    case = load_case("bearing", ["film.cavitation=elrod", "bearing.supply.pressure=2 bar"])
+    a, b = (bearing_sheet(case, [20.0], load=load).points[0] for load in (30.0, 30.3))
+    assert a.stiffness is not None
+    change = 40e-6 * (b.displacement - a.displacement)
+    assert a.stiffness @ change == pytest.approx(b.load - a.load, abs=0.03 * 0.3)
+
+
+def test_films_of_a_ring_carry_rotor_and_ring() -> None:
+    case = load_case("floating-ring")
+    inner, outer = bearing_sheet(case, [100.0]).points
+    ring = case.bearings[0].ring.mass  # type: ignore[union-attr]
+    assert outer.load[1] - inner.load[1] == pytest.approx(-9.81 * ring, rel=1e-3)
+    assert inner.shell_speed_Hz == outer.journal_speed_Hz
+    assert 0.0 < outer.journal_speed_Hz < 50.0
+    assert outer.shell_speed_Hz == 0.0
+
+
+def test_the_command_writes_table_picture_and_coefficients(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ["bearing", "jeffcott", "--speed", "50 Hz", "--speed", "6000 rpm", "--csv", "t.csv", "--ross", "t.toml"]
+    assert frb([*words, "--json"]) == 0
+    said = capsys.readouterr()
+    first, second = json.loads(said.out)["points"]
+    assert (first["speed_Hz"], second["speed_Hz"]) == (pytest.approx(50.0), pytest.approx(100.0))
+    assert "Sommerfeld number" in said.err
+    assert max(map(len, said.err.splitlines())) <= 80
+    assert (tmp_path / "jeffcott-bearing.png").read_bytes().startswith(b"\x89PNG")
+    table = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
+    assert float(table[1]["k_xy_N_m"]) == pytest.approx(second["stiffness_N_m"][0][1])
+    (element,) = tomllib.loads((tmp_path / "t.toml").read_text(encoding="utf-8")).values()
+    assert element["frequency"] == pytest.approx([100.0 * math.pi, 200.0 * math.pi])
+    assert element["cyx"][0] == pytest.approx(first["damping_N_s_m"][1][0])
+    assert set(element) == {"n", "tag", "frequency", *(f"{c}{a}" for c in "kc" for a in ("xx", "xy", "yx", "yy"))}
+
+
+def test_ross_reads_the_coefficients(tmp_path: Path) -> None:
+    ross = pytest.importorskip("ross")
+    path = tmp_path / "t.toml"
+    speeds = ["--speed", "50 Hz", "--speed", "100 Hz"]
+    assert frb(["bearing", "jeffcott", *speeds, "--ross", str(path), "--no-picture"]) == 0
+    element = ross.BearingElement.load(path)
+    given = tomllib.loads(path.read_text(encoding="utf-8"))["BearingElement_bearing"]
+    assert element.K(100.0 * math.pi)[0, 1] == pytest.approx(given["kxy"][0])
+
+
+def test_over_eccentricity_the_command_draws_sommerfeld_s_chart(tmp_path: Path) -> None:
+    options = ["--over", "eccentricity", "-o", str(tmp_path / "chart.svg"), "--quiet"]
+    assert frb(["bearing", "bearing", "--set", "film.cavitation=reynolds", *options]) == 0
+    assert "Sommerfeld number" in (tmp_path / "chart.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["bearing", "squeeze", "--speed", "20 Hz"], "motion.load"),
+        (["bearing", "jeffcott", "--csv", "nowhere/t.csv"], "does not exist"),
+        (["bearing", "jeffcott-two-phase", "--set", "film.two-phase.form=published"], "conservative"),
+        (["bearing", "jeffcott", "--over", "eccentricity", "--load", "3 N"], "no --load"),
+        (["bearing", "jeffcott", "--load", "-3 N"], "greater than 0"),
+    ],
+)
+def test_what_cannot_be_computed_is_said(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert frb([*words, "--no-picture"]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_no_load_is_a_fault_of_the_case() -> None:
+    with pytest.raises(InputError, match="--load"):
+        bearing_sheet(load_case("squeeze"), [20.0])

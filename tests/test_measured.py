@@ -1,0 +1,158 @@
+"""Measured motions: read from CSV, WAV and MAT, with the spectra and events of the run that they are made of."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.io import savemat, wavfile
+from synthetic_run import CLEARANCE, Rotor, signals
+
+from frbcli.analysis.measured import Measurement, measured_run, tacho_speed
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError
+
+STEP_s = 2e-4
+NOISE = np.random.default_rng(0)
+
+
+@pytest.fixture(scope="module")
+def table() -> pd.DataFrame:
+    """A run-up as sensors see it: in um, off the centre, noisy, with a pulse per revolution."""
+    found = signals(Rotor(step_s=STEP_s))
+    time, speed = found["time_s"], found["speed_Hz"]
+    turn = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    x, y = (1e6 * found[f"journal_{axis}_m"] + NOISE.normal(0.0, 0.02, len(time)) for axis in "xy")
+    return pd.DataFrame({"t": time, "x": x + 7.0, "y": y - 3.0, "n": speed, "key": 5.0 * (turn % 1.0 < 0.2)})
+
+
+GIVEN = Measurement("x", CLEARANCE, "y", time="t", speed="n", unit_m=1e-6)
+
+
+def onset(path: Path, given: Measurement) -> tuple[float, float]:
+    event = next(event for event in measured_run(path, given).events if event["kind"] == "onset")
+    return float(event["speed_Hz"]), float(event["frequency_ratio"])
+
+
+def test_a_table_has_the_events_of_the_run(tmp_path: Path, table: pd.DataFrame) -> None:
+    """The whirl is half grown at 6.5 s, where the rotor turns with 195 Hz; it begins with 0.47 times that."""
+    path = tmp_path / "run.csv"
+    path.write_text("# from the test rig\n" + table.to_csv(index=False, sep=";"), encoding="utf-8")
+    speed, ratio = onset(path, GIVEN)
+    assert 191.0 < speed < 195.0
+    assert ratio == pytest.approx(0.47, abs=0.01)
+    run = measured_run(path, GIVEN)
+    assert run["journal_x_m"].mean() == pytest.approx(0.0, abs=1e-12)
+    assert np.ptp(run["journal_y_m"]) == pytest.approx(1e-6 * np.ptp(table["y"]))
+
+
+def test_wav_and_mat_hold_the_same(tmp_path: Path, table: pd.DataFrame) -> None:
+    expected = 193.0
+    motion = table[["x", "y", "n"]].to_numpy()
+    wavfile.write(tmp_path / "run.wav", round(1.0 / STEP_s), motion.astype(np.float32))
+    in_wav = Measurement("1", CLEARANCE, "2", speed="3", unit_m=1e-6)
+    assert onset(tmp_path / "run.wav", in_wav)[0] == pytest.approx(expected, abs=2.0)
+    savemat(tmp_path / "run.mat", {"probes": motion[:, :2], "n": motion[:, 2], "t": table["t"].to_numpy()})
+    in_mat = replace(in_wav, x="probes.1", y="probes.2", time="t", speed="n")
+    assert onset(tmp_path / "run.mat", in_mat)[0] == pytest.approx(expected, abs=2.0)
+
+
+def test_the_speed_follows_from_a_pulse(tmp_path: Path, table: pd.DataFrame) -> None:
+    path = tmp_path / "run.csv"
+    table.to_csv(path, index=False)
+    run = measured_run(path, replace(GIVEN, speed=None, tacho="key"))
+    fast = table["n"].to_numpy() > 30.0
+    off = run["speed_Hz"][fast] / table["n"].to_numpy()[fast] - 1.0
+    assert np.sqrt(np.mean(off**2)) < 5e-3
+    assert onset(path, replace(GIVEN, speed=None, tacho="key"))[0] == pytest.approx(193.0, abs=2.0)
+
+
+def test_pulses_of_a_constant_speed_give_it_exactly() -> None:
+    time = np.arange(20_000) * 1e-4
+    assert tacho_speed(time, np.sin(2.0 * np.pi * 4.0 * 37.0 * time), 4) == pytest.approx(37.0, rel=1e-4)
+
+
+def test_uneven_times_are_made_even(tmp_path: Path, table: pd.DataFrame) -> None:
+    path = tmp_path / "run.csv"
+    shaken = table.copy()
+    shaken["t"] += STEP_s * NOISE.uniform(-0.2, 0.2, len(table))
+    shaken["x"] = np.interp(shaken["t"], table["t"], table["x"])
+    shaken["y"] = np.interp(shaken["t"], table["t"], table["y"])
+    shaken.to_csv(path, index=False)
+    run = measured_run(path, GIVEN)
+    assert np.ptp(np.diff(run["time_s"])) < 1e-9
+    assert onset(path, GIVEN)[0] == pytest.approx(193.0, abs=2.0)
+
+
+def test_the_command_draws_a_measurement(
+    tmp_path: Path, table: pd.DataFrame, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, picture = tmp_path / "run.csv", tmp_path / "picture.png"
+    table.to_csv(path, index=False)
+    columns = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n", "--clearance", "35 um"]
+    assert frb(["waterfall", str(path), *columns, "-o", str(picture), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [event["kind"] for event in document["events"]][-1] == "onset"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert frb(["waterfall", str(path), *columns, "--order", "1,0.5", "-o", str(picture), "--quiet"]) == 0
+    one = ["--x", "x", "--rate", "5000", "--speed-at", "100 Hz", "--clearance", "35 um"]
+    assert frb(["waterfall", str(path), *one, "-o", str(picture), "--quiet"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"x": "z"}, "has no column"),
+        ({"time": None}, "--time"),
+        ({"speed": None}, "--tacho"),
+        ({"time": "n"}, "do not rise"),
+        ({"speed": None, "tacho": "x"}, ""),
+    ],
+)
+def test_what_is_missing_is_said(
+    changed: dict[str, str | None], said: str, tmp_path: Path, table: pd.DataFrame
+) -> None:
+    path = tmp_path / "run.csv"
+    table[::-1].to_csv(path, index=False) if changed.get("time") else table.to_csv(path, index=False)
+    if not said:
+        table.assign(x=1.0).to_csv(path, index=False)
+        said = "pulses"
+    with pytest.raises(InputError, match=said):
+        measured_run(path, replace(GIVEN, **changed))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("run.csv", b"", "cannot be read"),
+        ("run.csv", b"t,x\n0,hello\n1,2\n2,3\n", "no number in row 1"),
+        ("run.wav", b"RIFF", "cannot be read"),
+        ("run.mat", b"not a matrix", "cannot be read"),
+        ("run.xyz", b"1", "no known kind"),
+        ("", b"", "does not exist"),
+    ],
+)
+def test_a_file_that_is_no_measurement_is_refused(name: str, content: bytes, said: str, tmp_path: Path) -> None:
+    path = tmp_path / (name or "nothing.csv")
+    if name:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match=said):
+        measured_run(path, replace(GIVEN, y=None, speed=None, speed_Hz=10.0))
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["waterfall", "m.csv"], "--x COLUMN"),
+        (["waterfall", "m.csv", "--x", "x"], "needs --clearance"),
+        (["waterfall", "run.h5", "--x", "x", "--clearance", "35 um"], "needs no --x"),
+        (["waterfall", "m.csv", "--x", "x", "--clearance", "-1 um"], "not greater than 0"),
+    ],
+)
+def test_options_that_do_not_fit_are_said(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(words) == 2
+    assert said in capsys.readouterr().err

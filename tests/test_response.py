@@ -1,0 +1,119 @@
+"""The linear unbalance response against closed forms and against the synchronous motion of a run-up."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli.analysis.order_tracking import order_track
+from frbcli.case.load import load_case
+from frbcli.cli.main import run as frb
+from frbcli.linear.response import Response, response, unbalance_motion
+from frbcli.rotor.jeffcott import jeffcott_rotor
+from frbcli.rotor.rigid import rigid_rotor
+from frbcli.runs.run import runup
+
+MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER = 6.0, 0.1, 5e6, 3e-6, 4.0, 0.7
+
+
+@pytest.mark.parametrize("omega", [50.0, 700.0, 912.0, 3000.0])
+def test_a_jeffcott_rotor_on_springs_and_dampers_has_its_closed_form(omega: float) -> None:
+    """Equal in x and y, and not cross-coupled: z = x + iy turns forward alone, two equations remain."""
+    rotor = jeffcott_rotor(MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER, 9.81)
+    k, c = 3e6, 2e3
+    motion = unbalance_motion(rotor, omega, k * np.eye(2)[None], c * np.eye(2)[None])
+    spring = SHAFT + 1j * omega * INNER
+    disk = spring - MASS * omega**2 + 1j * omega * OUTER
+    journal = spring - JOURNALS * omega**2 + 2.0 * (k + 1j * omega * c)  # two bearings
+    pull = 1j * UNBALANCE * omega**2  # (2.3) at a constant speed: the heavy spot is a quarter of a turn ahead
+    z_disk = pull / (disk - spring**2 / journal)
+    z_journal = spring / journal * z_disk
+    x_journal, x_disk, y_journal, y_disk = motion
+    assert 0.5 * (x_disk + 1j * y_disk) == pytest.approx(z_disk, rel=1e-12)
+    assert 0.5 * (x_journal + 1j * y_journal) == pytest.approx(z_journal, rel=1e-12)
+    assert abs(x_disk - 1j * y_disk) < 1e-12 * abs(x_disk)
+
+
+def test_a_rigid_rotor_far_above_all_turns_about_its_centre_of_mass() -> None:
+    rotor = rigid_rotor(5.0, 2e-6, 0.0, 9.81)
+    omega = 1e6
+    x, y = unbalance_motion(rotor, omega, 1e6 * np.eye(2)[None], 10.0 * np.eye(2)[None])
+    assert 0.5 * abs(x + 1j * y) == pytest.approx(2e-6 / 5.0, rel=1e-4)
+
+
+@pytest.fixture(scope="module")
+def jeffcott() -> Response:
+    return response(load_case("jeffcott"))
+
+
+def test_the_run_up_follows_the_response_until_it_whirls(jeffcott: Response, tmp_path: Path) -> None:
+    """Within 2 % of the peak, at 30 Hz/s through it; forward and backward motion, and the phase."""
+    run = runup(load_case("jeffcott"), tmp_path / "run.h5")
+    still = (jeffcott.growth < 0.0) & (jeffcott.speeds_Hz > 30.0)
+    speeds = jeffcott.speeds_Hz[still]
+    for number, name in enumerate(jeffcott.points):
+        track = order_track(run, 1.0, name)
+        for mine, its in ((jeffcott.forward, track.forward), (jeffcott.backward, track.backward)):
+            seen = np.interp(speeds, track.speed_Hz, its.real) + 1j * np.interp(speeds, track.speed_Hz, its.imag)
+            assert np.abs(mine[still, number] - seen).max() < 0.02 * np.abs(jeffcott.forward[still, number]).max()
+
+
+def test_a_fast_ramp_follows_it_too(tmp_path: Path) -> None:
+    """1000 Hz/s, between the transient of the start and the whirl: within 2 %."""
+    ramp = ["speed.from=60 Hz", "speed.to=220 Hz", "speed.duration=0.16 s"]
+    fast = load_case("rigid", [*ramp, "start.position=resting", "rotor.unbalance=3 g*mm"])
+    run = runup(fast, tmp_path / "run.h5")
+    track = order_track(run, 1.0, "journal", revolutions=8)
+    found = response(fast)
+    seen = (track.speed_Hz > 120.0) & (track.speed_Hz < 200.0)
+    mine = np.interp(track.speed_Hz[seen], found.speeds_Hz, np.abs(found.forward[:, 0]))
+    assert np.abs(track.forward[seen]) == pytest.approx(mine, rel=0.02)
+
+
+def test_bearing_forces_balance_the_rotor(jeffcott: Response) -> None:
+    """Both bearings carry what accelerates disk, journals and unbalance, less the damping from outside."""
+    rotor = load_case("jeffcott").rotor
+    for i, speed in enumerate(jeffcott.speeds_Hz):
+        omega = 2.0 * math.pi * speed
+        journal, disk = jeffcott.motion[i]
+        pull = omega**2 * rotor.unbalance * np.array([1j, 1.0])  # type: ignore[union-attr]
+        inertia = -(omega**2) * (rotor.journal_mass * journal + rotor.mass * disk)  # type: ignore[union-attr]
+        outer = 1j * omega * rotor.external_damping * disk  # type: ignore[union-attr]
+        assert 2.0 * jeffcott.forces[i, 0] == pytest.approx(inertia + outer - pull, rel=1e-9)
+
+
+def test_orbits_are_ellipses_with_the_amplitude_as_larger_semi_axis(jeffcott: Response) -> None:
+    place = int(np.argmax(jeffcott.amplitude[:, 1]))
+    radius = np.hypot(*jeffcott.orbit(place, 1, 3600).T)
+    assert radius.max() == pytest.approx(jeffcott.amplitude[place, 1], rel=1e-5)
+    smaller = abs(abs(jeffcott.forward[place, 1]) - abs(jeffcott.backward[place, 1]))
+    assert radius.min() == pytest.approx(smaller, rel=1e-3)
+    assert any(abs(speed - jeffcott.speeds_Hz[place]) < 2.5 for speed in jeffcott.critical_speeds_Hz)
+
+
+def test_the_command_writes_table_picture_and_document(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert frb(["runup", "jeffcott", "-o", "run.h5", "--no-picture", "--quiet", "--set", "speed.duration=1 s"]) == 0
+    capsys.readouterr()
+    assert frb(["response", "jeffcott", "--run", "run.h5", "--csv", "t.csv", "--json"]) == 0
+    said = capsys.readouterr()
+    document = json.loads(said.out)
+    assert {"speed_Hz", "node", "amplitude_m", "phase_deg"} <= set(document["points"][0])
+    assert len(document["points"]) == 240
+    assert document["critical_speeds_Hz"] == pytest.approx([131.3, 141.8], abs=1.0)
+    assert max(map(len, said.err.splitlines())) <= 80
+    rows = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
+    assert float(rows[-1]["amplitude_m"]) == pytest.approx(document["points"][-1]["amplitude_m"])
+    assert (tmp_path / "jeffcott-response.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_mass_conserving_film_has_no_linear_response(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["response", "jeffcott-two-phase", "--no-picture"]) == 2
+    assert "mass-conserving" in capsys.readouterr().err
