@@ -25,7 +25,7 @@ from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.plan import Plan
-from frbcli.scene.preparation import after_s, along_factor, before_s, memory_B, rotor_size, shaft_mass
+from frbcli.scene.preparation import after_s, before_s, memory_B, rotor_size, shaft_mass
 from frbcli.scene.published import PUBLISHED
 from frbcli.scene.tabulated import SOLUTIONS
 
@@ -33,19 +33,20 @@ STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
 ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step size in the local error
 # By form of the film. SOLVE_us: time of a solve; ITERATIONS: solves of a stage; CROWDED: steps over the least number
 # of steps, which whirl increases.
-SOLVE_us = {CLOSED_FORM: 0.5, CLIPPED: 14.0, TABLE: 0.5, FIELDS: 14.0, CHAINS: 20.0, CELLS: 36.0, SOLUTIONS: 0.8,
+SOLVE_us = {CLOSED_FORM: 0.5, CLIPPED: 14.0, TABLE: 0.5, FIELDS: 14.0, CHAINS: 20.0, CELLS: 23.0, SOLUTIONS: 0.8,
             PUBLISHED: 1300.0, GIVEN: 1.0}  # fmt: skip
-ITERATIONS = {CLOSED_FORM: 1.6, CLIPPED: 2.4, TABLE: 1.6, FIELDS: 2.4, CHAINS: 2.2, CELLS: 2.6, SOLUTIONS: 1.3,
+ITERATIONS = {CLOSED_FORM: 1.6, CLIPPED: 2.4, TABLE: 1.6, FIELDS: 2.4, CHAINS: 2.2, CELLS: 1.8, SOLUTIONS: 1.3,
               PUBLISHED: 4.0, GIVEN: 1.6}  # fmt: skip
-RING_ITERATIONS = 3.6  # of a finite-volume film at a ring
-CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.15, CELLS: 2.0, SOLUTIONS: 1.05,
+RING_ITERATIONS = 1.5  # of a finite-volume film at a ring
+CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.15, CELLS: 1.4, SOLUTIONS: 1.05,
            PUBLISHED: 1.5, GIVEN: 1.05}  # fmt: skip
 # Steps of a run with an elastic shell over those without one: 1.3 to 3.4 where a whirl presses the journal into the
 # shell, 1 where there is no contact.
 ELASTIC = 1.7
 FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
-CELLS_AROUND, CELLS_ALONG = 48, 6
+# Share of a solve on USUAL_CELLS that does not depend on the cells; how many along the axis double the time of a cell.
+CELLS_FIXED, USUAL_CELLS, CELLS_DOUBLE = 0.2, (48, 6), 14.0
 PUBLISHED_COUNT, PUBLISHED_POWER = 288, 1.4
 LONGEST_STEP_s = 1e-3  # of a run: also at low speed the rotor falls and its shaft vibrates
 MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
@@ -123,9 +124,14 @@ def solve_us(plan: Plan) -> float:
         us *= (plan.cells[0] * plan.cells[1] / PUBLISHED_COUNT) ** PUBLISHED_POWER
     elif plan.cells is not None:
         around, along = plan.cells
-        size = around / CELLS_AROUND * along_factor(along) / along_factor(CELLS_ALONG)
-        us *= law_named(plan.cavitation).cost * size
+        size = _cells_time(around, along) / _cells_time(*USUAL_CELLS)
+        us *= law_named(plan.cavitation).cost * (CELLS_FIXED + (1.0 - CELLS_FIXED) * size)
     return us
+
+
+def _cells_time(around: int, along: int) -> float:
+    """Time of a solve by its cells, in any unit."""
+    return around * along * (1.0 + (along / CELLS_DOUBLE) ** 2)
 
 
 def _fields_us(mesh: Mesh) -> float:

@@ -45,7 +45,7 @@ from frbcli.scene.tabulated import SOLUTIONS
 
 # What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
 # off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.
-SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 8.0, (2e-5, 2e-3)
+SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 4.0, (2e-5, 1e-3)
 
 
 @dataclass(frozen=True)
