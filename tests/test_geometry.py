@@ -420,7 +420,7 @@ def test_check_shows_gap_and_reynolds_number(capsys: pytest.CaptureFixture[str])
     assert film["turning_m"] == pytest.approx(-12.5e-3 * 0.095e-3 * 1.3**2, rel=0.01)
     assert "Warning" not in spoken.out + spoken.err
     assert run(["check", "bearing", *options, "--set", "oil.viscosity='2 mPa*s'"]) == 0
-    assert "Warning: film: the Reynolds number 2412" in capsys.readouterr().out
+    assert "Warning: Reynolds number 2412 in film" in capsys.readouterr().out
     engine = ["speed.to='1500 Hz'", "bearing.0.inner.diameter='25 mm'", "bearing.0.outer.diameter='40 mm'"]
     inner, outer = operating_points(load_case("turbocharger-heavy", engine))[:2]
     assert (inner.omega, outer.omega) == pytest.approx((1.3 * ENGINE, 0.3 * ENGINE))
