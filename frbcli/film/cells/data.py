@@ -54,10 +54,10 @@ FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
 # length of the cell; what a unit of pressure on it pushes the journal by.
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
 # Layers of cells: area in the balance; share of the cell that is film, and by how much the area exceeds it over the
-# cell's length; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where the pressure is an unknown; conductance to the channel of a ring that opens
-# there, and 1 + the number of that hole in its film, 0: none; weight in the force; area in which oil is sheared;
-# conductance to the next cell around with a gap of its own, beside the edge of an opening, 0: none, and sine, cosine
-# and gap of the centred journal there.
+# cell's length; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where the
+# pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that hole in
+# its film, 0: none; weight in the force; area in which oil is sheared; conductance to the next cell around with a gap
+# of its own, beside the edge of an opening, 0: none, and sine, cosine and gap of the centred journal there.
 (
     AREA,
     SHARE,
