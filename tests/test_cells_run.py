@@ -314,3 +314,19 @@ def test_stopped_while_its_error_is_told_it_goes_on(tmp_path: Path) -> None:
     resumed = frbcli.runup(case, tmp_path / "run.h5", resume=True)
     assert (resumed.status, resumed.error) == (whole.status, whole.error)
     np.testing.assert_array_equal(resumed["eccentricity"], whole["eccentricity"])
+
+
+@pytest.mark.parametrize("law", ["two-phase", "barotropic", "elrod"])
+def test_what_an_iteration_leaves_of_a_curved_law_does_not_add_up(law: str, tmp_path: Path) -> None:
+    """The oil that is carried on changes by the flows alone; a longer run is no further off than a short one, and one
+    with a smaller tolerance less."""
+    given = (f"film.cavitation={law}", "accuracy.mesh=[3, 24]", "speed.from=40 Hz", "speed.to=41 Hz")
+
+    def defect(*settings: str) -> float:
+        case = load_case("axial-groove-two-phase", (*given, *settings))
+        return abs(float(frbcli.runup(case, tmp_path / "run.h5", force=True).error["oil_balance_relative"]))
+
+    short, long = (defect("accuracy.tolerance=4e-4", f"speed.duration={length} ms") for length in (2, 32))
+    assert long < 1e-5
+    assert long < 2.0 * max(short, 1e-6)
+    assert defect("accuracy.tolerance=1e-5", "speed.duration=8 ms") < 1e-7

@@ -28,7 +28,8 @@ DOCS = Path(__file__).parent.parent / "docs"
 SCALES = Scales(reference=900.0, cavitation=-60.0, ambient=500.0)
 W = np.concatenate([np.linspace(-1.4, 0.6, 801), [-1e-9, 0.0, 1e-9]])
 RESULTS = ("pressure", "fraction", "source")
-SHORT = ("speed.duration=2 ms", "speed.from=40 Hz", "speed.to=41 Hz", "accuracy.mesh=[3, 24]", "accuracy.target=1e-2")
+SHORT = ("speed.duration=2 ms", "speed.from=40 Hz", "speed.to=41 Hz", "accuracy.mesh=[3, 24]",
+         "accuracy.tolerance=1e-5")  # fmt: skip
 
 
 def default_of(law: type[Law]) -> Law:
@@ -134,7 +135,8 @@ def test_the_law_of_the_page_works_in_rotation_and_run_up(tmp_path: Path) -> Non
     assert run.status == other.status == "finished"
     assert run["oil_fraction"][-1] < 1.0
     assert run["eccentricity"] == pytest.approx(other["eccentricity"], abs=1e-3 * float(other["eccentricity"].max()))
-    assert abs(run.error["oil_balance_relative"]) < 1e-9
+    # what the last step leaves of a steep law, see test_what_an_iteration_leaves_of_a_curved_law_does_not_add_up
+    assert abs(run.error["oil_balance_relative"]) < 1e-5
 
 
 @pytest.mark.usefixtures("added")
