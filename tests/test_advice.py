@@ -232,8 +232,8 @@ def test_bearing_without_supply_in_air_is_refused_only_to_models_that_keep_oil()
 
 
 def test_reynolds_film_in_open_air_is_solved_like_one_in_a_bath(tmp_path: Path) -> None:
-    """It ended with not-converged at 0.03 s, with any target and any policy of contact. The plan would take longer steps
-    for the film in open air, of which it expects a larger error."""
+    """It ended with not-converged at 0.03 s, with any target and any policy of contact. The plan would take longer
+    steps for the film in open air, of which it expects a larger error."""
     settings = ("film.cavitation=reynolds", "speed.from=200 Hz", "speed.to=220 Hz", "speed.duration=0.04 s",
                 "accuracy.tolerance=2e-5")  # fmt: skip
     air, bath = (runup(jeffcott(*settings, f"bearing.ends={ends}"), tmp_path / f"{ends}.h5") for ends in ENDS)
