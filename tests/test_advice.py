@@ -234,6 +234,7 @@ def test_bearing_without_supply_in_air_is_refused_only_to_models_that_keep_oil()
 def test_reynolds_film_in_open_air_is_solved_like_one_in_a_bath(tmp_path: Path) -> None:
     """It ended with not-converged at 0.03 s, with any target and any policy of contact."""
     settings = ("film.cavitation=reynolds", "speed.from=200 Hz", "speed.to=220 Hz", "speed.duration=0.04 s")
+    settings += ("accuracy.tolerance=2e-5",)  # the plan expects another error of each
     air, bath = (runup(jeffcott(*settings, f"bearing.ends={ends}"), tmp_path / f"{ends}.h5") for ends in ENDS)
     assert air.status == bath.status == "finished"
     np.testing.assert_allclose(air["eccentricity"], bath["eccentricity"], atol=1e-6)

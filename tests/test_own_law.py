@@ -134,7 +134,8 @@ def test_the_law_of_the_page_works_in_rotation_and_run_up(tmp_path: Path) -> Non
     assert run.status == other.status == "finished"
     assert run["oil_fraction"][-1] < 1.0
     assert run["eccentricity"] == pytest.approx(other["eccentricity"], abs=1e-3 * float(other["eccentricity"].max()))
-    assert abs(run.error["oil_balance_relative"]) < 1e-9
+    # what a cell holds beyond the line by which it was corrected, where that passes a kink of the law, is carried on
+    assert abs(run.error["oil_balance_relative"]) < 1e-5
 
 
 @pytest.mark.usefixtures("added")
