@@ -13,7 +13,6 @@ import numpy as np
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
 from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, CHANNELS_NET, ENDS_NET, SIDES, SUPPLY_NET, balances
-from frbcli.film.cells.block_cyclic import solve_ring
 from frbcli.film.cells.channel_flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
     AREA,
@@ -24,9 +23,11 @@ from frbcli.film.cells.data import (
     SETTLED,
     SHEARED,
     SIN,
+    SOLVER_AT,
     UNKNOWN,
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
+from frbcli.film.cells.ring_solver import solve_ring_at
 from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, cell_states, follow_law
 from frbcli.solve.stage import lagrange
 
@@ -153,7 +154,7 @@ def cell_numbers(
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
         if slots > 0:
             ask_of_channels(cells, fields)
-        solve_ring(stencil, blocks, fields)
+        solve_ring_at(numbers[SOLVER_AT], stencil, blocks, fields)
         f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, cells, states, fields)
         m, k = w.shape
         for i in range(m):

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import ctypes
 import inspect
-from collections.abc import Callable
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -18,13 +17,12 @@ from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
-from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
-from frbcli.compiled import c_function, compiled
+from frbcli.compiled import address_of, c_function, call_of, compiled
 from frbcli.film.cavitation import penalty
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS, SHIPPED
@@ -67,12 +65,10 @@ def compiled_cell(law: type[Law]) -> Any:
 
 
 def addresses(law: Law) -> tuple[float, float]:
-    """Of follow and cells of a law, as numbers of a film. Those of today's machines are below 2^53, so exact."""
+    """Of follow and cells of a law, as numbers of a film."""
     kind: Any = type(law)
-    found = tuple(function.address for function in compiled_law(kind))
-    if any(int(float(address)) != address for address in found):
-        raise MemoryError("an address of a compiled function does not fit into a number")
-    return float(found[0]), float(found[1])
+    follow, cells = (address_of(function) for function in compiled_law(kind))
+    return follow, cells
 
 
 def given_parameters(law: Law) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -94,33 +90,16 @@ def compiled_cells(law: Law, w: np.ndarray[Any, np.dtype[np.float64]], scales: S
 
 def _call_follow(typingctx, address, given, motion, scales, law):  # type: ignore[no-untyped-def]
     """CompiledLaw.follow at an address, with arrays in one piece."""
-    return types.void(types.intp, given, motion, scales, law), _call(0)
+    return types.void(types.intp, given, motion, scales, law), call_of(0)
 
 
 def _call_cells(typingctx, address, n, law, scales, w, states):  # type: ignore[no-untyped-def]
     """CompiledLaw.cells at an address, with arrays in one piece."""
-    return types.void(types.intp, types.intp, law, scales, w, states), _call(1)
+    return types.void(types.intp, types.intp, law, scales, w, states), call_of(1)
 
 
 call_follow: Any = intrinsic(_call_follow)
 call_cells: Any = intrinsic(_call_cells)
-
-
-def _call(numbers: int) -> Callable[..., Any]:
-    """Code that calls an address with some whole numbers and then with the data of arrays."""
-
-    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-        pointer = ir.DoubleType().as_pointer()
-        given = list(arguments[1 : 1 + numbers])
-        kinds = [value.type for value in given]
-        for kind, array in zip(signature.args[1 + numbers :], arguments[1 + numbers :], strict=True):
-            given.append(context.make_array(kind)(context, builder, array).data)
-            kinds.append(pointer)
-        function = ir.FunctionType(ir.VoidType(), kinds)
-        builder.call(builder.inttoptr(arguments[0], function.as_pointer()), given)
-        return context.get_dummy_value()
-
-    return generate
 
 
 def _follow(given, motion, scales, law):  # type: ignore[no-untyped-def]

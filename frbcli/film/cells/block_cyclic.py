@@ -18,9 +18,8 @@ from frbcli.film.cells.vectors import eliminate_column, next_column, row_length,
 
 CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
 # Lengths of columns that are eliminated on the vector units, with the usual number of right-hand sides: those of plans,
-# of the runs on fewer cells that errors follow from, and of references.
-THREE, FOUR, FIVE, SIX = (0,) * 3, (0,) * 4, (0,) * 5, (0,) * 6
-NINE, TEN, TWELVE = (0,) * 9, (0,) * 10, (0,) * 12
+# and of the runs on fewer cells that errors follow from. Each takes a second to compile.
+THREE, FOUR, FIVE, SIX, TEN = (0,) * 3, (0,) * 4, (0,) * 5, (0,) * 6, (0,) * 10
 USUAL = (0,) * 3
 
 
@@ -209,11 +208,7 @@ def solve_ring(stencil: Array, blocks: Array, fields: Array) -> None:
         solve_known(stencil, fields, FOUR, USUAL)
     elif known and k == len(THREE):
         solve_known(stencil, fields, THREE, USUAL)
-    elif known and k == len(NINE):
-        solve_known(stencil, fields, NINE, USUAL)
     elif known and k == len(TEN):
         solve_known(stencil, fields, TEN, USUAL)
-    elif known and k == len(TWELVE):
-        solve_known(stencil, fields, TWELVE, USUAL)
     else:
         solve_blocks(stencil, blocks, fields, stencil[0, 0], fields[0, 0])

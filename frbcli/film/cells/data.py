@@ -14,6 +14,7 @@ from frbcli.film.cells.axial import end_slopes
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.grid import force_weights
 from frbcli.film.cells.plain.balance import NO_DISTANCE
+from frbcli.film.cells.ring_solver import ring_solver
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 
@@ -22,10 +23,10 @@ TIGHTLY = 1e-4  # settled, where nothing is said of it
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
-# Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; CENTRIFUGAL: by which given pressures fall
-# with the square of the grid's speed, in s; BORED: 1 where flows around take the gaps of both cells, as beside bores;
-# SETTLED: share of its pace that its balances may be off by in the mean; from PARAMETERS on: those of its law, of a
-# centred journal at 1 rad/s.
+# Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; SOLVER_AT: of ring_solver; CENTRIFUGAL: by
+# which given pressures fall with the square of the grid's speed, in s; BORED: 1 where flows around take the gaps of
+# both cells, as beside bores; SETTLED: share of its pace that its balances may be off by in the mean; from PARAMETERS
+# on: those of its law, of a centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
@@ -33,6 +34,7 @@ CLOSED, GIVEN, FREE = range(3)
     AMBIENT,
     FOLLOW_AT,
     CELLS_AT,
+    SOLVER_AT,
     CLIPS,
     REMEMBERS,
     NEAR,
@@ -47,7 +49,7 @@ CLOSED, GIVEN, FREE = range(3)
     BORED,
     SETTLED,
     PARAMETERS,
-) = range(20)
+) = range(21)
 SCALES_END = AMBIENT + 1  # REFERENCE, CAVITY and AMBIENT stand beside each other, as Scales has them
 FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
@@ -135,6 +137,7 @@ def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Ar
         AMBIENT: scales.ambient,
         FOLLOW_AT: follow_at,
         CELLS_AT: cells_at,
+        SOLVER_AT: ring_solver(),
         CLIPS: float(law.clips),
         REMEMBERS: float(law.keeps_oil),
         NEAR: ENDS[section.near],

@@ -7,7 +7,7 @@ import numpy as np
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import balances
-from frbcli.film.cells.block_cyclic import CENTRE, solve_ring
+from frbcli.film.cells.block_cyclic import CENTRE
 from frbcli.film.cells.data import (
     AREA,
     CAVITY,
@@ -20,8 +20,10 @@ from frbcli.film.cells.data import (
     PUSH_X,
     PUSH_Y,
     SIN,
+    SOLVER_AT,
     UNKNOWN,
 )
+from frbcli.film.cells.ring_solver import solve_ring_at
 from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 
 
@@ -95,7 +97,7 @@ def film_newton(
     balances(
         numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
     )
-    solve_ring(stencil, blocks, fields)
+    solve_ring_at(numbers[SOLVER_AT], stencil, blocks, fields)
     return film_loads(numbers, ring, cells, states, fields)
 
 

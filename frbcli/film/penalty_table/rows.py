@@ -15,7 +15,7 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import compiled_cell
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_ring
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
 
 SETTLED = 2e-4  # of the largest pressure: a correction after which what is left is its square
 PLAIN, DAMPING, LIMIT = 8, 0.5, 60  # iterations without damping; how it goes on from one to the next; all
@@ -85,7 +85,7 @@ def _settle(
             return iteration
         _residual(stencil, loads, area, v_r, v_t, cells, right)
         _matrix(stencil, area, cells, speed * DAMPING ** (iteration - PLAIN) if iteration >= PLAIN else 0.0, newton)
-        solve_ring(newton, blocks, right)
+        solve_blocks(newton, blocks, right, newton[0, 0], right[0, 0])
         for i in range(m):
             for j in range(k):
                 w[i, j] += right[i, j, k]
