@@ -57,6 +57,16 @@ def test_a_kinematic_test_has_its_load_or_none(capsys: pytest.CaptureFixture[str
     assert document["findings"]["films"][0]["load_N"] == 29.9
 
 
+@pytest.mark.parametrize("setting", ["bearing.1.position=42 mm", "shaft.0.youngs_modulus=1e-9 Pa"])
+def test_bearings_that_do_not_hold_the_rotor_have_no_static_load(
+    setting: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """At one place, or on a shaft like a string: both ended in a traceback."""
+    assert frb(["check", "turbocharger-car", "--set", setting]) == 0
+    assert "static loads" not in capsys.readouterr().out
+    assert frb(["stability", "turbocharger-car", "--set", setting, "--speed", "100 Hz", "--no-picture"]) in (0, 2, 3)
+
+
 def test_values_are_shown_on_demand_and_fit_the_screen(capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(["check", "turbocharger-heavy"]) == 0
     said = capsys.readouterr().out

@@ -84,38 +84,43 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
             "title": case.title,
             "status": "ok",
             "values": [{"key": value.key, "value": value.value, "unit": value.unit} for value in listed],
-            "findings": {
-                "mass_kg": found.mass,
-                "natural_frequencies_Hz": found.frequencies_Hz,
-                "supported": found.supported,
-                "films": [
-                    {
-                        "film": film.film,
-                        "load_N": film.load,
-                        "mean_pressure_Pa": film.mean_pressure,
-                        "sommerfeld_number": film.sommerfeld_number,
-                    }
-                    for film in found.films
-                ],
-            },
+            "findings": _told_findings(found),
             "bare_numbers": [{"key": value.key, "value": value.value, "unit": value.unit} for value in bare],
-            "films": [
-                {
-                    "film": film.name,
-                    "clearance_m": film.clearance,
-                    "viscosity_Pa_s": film.viscosity,
-                    "speed_Hz": film.omega / TURN,
-                    "reynolds_number": film.reynolds,
-                    "laminar": film.laminar,
-                    "warming_m": film.warming,
-                    "turning_m": film.turning,
-                }
-                for film in films
-            ],
+            "films": [_told_film(film) for film in films],
             "plan": [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in decisions],
             "expected": expected,
         }
     )
+
+
+def _told_findings(found: Findings) -> dict[str, object]:
+    return {
+        "mass_kg": found.mass,
+        "natural_frequencies_Hz": found.frequencies_Hz,
+        "supported": found.supported,
+        "films": [
+            {
+                "film": film.film,
+                "load_N": film.load,
+                "mean_pressure_Pa": film.mean_pressure,
+                "sommerfeld_number": film.sommerfeld_number,
+            }
+            for film in found.films
+        ],
+    }
+
+
+def _told_film(film: FilmOperation) -> dict[str, object]:
+    return {
+        "film": film.name,
+        "clearance_m": film.clearance,
+        "viscosity_Pa_s": film.viscosity,
+        "speed_Hz": film.omega / TURN,
+        "reynolds_number": film.reynolds,
+        "laminar": film.laminar,
+        "warming_m": film.warming,
+        "turning_m": film.turning,
+    }
 
 
 def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, ...]:

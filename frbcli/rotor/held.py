@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.errors import NotConverged
 from frbcli.rotor.linear import Array, LinearRotor
 
 
@@ -26,7 +27,7 @@ class HeldRotor:
 
 def held_rotor(rotor: LinearRotor) -> HeldRotor:
     """The rotor under its static load as its journals see it; what neither spring nor film holds, the angle of a
-    ring, stays at zero."""
+    ring, stays at zero. Raises NotConverged if the bearings do not hold the rotor."""
     n, p = rotor.size, rotor.journals.reshape(-1, rotor.size)
     count = len(p)
     loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
@@ -34,5 +35,10 @@ def held_rotor(rotor: LinearRotor) -> HeldRotor:
     given = np.zeros((n + count, 1 + count))
     given[:n, 0] = rotor.static_load
     given[n:, 1:] = np.eye(count)
-    solution = np.linalg.solve(held, given)
+    try:
+        solution = np.linalg.solve(held, given)
+    except np.linalg.LinAlgError:
+        raise NotConverged(
+            "The bearings do not hold the rotor: it can turn about them. Give them different positions."
+        ) from None
     return HeldRotor(solution[n:, 0], -solution[n:, 1:], solution[:n, 0], solution[:n, 1:])

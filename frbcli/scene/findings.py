@@ -10,6 +10,7 @@ import numpy as np
 from frbcli.case.bearing import FilmGeometry
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.reduction import RIGID
 from frbcli.scene.films import film_places
@@ -65,12 +66,17 @@ def findings(case: Case) -> Findings:
 
 
 def static_loads(case: Case) -> tuple[float, ...]:
-    """N on each film, in their order; that of a kinematic test, or none."""
+    """N on each film, in their order; that of a kinematic test; none where none is known, or where the bearings do not
+    hold the rotor."""
     if case.given_rotor is None:
         return () if case.motion is None or case.motion.load is None else (case.motion.load,)
     rotor = make_rotor(case)
-    loads = held_rotor(rotor).load.reshape(-1, 2) / rotor.multiplicity[:, None]
-    return tuple(np.hypot(*loads.T).tolist())
+    try:
+        loads = held_rotor(rotor).load.reshape(-1, 2) / rotor.multiplicity[:, None]
+    except NotConverged:
+        return ()
+    found = np.hypot(*loads.T)
+    return tuple(found.tolist()) if np.isfinite(found).all() else ()
 
 
 def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) -> FilmLoad:
