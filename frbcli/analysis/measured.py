@@ -13,7 +13,7 @@ from frbcli.results.measured import Columns, read_columns, wrong_file
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 
-MEASURED = "measured"  # the command and the status of such a run
+MEASURED = "measured"  # the command of such a run
 UNEVEN = 1e-3  # of the step, by which times may be off it; beyond this the signals are interpolated to even steps
 LEAST_PULSES = 3
 REVOLUTIONS = 8  # that a speed is taken over
@@ -57,13 +57,13 @@ def measured_run(path: Path, given: Measurement) -> Run:
     units = {"time_s": "s", "speed_Hz": "Hz"}
     run = Run(
         path=path,
-        title=path.stem,
+        title=f"{path.stem}, {MEASURED}",
         command=MEASURED,
         case_name=path.stem,
         case_text="",
         versions={},
         signals={name: Signal(values, units.get(name, "m")) for name, values in signals.items()},
-        status=MEASURED,
+        status="finished",
         t_end_s=float(signals["time_s"][-1]),
         events=[],
         cost={},

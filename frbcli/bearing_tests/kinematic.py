@@ -21,6 +21,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import Loads
 from frbcli.film.cells.motion import Motion
+from frbcli.film.operating import sommerfeld_number
 from frbcli.scene.remedies import advised, film_advice
 
 if TYPE_CHECKING:
@@ -208,10 +209,9 @@ def _failed(plan: KinematicPlan, displacement: tuple[float, float], begun: float
 
 
 def _sommerfeld_number(plan: KinematicPlan, loads: Loads, omega: float) -> float:
-    """So (3.14); NaN where nothing turns."""
     section = plan.section
-    scale = 2.0 * section.radius * section.bearing_width * section.viscosity * abs(omega)
-    return (section.clearance / section.radius) ** 2 * math.hypot(*loads.force) / scale if scale > 0.0 else math.nan
+    force, width = math.hypot(*loads.force), section.bearing_width
+    return sommerfeld_number(force, width, section.radius, section.clearance, section.viscosity, omega)
 
 
 def _head(result: KinematicResult) -> dict[str, Any]:

@@ -56,11 +56,8 @@ def steady_film(
     cells: around and along the whole film; one cut at its plane of symmetry gets half of those along; factor: of the
     torque, for a shell at rest. Raises NotConverged.
     """
-    around, along = _cells_of(section, cells)
-    reference = reference_pressure(section, motion)
-    coarse = VolumeFilm(section, fitted_grid(section, motion.d, around // 2, along // 2), law, reference)
+    coarse, film = _films(section, law, motion, cells)
     first = FilmSolver(coarse).steady(motion)
-    film = VolumeFilm(section, fitted_grid(section, motion.d, around, along), law, reference)
     solution = FilmSolver(film).steady(motion, film.from_coarser(coarse, first.w))
     found = loads(film, motion, solution, factor=factor)
     return FilmMoment(
@@ -77,22 +74,21 @@ def settled(
 ) -> tuple[Array, Array]:
     """Force (2,) in N on the journal by the whole bearing, and the unknown of the cells, from which to start a motion
     that is nearly the same: it is sought from `start`, or from half the cells. Raises NotConverged."""
-    film = VolumeFilm(
-        section, fitted_grid(section, motion.d, *_cells_of(section, cells)), law, reference_pressure(section, motion)
-    )
-    solver = FilmSolver(film)
+    coarse, film = _films(section, law, motion, cells)
     if start is None or start.shape != film.grid.shape:  # the edges of openings cut other cells
-        around, along = _cells_of(section, cells)
-        grid = fitted_grid(section, motion.d, around // 2, along // 2)
-        coarse = VolumeFilm(section, grid, law, film.scales.reference)
         start = film.from_coarser(coarse, FilmSolver(coarse).steady(motion).w)
-    solution = solver.steady(motion, start)
+    solution = FilmSolver(film).steady(motion, start)
     return np.array(force(film, film.pressure(solution.state))), solution.w
 
 
-def _cells_of(section: Section, cells: tuple[int, int]) -> tuple[int, int]:
-    """Around and along a section; one cut at its plane of symmetry has half of those along the whole film."""
-    return cells[0], cells[1] // 2 if section.far == "symmetry" else cells[1]
+def _films(
+    section: Section, law: Law, motion: Motion, cells: tuple[int, int]
+) -> tuple[VolumeFilm, VolumeFilm]:
+    """The film on half the cells each way, and on all; see steady_film."""
+    around, along = cells[0], cells[1] // 2 if section.far == "symmetry" else cells[1]
+    reference = reference_pressure(section, motion)
+    coarse, fine = (fitted_grid(section, motion.d, around // n, along // n) for n in (2, 1))
+    return VolumeFilm(section, coarse, law, reference), VolumeFilm(section, fine, law, reference)
 
 
 def film_moment(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> FilmMoment:

@@ -12,7 +12,8 @@ from frbcli.cli.common import Names, Terminal, case_argument, output_options, sh
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import live_lines, progress_line
 from frbcli.cli.pictures import check_place, draw
-from frbcli.cli.runs import OUTPUT, SECONDS, here
+from frbcli.cli.quantities import TIME_OPTION
+from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ RESOLVED = 0.01  # Hz; resolution of the table
 
 @click.command()
 @case_argument
-@click.option("--until", type=SECONDS, metavar="TIME", help="Shorten the run, e.g. to '2 s'. [that of CASE]")
+@click.option("--until", type=TIME_OPTION, metavar="TIME", help="Shorten the run, e.g. to '2 s'. [that of CASE]")
 @click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [all that apply]")
 @click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-accuracy.png, here]")

@@ -11,10 +11,10 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines
+from frbcli.cli.live import counting, live_lines
 from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.quantities import LOAD_OPTION, SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
-from frbcli.cli.speeds import RotorSpeed
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -32,30 +32,13 @@ EXPLANATION = (
 SETTLED = "Coefficients of mass-conserving films are of oil that has settled; they do not determine stability."
 
 
-class Load(click.ParamType[float]):
-    """A load with a unit, "30 N"; a bare number is in N. Greater than zero."""
-
-    name = "load"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        from frbcli.units import quantity
-
-        try:
-            load = quantity(f"{value} N" if str(value).replace(".", "", 1).isdigit() else value, "N", "30 N")
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
-        if load <= 0.0:
-            self.fail(f'{value!r} is not greater than 0. Write e.g. "30 N".', param, ctx)
-        return load
-
-
 @click.command()
 @case_argument
 @click.option("--over", type=click.Choice(["speed", "eccentricity"]), default="speed", show_default=True,
               help="At what the films are computed; over eccentricity the load follows.")  # fmt: skip
-@click.option("--speed", "speeds", multiple=True, type=RotorSpeed(), metavar="SPEED",
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Rotor speed, e.g. "25 Hz". Repeatable over speed. [20 over the range; the highest]')  # fmt: skip
-@click.option("--load", type=Load(), metavar="LOAD", help='Along -y on a single film, e.g. "30 N". [of the rotor]')
+@click.option("--load", type=LOAD_OPTION, metavar="LOAD", help='Along -y on a single film, e.g. "30 N". [of the rotor]')
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-bearing.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all numbers as a table, too.")
@@ -82,15 +65,10 @@ def command(
     check_place(picture)
     require_place(csv, ross)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-
-        def observe(number: int, count: int) -> None:
-            if show is not None:
-                show(f"{number} of {count}")
-
         if over == "speed":
-            found = bearing_sheet(case, speeds or None, load, observe)
+            found = bearing_sheet(case, speeds or None, load, counting(show))
         else:
-            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=observe)
+            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=counting(show))
     _tell(terminal, found)
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)

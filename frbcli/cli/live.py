@@ -30,6 +30,16 @@ def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
         yield lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis"))
 
 
+def counting(show: Callable[[str], None] | None) -> Callable[[int, int], None]:
+    """What shows a number of so many by `show`, if there is one."""
+
+    def observe(number: int, count: int) -> None:
+        if show is not None:
+            show(f"{number} of {count}")
+
+    return observe
+
+
 def progress_line(progress: Progress) -> str:
     """One line of at most 80 columns: time, speed, eccentricity, steps per revolution, pace, time left."""
     per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"

@@ -22,13 +22,13 @@ from frbcli.version import __version__
 
 # name: (module, one line of help); the module is imported when its command is called
 COMMANDS = {
-    "check": ("frbcli.cli.check", "Validate a case; show its SI values and what will be modelled."),
+    "check": ("frbcli.cli.check", "Validate a case; show its loads, speeds and what will be modelled."),
     "rotation": ("frbcli.cli.rotation", "Turn a journal at a displacement or under a load; compare models."),
     "squeeze": ("frbcli.cli.squeeze", "Move a journal up and down: force over time."),
     "whirl": ("frbcli.cli.whirl", "Move a journal on a circle: pressure over time."),
     "runup": ("frbcli.cli.runup", "Run a rotor up and write the run to a file."),
     "rundown": ("frbcli.cli.rundown", "Run a rotor up, hold it, run it down."),
-    "waterfall": ("frbcli.cli.waterfall", "Draw the spectra of a run over time or rotor speed."),
+    "waterfall": ("frbcli.cli.waterfall", "Draw the spectra of a run or a measurement over time or speed."),
     "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits or displacements of runs."),
     "compare": ("frbcli.cli.compare", "Run one case with several models and compare them."),
     "bearing": ("frbcli.cli.bearing", "A bearing's sheet over speed or eccentricity: position, K, C, loss, flow."),

@@ -3,71 +3,67 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from frbcli.cli.speeds import RotorSpeed
+from frbcli.cli.quantities import LENGTH_OPTION, SPEED_OPTION
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.results.store import Run
 
+_GIVEN = "frbcli.measurement"  # in the context of a command
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-class Size(click.ParamType[float]):
-    """A length with a unit, "35 um"; a bare number is in m. Greater than zero."""
-
-    name = "length"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        from frbcli.units import quantity
-
-        try:
-            size = quantity(value, "m", "35 um")
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
-        if size <= 0.0:
-            self.fail(f'{value!r} is not greater than 0. Write e.g. "35 um".', param, ctx)
-        return size
 
 
 def measured_options(function: Function) -> Function:
     """Give a command the options of a measurement; it receives `measurement: Measurement | None`."""
+    named: dict[str, tuple[dict[str, Any], str]] = {
+        "x": ({"metavar": "COLUMN"}, "Of a measurement: the displacement in x."),
+        "y": ({"metavar": "COLUMN"}, "The displacement in y; events need it."),
+        "time": ({"metavar": "COLUMN"}, "The times in s."),
+        "rate": ({"type": click.FloatRange(min=0.0, min_open=True)}, "Samples per second."),
+        "speed": ({"metavar": "COLUMN"}, "The rotor speed in Hz."),
+        "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
+        "tacho": ({"metavar": "COLUMN"}, "A signal with a pulse per revolution, in place of the speed."),
+        "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Per revolution."),
+        "unit": ({"type": LENGTH_OPTION, "default": "1 um", "show_default": True}, "What 1 in x and y is."),
+    }
+    told: Any = function
+    told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
+                        help='0 dB, and that of the bearing, e.g. "35 um".')(told)  # fmt: skip
+    for name, (kind, meaning) in reversed(named.items()):  # read before the clearance, which makes one of all
+        kind |= {"is_eager": True, "expose_value": False, "callback": _remember}
+        told = click.option(f"--{name}", help=meaning, **kind)(told)
+    return told  # type: ignore[no-any-return]
 
-    @wraps(function)
-    def with_measurement(
-        *words: Any, x: str | None, y: str | None, time_column: str | None, rate: float | None, speed: str | None,
-        speed_at: float | None, tacho: str | None, pulses: int, unit: float, clearance: float | None, **others: Any,
-    ) -> Any:  # fmt: skip
-        from frbcli.analysis.measured import Measurement
 
-        told = None
-        if x is not None:
-            if clearance is None:
-                raise click.UsageError("A measurement needs --clearance, to which amplitudes refer.")
-            told = Measurement(x, clearance, y, time_column, rate, speed, speed_at, tacho, pulses, unit)
-        return function(*words, measurement=told, **others)
+def _remember(context: click.Context, option: click.Parameter, value: Any) -> None:
+    context.meta.setdefault(_GIVEN, {})[option.name] = value
 
-    options = (
-        click.option("--x", metavar="COLUMN", help="Of a measurement: the displacement in x."),
-        click.option("--y", metavar="COLUMN", help="The displacement in y; events need it."),
-        click.option("--time", "time_column", metavar="COLUMN", help="The times in s."),
-        click.option("--rate", type=click.FloatRange(min=0.0, min_open=True), help="Samples per second."),
-        click.option("--speed", metavar="COLUMN", help="The rotor speed in Hz."),
-        click.option("--speed-at", type=RotorSpeed(), metavar="SPEED", help='A constant rotor speed, e.g. "100 Hz".'),
-        click.option("--tacho", metavar="COLUMN", help="A signal with a pulse per revolution, in place of the speed."),
-        click.option("--pulses", type=click.IntRange(min=1), default=1, show_default=True, help="Per revolution."),
-        click.option("--unit", type=Size(), default="1 um", show_default=True, help="What 1 in x and y is."),
-        click.option("--clearance", type=Size(), metavar="LENGTH", help='0 dB, and that of the bearing, e.g. "35 um".'),
+
+def _measurement(context: click.Context, _: click.Parameter, clearance: float | None) -> Measurement | None:
+    from frbcli.analysis.measured import Measurement
+
+    given = context.meta[_GIVEN]
+    if given["x"] is None:
+        return None
+    if clearance is None:
+        raise click.UsageError("A measurement needs --clearance, to which amplitudes refer.")
+    return Measurement(
+        x=given["x"],
+        clearance=clearance,
+        y=given["y"],
+        time=given["time"],
+        rate=given["rate"],
+        speed=given["speed"],
+        speed_Hz=given["speed_at"],
+        tacho=given["tacho"],
+        pulses=given["pulses"],
+        unit_m=given["unit"],
     )
-    decorated: Any = with_measurement
-    for option in reversed(options):
-        decorated = option(decorated)
-    return decorated  # type: ignore[no-any-return]
 
 
 def run_of(path: Path, measurement: Measurement | None) -> Run:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import TYPE_CHECKING
-
-import click
 
 from frbcli.cli.pictures import draw
 
@@ -19,25 +16,6 @@ if TYPE_CHECKING:
 
 LONGEST_TABLE = 13  # rows of the text
 TOLD = 3  # slowest modes of each direction
-
-
-class BearingStiffness(click.ParamType[float]):
-    """A stiffness with a unit, "5e6 N/m" or "5 kN/mm"; a bare number is in N/m. Greater than zero."""
-
-    name = "stiffness"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        from frbcli.units import quantity
-
-        with suppress(ValueError):  # then it has a unit
-            value = float(str(value))
-        try:
-            stiffness = quantity(value, "N/m", "5e6 N/m")
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
-        if stiffness <= 0.0:
-            self.fail(f'{value!r} is not greater than 0. Write e.g. "5e6 N/m".', param, ctx)
-        return stiffness
 
 
 def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], picture: Path | None) -> None:

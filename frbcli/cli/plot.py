@@ -11,7 +11,8 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.pictures import draw_wanted
-from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside, here
+from frbcli.cli.quantities import TIME_OPTION
+from frbcli.cli.runs import OUTPUT, RUN, beside, here
 
 if TYPE_CHECKING:
     from frbcli.plot.curves import Over
@@ -26,8 +27,8 @@ PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 @click.command()
 @click.argument("run_files", metavar="RUN.h5...|CASE", type=RUN, nargs=-1, required=True)
 @click.option("--what", type=click.Choice(PICTURES), default="eccentricity", show_default=True, help="The picture.")
-@click.option("--from", "from_time", metavar="TIME", type=SECONDS, help='Begin, e.g. "6.4 s".')
-@click.option("--to", "to_time", metavar="TIME", type=SECONDS, help="End.")
+@click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Begin, e.g. "6.4 s".')
+@click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End.")
 @click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
 @click.option("--signal", help="Of a displacement: disk or journal; journal_NAME of a bearing.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Of a law: set a key of CASE. Repeatable.")

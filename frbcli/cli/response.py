@@ -10,10 +10,10 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines
+from frbcli.cli.live import counting, live_lines
 from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, RUN, here
-from frbcli.cli.speeds import RotorSpeed
 
 if TYPE_CHECKING:
     from frbcli.analysis.order_tracking import OrderTrack
@@ -30,7 +30,7 @@ EXPLANATION = (
 
 @click.command()
 @case_argument
-@click.option("--speed", "speeds", multiple=True, type=RotorSpeed(), metavar="SPEED",
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [120 over the range of the case]')  # fmt: skip
 @click.option("--run", "run_file", type=RUN, metavar="RUN.h5",
               help="Draw the synchronous motion of a run of the case over the response.")  # fmt: skip
@@ -58,12 +58,7 @@ def command(
     require_place(csv)
     tracks = () if run_file is None else _tracks(run_file)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-
-        def observe(number: int, count: int) -> None:
-            if show is not None:
-                show(f"{number} of {count}")
-
-        found = response(case, speeds or None, observe)
+        found = response(case, speeds or None, counting(show))
     _tell(terminal, found, bool(speeds))
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)

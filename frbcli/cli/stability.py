@@ -12,10 +12,10 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.modes import BearingStiffness, emit_modes, modes_document, tell_modes
+from frbcli.cli.modes import emit_modes, modes_document, tell_modes
 from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
 from frbcli.cli.runs import OUTPUT
-from frbcli.cli.speeds import RotorSpeed
 from frbcli.cli.stability_table import tell_points
 
 if TYPE_CHECKING:
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 @click.command()
 @case_argument
-@click.option("--speed", "speeds", multiple=True, type=RotorSpeed(), metavar="SPEED",
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [60 over the range of the case]')  # fmt: skip
-@click.option("--stiffness", type=BearingStiffness(), metavar="STIFFNESS",
+@click.option("--stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
 @click.option("--no-picture", is_flag=True, help="No Campbell diagram.")

@@ -14,6 +14,7 @@ from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.events import EVENT_COLUMNS, event_row
 from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, live_lines, progress_line
+from frbcli.cli.onset_spread import spread_shown
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
 
@@ -75,8 +76,6 @@ def transient(
     _report(case, run, terminal)
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
-    from frbcli.cli.onset_spread import spread_shown
-
     onset = spread_shown(case, run, terminal) if spread and run.status != "interrupted" else None
     terminal.emit(
         {

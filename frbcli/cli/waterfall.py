@@ -11,7 +11,8 @@ from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.events import EVENT_COLUMNS, event_row
 from frbcli.cli.measured import measured_options, run_of
 from frbcli.cli.pictures import draw_wanted
-from frbcli.cli.runs import OUTPUT, RUN, SECONDS, beside
+from frbcli.cli.quantities import TIME_OPTION
+from frbcli.cli.runs import OUTPUT, RUN, beside
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -49,7 +50,7 @@ class Orders(click.ParamType[tuple[float, ...]]):
 )
 @click.option("--over", type=click.Choice(["time", "speed"]), help="The axis. [time; speed with --order]")
 @click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
-@click.option("--window", type=SECONDS, help="Length of one spectrum. [from the ramp, up to 0.2 s]")
+@click.option("--window", type=TIME_OPTION, help="Length of one spectrum. [from the ramp, up to 0.2 s]")
 @click.option(
     "--direction",
     type=click.Choice(["x", "y", "forward"]),

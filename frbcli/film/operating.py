@@ -1,4 +1,4 @@
-"""What operation makes of a bearing: strains of its parts, its warm gap, whether its flow is laminar.
+"""What operation makes of a bearing: strains of its parts, its warm gap, Reynolds and Sommerfeld number.
 
 Strains are those of a surface's radius, its displacement over it, in the plane stress state of table A.2. Temperatures
 are differences to those at which the parts were measured, in K.
@@ -6,6 +6,7 @@ are differences to those at which the parts were measured, in K.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 LAMINAR_BELOW = 2300.0  # (3.3)
@@ -29,6 +30,14 @@ BRASS = Solid(78e9, 0.37, 8860.0, 1.85e-5)  # table A.2: floating ring
 def reynolds_number(density: float, omega: float, radius: float, clearance: float, viscosity: float) -> float:
     """Re (3.3) of a film, with omega = omega_J + omega_S in rad/s, all in SI. Laminar below LAMINAR_BELOW."""
     return density * abs(omega) * radius * clearance / viscosity
+
+
+def sommerfeld_number(
+    force: float, width: float, radius: float, clearance: float, viscosity: float, omega: float
+) -> float:
+    """So (3.14) of a whole bearing, with omega = omega_J + omega_S in rad/s, all in SI; NaN where nothing turns."""
+    shear = 2.0 * radius * width * viscosity * abs(omega)
+    return (clearance / radius) ** 2 * force / shear if shear > 0.0 else math.nan
 
 
 def shaft_rotation_strain(solid: Solid, omega: float, radius: float) -> float:

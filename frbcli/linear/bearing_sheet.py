@@ -24,6 +24,7 @@ from frbcli.film.cells.loads import estimate, force, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.gap import gap_height
+from frbcli.film.operating import sommerfeld_number
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
@@ -264,7 +265,7 @@ def _under_vertical_load(film: VolumeFilm, eccentricity: float, omega: float) ->
 
 def _state(
     case: Case, fine: System, coarse: System, i: int, omega: float, spins: Array, place: Array
-) -> FilmState:  # fmt: skip
+) -> FilmState:
     """The state of film i with its journal at `place` (2,) in m. Raises NotConverged."""
     film, c = fine.volumes[i], fine.clearances[i]
     section, d = film.section, place / c
@@ -285,8 +286,7 @@ def _state(
         attitude = math.degrees(math.atan2(load[0] * d[1] - load[1] * d[0], load @ d))
     power = -found.torque.journal * journal + found.torque.shell * shell
     flow = found.oil.ends_m3_s if section.grooves or section.holes else found.oil.out_m3_s
-    scale = 2.0 * section.radius * section.bearing_width * section.viscosity * abs(total)
-    size = float(np.hypot(*carried))
+    size, width = float(np.hypot(*carried)), section.bearing_width
     other = coarse.film_force(i, place, np.zeros(2), total).force
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     return FilmState(
@@ -300,7 +300,7 @@ def _state(
         film_thickness_min=c * float(gap_height(section, motion.d, phi).min()),
         stiffness=k,
         damping=damping,
-        sommerfeld_number=(c / section.radius) ** 2 * size / scale if scale > 0.0 else math.nan,
+        sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
         torque=found.torque.journal,
         power=power,
         side_flow=flow,

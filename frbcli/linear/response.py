@@ -66,7 +66,7 @@ class Response:
     @property
     def amplitude(self) -> Array:
         """(n, p) larger semi-axis of the orbits in m."""
-        return np.asarray(np.abs(self.forward) + np.abs(self.backward))
+        return larger_semi_axis(self.motion)
 
     @property
     def phase_deg(self) -> Array:
@@ -141,6 +141,13 @@ def unbalance_motion(rotor: LinearRotor, omega: float, stiffness: Array, damping
     return np.asarray(np.linalg.solve(k + 1j * omega * d - omega**2 * rotor.mass, pull))
 
 
+def larger_semi_axis(motion: Amplitudes) -> Array:
+    """(...) of the ellipse that x and y with the complex amplitudes (..., 2) draw: its forward and its backward part
+    added up."""
+    x, y = motion[..., 0], motion[..., 1]
+    return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
+
+
 def _at(rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitudes]:
     """Motion (p, 2) of the points and forces (films, 2) at one speed."""
     omega = 2.0 * math.pi * point.speed_Hz
@@ -155,9 +162,8 @@ def _at(rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitud
 def _peaks(speeds: Array, motion: Amplitudes) -> tuple[float, ...]:
     """Speeds at which the larger semi-axis of a point has a peak, each by a parabola through three speeds; peaks of
     several points within a step of the speed are one."""
-    size = np.abs(motion[:, :, 0] + 1j * motion[:, :, 1]) + np.abs(motion[:, :, 0] - 1j * motion[:, :, 1])
     found: list[float] = []
-    for own in size.T:
+    for own in larger_semi_axis(motion).T:
         for i in range(1, len(speeds) - 1):
             if own[i] > own[i - 1] and own[i] >= own[i + 1]:
                 found.append(float(_vertex(speeds[i - 1 : i + 2], own[i - 1 : i + 2])))

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from frbcli.analysis.order_tracking import OrderTrack
-from frbcli.linear.response import Response
+from frbcli.linear.response import Response, larger_semi_axis
 from frbcli.plot.style import BLACK, COLOURS, GREY, new_figure, styled
 
 Array = NDArray[np.float64]
@@ -36,8 +36,7 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
             _line(amplitude, found, MICRO * found.amplitude[:, number], colour, dash, label)
             _line(phase, found, found.phase_deg[:, number], colour, dash, None)
             _polar(polar, found, number, colour, dash)
-        sizes = np.abs(found.forces[:, :, 0] + 1j * found.forces[:, :, 1]) / 2
-        sizes = sizes + np.abs(found.forces[:, :, 0] - 1j * found.forces[:, :, 1]) / 2
+        sizes = larger_semi_axis(found.forces)
         for number, film in enumerate(found.films):
             dash = DASHES[number // len(COLOURS) % len(DASHES)]
             _line(force, found, sizes[:, number], COLOURS[number % len(COLOURS)], dash, film or "bearing")

@@ -11,6 +11,7 @@ from frbcli.case.bearing import FilmGeometry
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
+from frbcli.film.operating import sommerfeld_number
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.reduction import RIGID
 from frbcli.scene.films import film_places
@@ -80,10 +81,8 @@ def static_loads(case: Case) -> tuple[float, ...]:
 
 
 def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) -> FilmLoad:
-    pressure = load / (film.width * film.diameter)
-    psi = 2.0 * film.clearance / film.diameter
-    shear = case.viscosity(film) * abs(omega)
-    return FilmLoad(name, load, pressure, pressure * psi**2 / shear if shear > 0.0 else math.nan, _supply(film))
+    number = sommerfeld_number(load, film.width, 0.5 * film.diameter, film.clearance, case.viscosity(film), omega)
+    return FilmLoad(name, load, load / (film.width * film.diameter), number, _supply(film))
 
 
 def _supply(film: FilmGeometry) -> str:

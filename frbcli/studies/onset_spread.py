@@ -89,7 +89,7 @@ def _threshold(case: Case) -> tuple[float | None, str]:
     try:
         found = stability(case)
     except InputError as error:
-        return None, f"No linear threshold: {error.faults[0].problem}"
+        return None, f"No linear threshold: {error.faults[0].value} {error.faults[0].problem}"
     return (found.threshold.speed_Hz if found.threshold else None), found.note
 
 
