@@ -40,14 +40,20 @@ _COMMON: dict[str, dict[str, float]] = {
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0},
     "m/s^2": {"m/s^2": 1.0},
     "1/K": {"1/K": 1.0},
+    "J/K": {"J/K": 1.0, "kJ/K": 1e3},
+    "W/K": {"W/K": 1.0},
+    "J/(kg*K)": {"J/(kg*K)": 1.0, "J/(kg K)": 1.0, "J/kg/K": 1.0, "kJ/(kg*K)": 1e3, "kJ/(kg K)": 1e3},
+    "W/(m*K)": {"W/(m*K)": 1.0, "W/(m K)": 1.0, "W/m/K": 1.0},
     TEMPERATURE_DIFFERENCE: {"K": 1.0},
 }
 _CELSIUS = {"degC": 273.15, "°C": 273.15}  # K
 
 _TEXT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
-# A product of names with one-digit powers: all that a case needs, and nothing that pint could be kept busy with.
+# A product of names with one-digit powers, perhaps over one in brackets: all that a case needs, and nothing that pint
+# could be kept busy with.
 _FACTOR = r"(?:1|[A-Za-zµμ°]{1,20})(?:(?:\^|\*\*)[+-]?\d)?"
-_UNIT = re.compile(rf"{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,7}}")
+_PRODUCT = rf"{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,7}}"
+_UNIT = re.compile(rf"{_PRODUCT}(?:\s*/\s*\({_PRODUCT}\))?")
 _SPELLING = str.maketrans({"²": "^2", "³": "^3", "·": "*", "⋅": "*", "μ": "µ"})
 
 # What people read, by SI unit: (name, SI value of one, SI value from which it is used), smallest first.

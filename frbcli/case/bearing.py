@@ -6,6 +6,7 @@ whole bearing, both symmetric halves.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
@@ -29,11 +30,13 @@ from frbcli.case.quantities import (
     Pressure,
     RingInertia,
     RiseTime,
+    SpecificHeat,
     Temperature,
+    ThermalConductivity,
     Viscosity,
 )
-
-ROOM_TEMPERATURE = 293.15
+from frbcli.case.thermal import ROOM_TEMPERATURE, AnyWall, Material
+from frbcli.materials.solids import SOLIDS, Solid
 
 Ramp = Annotated[
     RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
@@ -162,7 +165,17 @@ class FilmGeometry(Model):
         return given.warm(self.diameter) if isinstance(given, ColdClearance) else given
 
 
-class SingleFilmBearing(FilmGeometry):
+class BearingWalls(Model):
+    """What a bearing may have of its own in place of the keys of [thermal]."""
+
+    shaft: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.shaft")
+    housing: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.housing")
+    supply_temperature: Temperature | None = Field(
+        default=None, description="of this bearing, if not that of [thermal]"
+    )
+
+
+class SingleFilmBearing(FilmGeometry, BearingWalls):
     """A journal in a shell with one film between them."""
 
     kind: Literal["single-film"] = Field(description="one film between journal and shell")
@@ -184,9 +197,21 @@ class Ring(Model):
     spin: Literal["free", "blocked"] = Field(
         default="free", description="whether the films turn the ring; a blocked one floats without turning"
     )
+    material: Material = Field(default="brass", description="for conduction, heat and growth of the ring")
+    conductivity: ThermalConductivity | None = Field(default=None, description="thermal, if not that of its material")
+    heat_capacity: SpecificHeat | None = Field(default=None, description="specific, if not that of its material")
+    expansion: Expansion | None = Field(
+        default=None, description="coefficient of linear thermal expansion, if not that of its material"
+    )
+
+    @property
+    def solid(self) -> Solid:
+        """Its material, with its own figures."""
+        own = {name: getattr(self, name) for name in ("conductivity", "heat_capacity", "expansion")}
+        return replace(SOLIDS[self.material], **{name: value for name, value in own.items() if value is not None})
 
 
-class FloatingRingBearing(Model):
+class FloatingRingBearing(BearingWalls):
     """A ring that floats between an inner film around the journal and an outer film in the shell."""
 
     kind: Literal["floating-ring"] = Field(description="a ring between two films")

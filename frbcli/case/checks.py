@@ -10,11 +10,13 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from frbcli.case.film_checks import film_breaches, vogel_breaches
+from frbcli.case.film_checks import film_breaches, law_breaches
 from frbcli.case.lines import Path
+from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.plausible import implausible
-from frbcli.case.schema import ATMOSPHERE, DEFAULT_HOLD, OUTPUT_STEP
+from frbcli.case.schema import DEFAULT_HOLD, OUTPUT_STEP
 from frbcli.case.tables import Breach, number, table, tables
+from frbcli.case.thermal_checks import thermal_breaches
 from frbcli.units import NUMBER, display
 
 __all__ = ["Breach", "breaches"]
@@ -29,6 +31,7 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     if data.get("bearing") == []:
         yield Breach(("bearing",), "is empty.", "Add the table [bearing].")
     yield from _oil(data)
+    yield from thermal_breaches(data)
     for path, bearing in bearings:
         for film_path, film in _films(path, bearing):
             yield from film_breaches(film_path, film, data)
@@ -47,16 +50,19 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
     oil = data.get("oil")
     if not isinstance(oil, dict):
         return
+    constant = "viscosity" in oil and not isinstance(oil["viscosity"], dict) and "vogel" not in oil
     if "viscosity" in oil and "vogel" in oil:
         yield Breach(("oil", "vogel"), "gives the viscosity a second time.", "Keep viscosity or vogel.")
     if "viscosity" not in oil and "vogel" not in oil:
         yield Breach(("oil", "viscosity"), "is missing.", 'Add e.g. viscosity = "12 mPa*s" to [oil].')
-    if "viscosity" not in oil and "vogel" in oil and "temperature" not in oil:
-        yield Breach(("oil", "temperature"), "is missing; Vogel's law needs it.", 'Add e.g. temperature = "100 degC".')
-    if "temperature" in oil and "viscosity" in oil and "vogel" not in oil:
-        problem = "has no effect: the viscosity is constant."
-        yield Breach(("oil", "temperature"), problem, "Remove it, or give oil.vogel in place of the viscosity.")
-    yield from vogel_breaches(oil, number(oil, "temperature", "K"), ("oil", "temperature"))
+    elif not constant and "temperature" not in oil and "thermal" not in data:
+        needs = "Vogel's law needs it" if "vogel" in oil else "the viscosity of a grade needs it"
+        yield Breach(("oil", "temperature"), f"is missing; {needs}.", 'Add e.g. temperature = "100 degC".')
+    for key in ("temperature", "shear_factor"):
+        if key in oil and constant:
+            problem = "has no effect: the viscosity is constant."
+            yield Breach(("oil", key), problem, "Remove it, or give oil.vogel in place of the viscosity.")
+    yield from law_breaches(oil, number(oil, "temperature", "K"), ("oil", "temperature"))
     ambient, cavitation = number(oil, "ambient_pressure", "Pa", ATMOSPHERE), number(oil, "cavitation_pressure", "Pa")
     if ambient and cavitation and cavitation > ambient:
         problem = f"is {display(cavitation, 'Pa')}, above the ambient pressure of {display(ambient, 'Pa')}."

@@ -10,8 +10,10 @@ from pydantic import ValidationError
 
 from frbcli.case.bearing import ColdClearance
 from frbcli.case.lines import Path
-from frbcli.case.schema import ATMOSPHERE, Vogel
+from frbcli.case.oil import ATMOSPHERE, Grade, Vogel
 from frbcli.case.tables import Breach, number, table, tables
+from frbcli.materials.oils import OILS
+from frbcli.materials.viscosity import VogelLaw
 from frbcli.units import NUMBER, display
 
 THICKEST_MACHINED = 0.05  # clearance of a lobe over the radius
@@ -31,10 +33,10 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     if "temperature" in film and "viscosity" in film:
         problem = "has no effect: the film has a viscosity of its own."
         yield Breach((*path, "temperature"), problem, "Keep one of the two.")
-    elif "temperature" in film and "vogel" not in oil:
+    elif "temperature" in film and "vogel" not in oil and not isinstance(oil.get("viscosity"), dict):
         yield Breach((*path, "temperature"), "has no effect: [oil] has no Vogel's law.", "Add oil.vogel or remove it.")
     elif "temperature" in film:
-        yield from vogel_breaches(oil, number(film, "temperature", "K"), (*path, "temperature"))
+        yield from law_breaches(oil, number(film, "temperature", "K"), (*path, "temperature"))
     ambient = number(oil, "ambient_pressure", "Pa", ATMOSPHERE)
     supply = table(film, "supply")
     yield from _supply((*path, "supply"), supply, width, ambient)
@@ -107,18 +109,30 @@ def _bores(path: Path, supply: Mapping[str, Any], diameter: float | None, width:
             yield Breach((*path, "axial_position"), problem, remedy)
 
 
-def vogel_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) -> Iterator[Breach]:
-    """A viscosity by Vogel's law that no oil has; path: of the temperature in K."""
-    try:
-        vogel = Vogel.model_validate(oil.get("vogel"))
-    except ValidationError:
+def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) -> Iterator[Breach]:
+    """A viscosity by Vogel's law or of a grade that no oil has; path: of the temperature in K."""
+    law = viscosity_law(oil)
+    if temperature is None or law is None:
         return
-    if temperature is None:
+    viscosity = law.at(temperature)
+    if VISCOSITY_RANGE[0] <= viscosity <= VISCOSITY_RANGE[1]:
         return
-    viscosity = vogel.at(temperature)
-    if not VISCOSITY_RANGE[0] <= viscosity <= VISCOSITY_RANGE[1]:
+    if "vogel" in oil:
         problem = f"makes the viscosity {viscosity:.3g} Pa*s by Vogel's law."
         yield Breach(path, problem, "Check eta_0, A and C; the temperature T in eta_0 exp(A / (T + C)) is in kelvin.")
+    else:
+        problem = f"makes the viscosity of the grade {viscosity:.3g} Pa*s."
+        yield Breach(path, problem, "The figures of a grade are of 40 to 150 degC.")
+
+
+def viscosity_law(oil: Mapping[str, Any]) -> VogelLaw | None:
+    """Viscosity over temperature of the table [oil]; None without one, or where it cannot be read."""
+    try:
+        if "vogel" in oil:
+            return Vogel.model_validate(oil["vogel"]).law
+        return OILS[Grade.model_validate(oil.get("viscosity")).grade].law
+    except ValidationError:
+        return None
 
 
 def warm_clearance(film: Mapping[str, Any], diameter: float | None) -> float | None:

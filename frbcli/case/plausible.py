@@ -11,7 +11,8 @@ from frbcli.case.film_checks import warm_clearance
 from frbcli.case.lines import Path
 from frbcli.case.quantities import LARGEST
 from frbcli.case.tables import Breach, number, table, tables
-from frbcli.film.operating import BRASS, RING_SPEED, STEEL, ring_rotation_strains, shaft_rotation_strain
+from frbcli.film.operating import RING_SPEED, ring_rotation_strains, shaft_rotation_strain
+from frbcli.materials.solids import BRASS, STEEL
 from frbcli.units import SPEED, display, readable
 
 FASTEST_SURFACE = 500.0  # m/s; limit of the strength of steel shafts

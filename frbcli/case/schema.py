@@ -16,10 +16,10 @@ from pydantic import Field, PrivateAttr, model_validator
 from frbcli.case.bearing import Bearings, FilmGeometry, FloatingRingBearing, RingFilm
 from frbcli.case.laws import Cavitation, adopt, attribute
 from frbcli.case.model import Model, with_default
+from frbcli.case.oil import Oil
 from frbcli.case.quantities import (
     Angle,
     Count,
-    Density,
     Displacement,
     Duration,
     Eccentricity,
@@ -27,20 +27,17 @@ from frbcli.case.quantities import (
     Force,
     Hold,
     Label,
-    Pressure,
     Quantity,
     Rate,
     SignedSpeed,
     Speed,
     Stiffness,
-    Temperature,
-    TemperatureDifference,
-    Viscosity,
 )
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
 from frbcli.case.text import as_text
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.theories import Theory, adopt_models, check_model
+from frbcli.case.thermal import Thermal
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.bearing_model.model import BearingModel
@@ -49,7 +46,6 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.units import NUMBER
 
-ATMOSPHERE = 1e5
 DEFAULT_HOLD = 0.5
 OUTPUT_STEP = 5e-5  # resolves 10 kHz
 CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; limit of the films
@@ -58,46 +54,6 @@ MACRO_STEP = 1e-6  # table 6.2
 
 Confirmation = Literal["surface-speed", "gap-growth", "clearance"]
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
-
-
-class Vogel(Model):
-    """Vogel's law (3.12), viscosity(T) = eta_0 exp(A / (T + C)), T in kelvin."""
-
-    eta_0: Viscosity = Field(description="of (3.12)")
-    A: TemperatureDifference = Field(description="of (3.12)")
-    C: TemperatureDifference = Field(description="about -180 K; for a fit in Celsius, its C less 273.15 K")
-
-    def at(self, temperature: float) -> float:
-        """The dynamic viscosity [Pa s] at `temperature` [K]; infinite below the pole of the law."""
-        if temperature + self.C <= 0:
-            return math.inf
-        exponent = self.A / (temperature + self.C)
-        return self.eta_0 * math.exp(exponent) if exponent < 700 else math.inf
-
-
-class Oil(Model):
-    """The lubricant: a viscosity, or Vogel's coefficients and a temperature."""
-
-    given_viscosity: Viscosity | None = Field(default=None, alias="viscosity", description="dynamic viscosity, warm")
-    vogel: Vogel | None = Field(default=None, description="viscosity over temperature, in place of `viscosity`")
-    temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law")
-    density: Density = Field(default=850.0, description="of the full oil")
-    ambient_pressure: Pressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
-    cavitation_pressure: Pressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _cavitates_at_ambient_pressure(cls, data: object) -> object:
-        return with_default(data, "cavitation_pressure", "ambient_pressure")
-
-    @property
-    def viscosity(self) -> float:
-        """The dynamic viscosity [Pa s], given or by Vogel's law."""
-        if self.given_viscosity is not None:
-            return self.given_viscosity
-        if self.vogel is None or self.temperature is None:  # the checks of a case file do not let this pass
-            return math.nan
-        return self.vogel.at(self.temperature)
 
 
 class FilmModel(Model):
@@ -243,6 +199,7 @@ class Case(Model):
     )
     oil: Oil = Field(description="the lubricant")
     film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
+    thermal: Thermal | None = Field(default=None, description="heat; without it every film keeps its temperature")
     given_speed: SpeedProfile | None = Field(
         default=None, alias="speed", description="must be given, but for a case with [motion]"
     )
@@ -296,13 +253,27 @@ class Case(Model):
         remedy = f"Add the table [{key}], or call `frb rotation`, `frb squeeze` or `frb whirl`."
         return InputError(self.name or "case", (Fault(key, "", None, problem, remedy),))
 
+    @property
+    def heat(self) -> Thermal | None:
+        """The model of heat, None without one."""
+        return self.thermal if self.thermal is not None and self.thermal.model == "lumped" else None
+
+    @property
+    def oil_viscosity(self) -> float:
+        """The dynamic viscosity [Pa s] of the oil: given, or at its temperature, or at that of the supply."""
+        law = self.oil.law
+        if law is not None and self.oil.temperature is None and self.thermal is not None:
+            return law.at(self.thermal.supply_temperature)
+        return self.oil.viscosity
+
     def viscosity(self, film: FilmGeometry) -> float:
-        """The dynamic viscosity [Pa s] in `film`: its own, by its own temperature, or that of the oil."""
+        """The dynamic viscosity [Pa s] in `film`, without heat: its own, by its own temperature, or that of the oil."""
         if film.viscosity is not None:
             return film.viscosity
-        if film.temperature is not None and self.oil.vogel is not None:
-            return self.oil.vogel.at(film.temperature)
-        return self.oil.viscosity
+        law = self.oil.law
+        if film.temperature is not None and law is not None:
+            return law.at(film.temperature)
+        return self.oil_viscosity
 
     def cavitation(self, film: FilmGeometry) -> Cavitation:
         """The cavitation model of `film`: its own, or that of all films."""

@@ -7,24 +7,11 @@ are differences to those at which the parts were measured, in K.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+from frbcli.materials.solids import Solid
 
 LAMINAR_BELOW = 2300.0  # (3.3)
 RING_SPEED = 0.3  # of the rotor's, as table A.1 has it: what a floating ring reaches at most
-
-
-@dataclass(frozen=True)
-class Solid:
-    """A linear elastic material: modulus in Pa, Poisson's ratio, density in kg/m^3, thermal expansion in 1/K."""
-
-    modulus: float
-    poisson: float
-    density: float
-    expansion: float
-
-
-STEEL = Solid(210e9, 0.27, 7870.0, 1.18e-5)  # table A.2: shaft
-BRASS = Solid(78e9, 0.37, 8860.0, 1.85e-5)  # table A.2: floating ring
 
 
 def reynolds_number(density: float, omega: float, radius: float, clearance: float, viscosity: float) -> float:

@@ -46,7 +46,7 @@ def resistance(case: Case, bearing: FloatingRingBearing) -> float:
     supply = bearing.inner.supply
     assert isinstance(supply, Bores)
     length = 0.5 * (bearing.outer.diameter - bearing.inner.diameter)
-    return channel_resistance(supply.diameter, length, case.oil.viscosity)
+    return channel_resistance(supply.diameter, length, case.oil_viscosity)
 
 
 def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel, ...]:

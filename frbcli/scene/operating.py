@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from frbcli.case.bearing import ColdClearance, FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.film.operating import (
-    BRASS,
     LAMINAR_BELOW,
     RING_SPEED,
-    STEEL,
     reynolds_number,
     ring_rotation_strains,
     shaft_rotation_strain,
 )
+from frbcli.materials.solids import BRASS, STEEL
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,8 @@ def plan_faults(case: Case) -> list[Fault]:
         missing("film.theory", "short", (remedy,))
     elif case.film.theory == "short" and any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case)):
         missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
+    if case.heat is not None:
+        missing("thermal.model", "lumped", ("none",))
     faults += channel_faults(case)
     faults += clearance_faults(case)
     if case.film.bearing_model:

@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from frbcli.case.bearing import FilmGeometry
-from frbcli.case.schema import Case, Oil
+from frbcli.case.oil import Oil
+from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section
 from frbcli.film.section_faults import no_inflow, runs_dry, starves

@@ -1,0 +1,142 @@
+"""The oil of a case: its viscosity, given or over temperature, its density and its heat."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from frbcli.case.model import Model, with_default
+from frbcli.case.quantities import (
+    Density,
+    Pressure,
+    Quantity,
+    SpecificHeat,
+    Temperature,
+    TemperatureDifference,
+    ThermalConductivity,
+    Viscosity,
+)
+from frbcli.materials.oils import OILS, OilGrade, conductivity, density, heat_capacity
+from frbcli.materials.viscosity import VogelLaw
+from frbcli.units import NUMBER, ValueFault, quantity
+
+ATMOSPHERE = 1e5
+USUAL_TEMPERATURE = 353.15  # K: 80 degC, of the density of a grade where no temperature is given
+USUAL_DENSITY = 850.0
+
+GradeName: Any = Literal[tuple(OILS)]
+
+
+class Vogel(Model):
+    """Vogel's law (3.12), viscosity(T) = eta_0 exp(A / (T + C)), T in kelvin."""
+
+    eta_0: Viscosity = Field(description="of (3.12)")
+    A: TemperatureDifference = Field(description="of (3.12)")
+    C: TemperatureDifference = Field(description="about -180 K; for a fit in Celsius, its C less 273.15 K")
+
+    @property
+    def law(self) -> VogelLaw:
+        """The law."""
+        return VogelLaw(self.eta_0, self.A, self.C)
+
+
+class Grade(Model):
+    """An oil of the library: viscosity over temperature, density, heat capacity and conductivity."""
+
+    grade: GradeName = Field(description="SAE or ISO VG grade; docs/heat.md lists the figures and their sources")
+
+
+def _viscosity_form(given: object) -> str:
+    return "(grade)" if isinstance(given, dict | Grade) else "(viscosity)"
+
+
+AnyViscosity = Annotated[
+    Annotated[Viscosity, Tag("(viscosity)")] | Annotated[Grade, Tag("(grade)")], Discriminator(_viscosity_form)
+]
+
+
+class Oil(Model):
+    """The lubricant: a viscosity, or Vogel's coefficients or a grade, and a temperature."""
+
+    given_viscosity: AnyViscosity | None = Field(
+        default=None, alias="viscosity", description="dynamic viscosity, warm; or `{ grade = \"SAE 10W-40\" }`"
+    )
+    vogel: Vogel | None = Field(default=None, description="viscosity over temperature, in place of `viscosity`")
+    temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law or a grade")
+    shear_factor: Annotated[float, Quantity(NUMBER, "0.8", above=0, most=1)] = Field(
+        default=1.0,
+        description="of the viscosity over temperature, by high shear rates: that at 1e6 to 1e7 1/s over that at rest",
+    )
+    density: Density = Field(
+        default=USUAL_DENSITY,
+        description="of the full oil; of a grade, if not given, its density at `temperature`, or at 80 degC",
+    )
+    heat_capacity: SpecificHeat | None = Field(
+        default=None, description="specific; if not given, that of a petroleum oil of this density over temperature"
+    )
+    conductivity: ThermalConductivity | None = Field(
+        default=None, description="thermal; if not given, that of a petroleum oil of this density"
+    )
+    ambient_pressure: Pressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
+    cavitation_pressure: Pressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _cavitates_at_ambient_pressure(cls, data: object) -> object:
+        return with_default(data, "cavitation_pressure", "ambient_pressure")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _density_of_its_grade(cls, data: object) -> object:
+        """`data` with the density of its grade, where it gives none."""
+        if not isinstance(data, dict) or "density" in data:
+            return data
+        given = data.get("viscosity")
+        name = given.get("grade") if isinstance(given, dict) else getattr(given, "grade", None)
+        if not isinstance(name, str) or name not in OILS:
+            return data
+        return {**data, "density": density(OILS[name].density_15, _readable(data.get("temperature")))}
+
+    @property
+    def grade(self) -> OilGrade | None:
+        """The oil of the library, None for any other."""
+        return OILS[self.given_viscosity.grade] if isinstance(self.given_viscosity, Grade) else None
+
+    @property
+    def law(self) -> VogelLaw | None:
+        """Viscosity over temperature, with the factor for shear; None for a given viscosity."""
+        law = self.grade.law if self.grade is not None else None if self.vogel is None else self.vogel.law
+        return None if law is None else law.times(self.shear_factor)
+
+    @property
+    def viscosity(self) -> float:
+        """The dynamic viscosity [Pa s], given or by the law at the temperature."""
+        if self.given_viscosity is not None and not isinstance(self.given_viscosity, Grade):
+            return self.given_viscosity
+        if self.law is None or self.temperature is None:  # the checks of a case file do not let this pass
+            return math.nan
+        return self.law.at(self.temperature)
+
+    def heat_capacity_at(self, temperature: float) -> float:
+        """The specific heat capacity [J/(kg K)] at a temperature in K: given, or that of a petroleum oil."""
+        return self.heat_capacity or heat_capacity(self._density_15, temperature)
+
+    @property
+    def thermal_conductivity(self) -> float:
+        """The thermal conductivity [W/(m K)]: given, or that of a petroleum oil at 80 degC."""
+        return self.conductivity or conductivity(self._density_15, USUAL_TEMPERATURE)
+
+    @property
+    def _density_15(self) -> float:
+        """The density [kg/m^3] at 15 degC, the given one being that at the temperature of the films."""
+        return self.density**2 / density(self.density, self.temperature or USUAL_TEMPERATURE)
+
+
+def _readable(temperature: object) -> float:
+    """A temperature in K where it can be read, else the usual one."""
+    try:
+        return USUAL_TEMPERATURE if temperature is None else quantity(temperature, "K")
+    except ValueFault:
+        return USUAL_TEMPERATURE

@@ -1,0 +1,80 @@
+"""Heat in a case: the model, and what shaft and housing are to the films."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import Conductance, HeatCapacity, Quantity, Temperature
+from frbcli.materials.solids import SOLIDS
+from frbcli.units import NUMBER
+
+ROOM_TEMPERATURE = 293.15
+HOTTEST_FILM = 573.15  # K: 300 degC; engine oils burn there
+
+Material: Any = Literal[tuple(SOLIDS)]
+Clearances = Literal["fixed", "follows"]
+
+
+class WallNode(Model):
+    """A body at a film with one temperature of its own, which passes heat on to a place of given temperature."""
+
+    capacity: HeatCapacity = Field(description="heat that warms it by 1 K")
+    conductance: Conductance = Field(description="heat that it passes on per K")
+    temperature: Temperature = Field(description="of the place that it passes heat on to")
+
+
+def _wall_form(given: object) -> str:
+    if isinstance(given, dict | WallNode):
+        return "(node)"
+    return "(adiabatic)" if given == "adiabatic" else "(temperature)"
+
+
+AnyWall = Annotated[
+    Annotated[Literal["adiabatic"], Tag("(adiabatic)")]
+    | Annotated[Temperature, Tag("(temperature)")]
+    | Annotated[WallNode, Tag("(node)")],
+    Discriminator(_wall_form),
+]
+
+
+class Thermal(Model):
+    """Heat: films, rings, shaft and housing that warm up, from what the films dissipate; docs/heat.md."""
+
+    model: Literal["lumped", "none"] = Field(
+        default="lumped", description="one temperature per film, two per ring; or none: all keep their temperature"
+    )
+    supply_temperature: Temperature = Field(description="of the oil that is supplied")
+    start_temperature: Temperature | None = Field(
+        default=None,
+        description="of films, rings, shaft and housing at the start of a run; that of the supply if not given",
+    )
+    shaft: AnyWall = Field(
+        default="adiabatic", description="`adiabatic`, a temperature, or `{ capacity, conductance, temperature }`"
+    )
+    housing: AnyWall = Field(default="adiabatic", description="the same")
+    clearance: Clearances = Field(
+        default="fixed", description="whether clearances follow the temperatures of journal, ring and shell (4.24)"
+    )
+    centrifugal_growth: Clearances = Field(
+        default="fixed", description="whether clearances follow the growth of turning shafts and rings"
+    )
+    reference_temperature: Temperature = Field(
+        default=ROOM_TEMPERATURE, description="at which clearances that follow have their given value"
+    )
+    shaft_material: Material = Field(default="steel", description="for its expansion and growth")
+    housing_material: Material = Field(default="steel", description="for its expansion")
+    mixing: Annotated[float, Quantity(NUMBER, "0.5", least=0.5, most=1)] = Field(
+        default=0.5, description="m: 0.5, a film has the mean temperature of inlet and outlet; 1, that of its outlet"
+    )
+    nusselt: Annotated[float, Quantity(NUMBER, "3.77", above=0, most=1000)] = Field(
+        default=3.77, description="heat transfer from a film to each wall, Nu k / C"
+    )
+    side_flow: Literal["film", "concentric"] = Field(
+        default="film", description="what leaves the solved film, or the formula of a concentric one (docs/heat.md)"
+    )
+    hottest_film: Temperature = Field(
+        default=HOTTEST_FILM, description="a film that reaches it ends the run as `overheated`"
+    )

@@ -1,0 +1,44 @@
+"""Materials of shafts, rings and housings by name, each figure with its source, near room temperature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A linear elastic material: modulus in Pa, Poisson's ratio, density in kg/m^3, thermal expansion in 1/K,
+    conductivity in W/(m K), heat_capacity in J/(kg K)."""
+
+    modulus: float
+    poisson: float
+    density: float
+    expansion: float
+    conductivity: float
+    heat_capacity: float
+    source: str
+
+
+_A2 = "modulus, Poisson's ratio, density, expansion: table A.2"
+_HEAT = "conductivity, heat capacity: Incropera and DeWitt, table A.1"
+_CALLISTER = "modulus, Poisson's ratio, expansion: Callister, appendix B"
+
+STEEL = Solid(210e9, 0.27, 7870.0, 1.18e-5, 60.5, 434.0, f"{_A2} (shaft); {_HEAT}, plain carbon steel")
+BRASS = Solid(78e9, 0.37, 8860.0, 1.85e-5, 110.0, 380.0, f"{_A2} (floating ring); {_HEAT}, cartridge brass")
+SOLIDS: dict[str, Solid] = {
+    "steel": STEEL,
+    "brass": BRASS,
+    "bronze": Solid(
+        110e9, 0.34, 8780.0, 1.8e-5, 54.0, 355.0, f"{_HEAT}, with the density, phosphor gear bronze; {_CALLISTER}"
+    ),
+    "stainless steel": Solid(
+        193e9, 0.30, 7900.0, 1.72e-5, 14.9, 477.0, f"{_HEAT}, with the density, AISI 304; {_CALLISTER}"
+    ),
+    "Inconel": Solid(
+        214e9, 0.29, 8510.0, 1.26e-5, 11.7, 439.0,
+        f"{_HEAT}, with the density, Inconel X-750; modulus, Poisson's ratio, expansion: Special Metals, alloy X-750",
+    ),
+    "aluminium": Solid(
+        71e9, 0.33, 2790.0, 2.29e-5, 168.0, 883.0, f"{_HEAT}, with the density, cast alloy 195; {_CALLISTER}"
+    ),
+}  # fmt: skip
