@@ -30,6 +30,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.errors import RunFileError as RunFileError
     from frbcli.linear.bearing_sheet import bearing_sheet as bearing_sheet
     from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
+    from frbcli.linear.heat import warm_machine as warm_machine
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
@@ -77,6 +78,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
+    "warm_machine": "frbcli.linear.heat",
     "whirl": "frbcli.bearing_tests.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
 }

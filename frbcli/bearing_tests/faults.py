@@ -37,6 +37,9 @@ def bearing_faults(case: Case, test: str, keeps: bool) -> list[Fault]:
     if len(case.bearings) != 1:
         problem = "are too many: a kinematic test is of one bearing."
         return [Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")]
+    if case.heat is not None:
+        remedy = 'Write thermal.model = "none": the films then have oil.temperature, or that of the supply.'
+        return [Fault("thermal.model", "lumped", None, "is not modelled in kinematic tests.", remedy)]
     bearing = case.bearings[0]
     if not isinstance(bearing, SingleFilmBearing):
         problem = "is not modelled in this version of kinematic tests."

@@ -28,6 +28,7 @@ from frbcli.case.quantities import (
     Position,
     Preload,
     Pressure,
+    Ratio,
     RingInertia,
     RiseTime,
     SpecificHeat,
@@ -157,6 +158,10 @@ class FilmGeometry(Model):
     lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
     viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
     temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
+    side_flow_factor: Ratio | None = Field(
+        default=None,
+        description="beta of the flow of a concentric film, for thermal.side_flow; 1 for a groove around, else 0.6",
+    )
 
     @property
     def clearance(self) -> float:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.heat import heat_document, tell_heat
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -77,6 +78,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in (*decisions, *lines)])
     if not kinematic:  # after the plan, which explains a refusal
         require_affordable(case, plan, cost)
+    heat = None if kinematic or case.heat is None else _heat(case, terminal)
     terminal.emit(
         {
             "command": "check",
@@ -90,7 +92,22 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
             "plan": [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in decisions],
             "expected": expected,
         }
+        | ({} if heat is None else {"thermal": heat})
     )
+
+
+def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
+    """Temperatures at the top speed, when everything is warm."""
+    from frbcli.errors import NotConverged
+    from frbcli.linear.heat import warm_machine
+
+    try:
+        warm = warm_machine(case)
+    except NotConverged as error:
+        _say(f"No steady temperatures at the top speed: {error}", terminal)
+        return {"problem": str(error)}
+    tell_heat(terminal, warm, "heat at the top speed, when everything is warm")
+    return heat_document(warm)
 
 
 def _told_findings(found: Findings) -> dict[str, object]:

@@ -12,6 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.heat import heat_document, tell_heat
 from frbcli.cli.modes import emit_modes, modes_document, tell_modes
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
@@ -89,6 +90,9 @@ def _tell(terminal: Terminal, found: Stability, every_speed: bool) -> None:
 
     tell_points(terminal, found, every_speed)
     terminal.result(_sentence(found))
+    warmest = found.points[-1]
+    if warmest.warm is not None:
+        tell_heat(terminal, warmest.warm, f"heat at {warmest.speed_Hz:.4g} Hz")
     for film in unfed_films(found.case):
         terminal.result(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
     if step_times(found.case):
@@ -129,6 +133,8 @@ def _point(point: StabilityPoint) -> dict[str, object]:
         document["films"] = [{"film": film.name} | values for film, values in named]
     if point.ring_speeds_Hz:
         document["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
+    if point.warm is not None:
+        document["thermal"] = heat_document(point.warm)
     if point.problem:
         document["problem"] = point.problem
     document["modes"] = [

@@ -178,6 +178,9 @@ def _check(case: Case) -> None:
     if case.film.bearing_model:
         problem = "is a bearing model: it tells the force, and neither pressures nor oil."
         faults.append(Fault("film.theory", case.film.theory, None, problem, "Write finite or auto."))
+    if case.heat is not None:
+        remedy = 'Write thermal.model = "none": the films then have oil.temperature, or that of the supply.'
+        faults.append(Fault("thermal.model", "lumped", None, "is not modelled in the sheet of a bearing.", remedy))
     if is_published(case):
         problem = "is for run-ups and frb rotation."
         faults.append(Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".'))

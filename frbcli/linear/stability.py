@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +21,8 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.linear.heat import Finder, Machine, WarmMachine, machine_finder
+from frbcli.linear.resting import ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
@@ -70,7 +71,8 @@ class StabilityPoint:
 
     films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
     ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
-    ring_speeds_Hz: of the rings that turn; their speeds stand while the rotor moves. All are empty where no resting
+    ring_speeds_Hz: of the rings that turn; their speeds stand while the rotor moves. warm: the machine with its heat,
+    of a case that has it; its temperatures stand, too. All are empty where no resting
     position was found; problem then says why, and is empty otherwise.
     """
 
@@ -79,6 +81,7 @@ class StabilityPoint:
     eigenvalues: Eigenvalues
     problem: str = ""
     ring_speeds_Hz: tuple[float, ...] = ()
+    warm: WarmMachine | None = None
 
     @property
     def status(self) -> str:
@@ -162,9 +165,10 @@ def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
-    system, sweep = stability_points(case, speeds)
+    _check_machine(case, speeds)
+    _, find, sweep = _sweep(case, speeds)
     found = {point.speed_Hz: point for point in sweep}
-    threshold, note = _threshold(case, system, sweep)
+    threshold, note = _threshold(case, find, sweep)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
 
 
@@ -176,18 +180,32 @@ def stability_points(
     observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, a speed
     is not positive, or a film has no eight coefficients.
     """
+    _check_machine(case, speeds_Hz)
+    system, _, points = _sweep(case, speeds_Hz, observe)
+    return system, points
+
+
+def _check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
     _check_speeds(case, speeds_Hz)
     if faults := _without_coefficients(case):
         raise InputError(case.name or "case", tuple(faults))
-    system = make_system(case, make_plan(case))
+
+
+def _sweep(
+    case: Case, speeds_Hz: Sequence[float], observe: Callable[[int, int], None] | None = None
+) -> tuple[System, Finder, tuple[StabilityPoint, ...]]:
+    """As stability_points, with what finds the machine at further speeds."""
+    plan = make_plan(case)
+    system = make_system(case, plan)
+    find = machine_finder(case, plan, system)
     points: list[StabilityPoint] = []
-    start: Array | None = None
+    near: Machine | None = None
     for speed in sorted(speeds_Hz, reverse=True):  # from near the centre, where a fast journal rests, outwards
-        point, start = _point(case, system, speed, start)
+        point, near = _point(case, find, speed, near)
         points.append(point)
         if observe is not None:
             observe(len(points), len(speeds_Hz))
-    return system, tuple(reversed(points))
+    return system, find, tuple(reversed(points))
 
 
 def default_speeds(case: Case, count: int = SPEEDS) -> tuple[float, ...]:
@@ -212,14 +230,19 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
     return values[np.lexsort((-values.imag, values.real, np.abs(values.imag)))]
 
 
-def _point(case: Case, system: System, speed: float, start: Array | None) -> tuple[StabilityPoint, Array | None]:
-    """The point at a speed in Hz, sought from the displacements `start`, and those from which to seek the next one."""
+def _point(case: Case, find: Finder, speed: float, near: Machine | None) -> tuple[StabilityPoint, Machine | None]:
+    """The point at a speed in Hz, sought from the machine `near`, and that from which to seek the next one."""
     try:
         with advised(case):
-            resting = resting_position(system, 2 * math.pi * speed, start)
-            return _linearised(system, speed, resting), resting
+            machine = find(2 * math.pi * speed, near)
+            return _at_rest(machine, speed), machine
     except NotConverged as error:
-        return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), start
+        return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), near
+
+
+def _at_rest(machine: Machine, speed: float) -> StabilityPoint:
+    """The point at a speed in Hz of a machine that rests."""
+    return replace(_linearised(machine.system, speed, machine.resting), warm=machine.warm)
 
 
 def _linearised(system: System, speed: float, resting: Array) -> StabilityPoint:
@@ -246,7 +269,7 @@ def _resting_film(name: str, force: FilmForce, displacement: Array) -> RestingFi
     return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name)
 
 
-def _threshold(case: Case, system: System, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
+def _threshold(case: Case, find: Finder, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
     """The lowest speed at which the growth passes zero from below; a note where there is none, or where the rotor
     becomes stable once more."""
     resting = [point for point in sweep if point.films]
@@ -261,7 +284,7 @@ def _threshold(case: Case, system: System, sweep: Sequence[StabilityPoint]) -> t
         return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
     for place, (below, above) in enumerate(itertools.pairwise(resting)):
         if above.growth > 0.0:
-            threshold, problem = _crossing(case, system, below.speed_Hz, above.speed_Hz)
+            threshold, problem = _crossing(case, find, below.speed_Hz, above.speed_Hz)
             return threshold, problem + _stable_again(resting[place + 1 :])
     return None, f"Stable up to the highest speed: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
 
@@ -285,12 +308,12 @@ def _stable_again(points: Sequence[StabilityPoint]) -> str:
     return f" No motion grows at {len(stable)} higher speeds, from {stable[0]:.4g} to {stable[-1]:.4g} Hz."
 
 
-def _crossing(case: Case, system: System, low: float, high: float) -> tuple[Threshold | None, str]:
+def _crossing(case: Case, find: Finder, low: float, high: float) -> tuple[Threshold | None, str]:
     """The threshold between two speeds in Hz."""
     from scipy.optimize import brentq  # runs, which need eigenvalues alone, need not wait for its import
 
     def at(speed: float) -> StabilityPoint:
-        return _linearised(system, speed, resting_position(system, 2 * math.pi * speed))
+        return _at_rest(find(2 * math.pi * speed, None), speed)
 
     try:
         with advised(case):

@@ -66,6 +66,9 @@ def run_cost(command: str, case: Case) -> ExpectedCost:
 
 
 def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost]:
+    if case.heat is not None:
+        fault = Fault("thermal.model", "lumped", None, "is not modelled in runs.", 'Write thermal.model = "none".')
+        raise InputError(case.name or "case", (fault,))
     plan, profile = make_plan(case), PROFILES[command](case)
     cost = expected_cost(case, plan, profile)
     require_affordable(case, plan, cost)

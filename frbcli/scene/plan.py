@@ -158,6 +158,9 @@ def _decide_scene(case: Case, decide: Decide) -> None:
         decide("gap", *_gap(places[0].geometry))
     for decided in clearance_decisions(case):
         decide(*decided)
+    if case.heat is not None:
+        gap = "follows the temperatures" if case.heat.clearance == "follows" else "stays as given"
+        decide("heat", "lumped", f"set in the case; viscosity follows the temperature of each film, the gap {gap}")
 
 
 def _cavitations(case: Case) -> tuple[tuple[str, str], ...]:

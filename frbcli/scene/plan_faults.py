@@ -16,6 +16,7 @@ from frbcli.scene.clearance_steps import clearance_faults
 from frbcli.scene.coupling import coupling_fault
 from frbcli.scene.film_choice import MIDDLE, all_clipped, needs_cells
 from frbcli.scene.films import film_places, is_plain
+from frbcli.scene.heat_faults import heat_faults
 from frbcli.scene.published import published_faults
 from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import solution_fault
@@ -37,8 +38,7 @@ def plan_faults(case: Case) -> list[Fault]:
         missing("film.theory", "short", (remedy,))
     elif case.film.theory == "short" and any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case)):
         missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
-    if case.heat is not None:
-        missing("thermal.model", "lumped", ("none",))
+    faults += heat_faults(case)
     faults += channel_faults(case)
     faults += clearance_faults(case)
     if case.film.bearing_model:

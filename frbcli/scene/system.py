@@ -58,7 +58,8 @@ class System:
     solved: what the tables of penalty films are made of. bodies: (films, 2) what lies
     inside and outside of each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing
     in N m s, the Couette torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the
-    films' cavitation models; torque, cavitation_factor: see FilmModel.
+    films' cavitation models; torque, cavitation_factor: see FilmModel. scales: of tabulated films of a warm
+    machine, what their tables have to be scaled by, see warm.py.
     """
 
     rotor: LinearRotor
@@ -76,6 +77,7 @@ class System:
     laws: tuple[str, ...] = ()
     torque: str = "all"
     cavitation_factor: str = "none"
+    scales: tuple[float, ...] | None = None
 
     @property
     def remembering(self) -> tuple[bool, ...]:
@@ -114,6 +116,10 @@ class System:
         if isinstance(self.films, ElementFilm):
             assert self.published is not None
             return published_force(self.published, displacement, velocity, omega)
+        if self.scales is not None:
+            s, c = self.scales[index], self.clearances[index]
+            found = evaluate(self.films[index], c, displacement, s * np.asarray(velocity), s * omega)
+            return FilmForce(found.force, found.by_displacement, s * found.by_velocity)
         return evaluate(self.films[index], self.clearances[index], displacement, velocity, omega)
 
 

@@ -24,6 +24,8 @@ def table_obstacle(case: Case) -> str:
             return f"{cavitation} is mass-conserving: the force does not depend on the motion alone"
         if not law_named(cavitation).tabulated:
             return f"{cavitation} has no such table"
+    if case.heat is not None:
+        return "heat needs the flow out of the films, which is not in the table"
     if film.grid != "fixed":
         return f"a {film.grid} grid needs cells"
     for place in film_places(case):

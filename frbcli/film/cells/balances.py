@@ -53,7 +53,7 @@ BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 
 @compiled()
-def _end_flow(
+def end_flow(
     kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, length: float,
     steepness: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
@@ -240,7 +240,7 @@ def _flow_through_ends(
             )
             groove = numbers[FAR_PRESSURE] if far == 1 else 0.0
             unit = numbers[ASPECT] * ring[LENGTH, i] * rise
-            flow, by_last, by_beyond, by_conductance = _end_flow(
+            flow, by_last, by_beyond, by_conductance = end_flow(
                 kind,
                 states[PRESSURE, i, j],
                 states[PRESSURE, i, b],

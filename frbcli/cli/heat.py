@@ -1,0 +1,68 @@
+"""The heat of a machine at a speed, as a table and as part of a JSON document."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from frbcli.cli.common import Terminal
+    from frbcli.linear.heat import WarmMachine
+
+ZERO_CELSIUS = 273.15
+FILMS = ("film", "degC", "mPa*s", "gap, um", "loss, W", "flow, ml/s")
+RINGS = ("ring", "inner, degC", "outer, degC", "speed over rotor's")
+
+
+def heat_document(warm: WarmMachine) -> dict[str, object]:
+    """Temperatures, viscosities, losses and flows, of one bearing each; what the balance of heat leaves over."""
+    return {
+        "films": [
+            {
+                "film": film.film,
+                "temperature_K": film.temperature,
+                "viscosity_Pa_s": film.viscosity,
+                "clearance_m": film.clearance,
+                "power_W": film.power,
+                "flow_m3_s": film.flow,
+            }
+            for film in warm.films
+        ],
+        "rings": [
+            {"ring": ring.ring, "inner_K": ring.inner, "outer_K": ring.outer, "speed_ratio": ring.speed_ratio}
+            for ring in warm.rings
+        ],
+        "carried_by_oil_W": warm.steady.carried,
+        "into_walls_W": warm.steady.given,
+        "balance_relative": warm.balance,
+    }
+
+
+def tell_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
+    """The films and rings of a warm machine, and where its heat goes."""
+    rows = [
+        (
+            film.film,
+            f"{film.temperature - ZERO_CELSIUS:.1f}",
+            f"{1e3 * film.viscosity:.4g}",
+            f"{1e6 * film.clearance:.4g}",
+            f"{film.power:.4g}",
+            f"{1e6 * film.flow:.3g}",
+        )
+        for film in warm.films
+    ]
+    terminal.table(title, FILMS, rows)
+    if warm.rings:
+        rings = [
+            (
+                ring.ring,
+                f"{ring.inner - ZERO_CELSIUS:.1f}",
+                f"{ring.outer - ZERO_CELSIUS:.1f}",
+                f"{ring.speed_ratio:.4f}",
+            )
+            for ring in warm.rings
+        ]
+        terminal.table("rings", RINGS, rings)
+    terminal.result(
+        f"Heat: {warm.steady.carried:.4g} W with the oil, {warm.steady.given:.4g} W into shaft and housing, "
+        f"unaccounted for {warm.balance:.0e}."
+    )

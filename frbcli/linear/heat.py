@@ -1,0 +1,151 @@
+"""The machine at a constant speed with its heat: temperatures, resting position and ring speeds together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.film.grid import Array
+from frbcli.film.rectangles.end_flow import EndFlow
+from frbcli.linear.film_heat import end_flows, film_heat
+from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.rotor.held import held_rotor
+from frbcli.scene.heat import Heat, heat_of
+from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.system import System, make_system
+from frbcli.scene.warm import warm_system
+from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
+
+
+@dataclass(frozen=True)
+class FilmTemperature:
+    """One film of a warm machine: temperature K, viscosity Pa s, clearance m, power W, flow through the ends m^3/s, of
+    one bearing."""
+
+    film: str
+    temperature: float
+    viscosity: float
+    clearance: float
+    power: float
+    flow: float
+
+
+@dataclass(frozen=True)
+class RingTemperature:
+    """One ring: inner and outer temperature K; its speed over that of the rotor."""
+
+    ring: str
+    inner: float
+    outer: float
+    speed_ratio: float
+
+
+@dataclass(frozen=True)
+class WarmMachine:
+    """A machine whose heat balances. system: at its viscosities and clearances; resting: (n,) displacements in m;
+    steady: what the balance says; films, rings: the same by name; carried, given: W that the oil and the walls take;
+    balance: what is left over, relative to the power."""
+
+    system: System
+    resting: Array
+    steady: SteadyHeat
+    films: tuple[FilmTemperature, ...]
+    rings: tuple[RingTemperature, ...]
+
+    @property
+    def balance(self) -> float:
+        """What is left over of the power, relative."""
+        return self.steady.balance
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A machine at rest in the displacements `resting` (n,) in m; warm: with its heat, None without."""
+
+    system: System
+    resting: Array
+    warm: WarmMachine | None = None
+
+
+Finder = Callable[[float, Machine | None], Machine]
+
+
+def machine_finder(case: Case, plan: Plan, system: System) -> Finder:
+    """A function that finds the machine of a case, warm if it has heat, at omega rad/s, beginning from one near it. It
+    raises NotConverged."""
+    machines = None if case.heat is None else WarmMachines(case, plan, system)
+
+    def find(omega: float, near: Machine | None) -> Machine:
+        if machines is None:
+            return Machine(system, resting_position(system, omega, None if near is None else near.resting))
+        warm = machines.at(omega, None if near is None else near.warm)
+        return Machine(warm.system, warm.resting, warm)
+
+    return find
+
+
+def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
+    """The machine of a case with heat at a rotor speed, default the highest of its run, when everything is warm.
+
+    Raises InputError for a case that cannot be modelled or has no heat, NotConverged where its heat does not balance.
+    """
+    if case.heat is None:
+        remedy = 'Add the table [thermal] with model = "lumped".'
+        raise InputError(case.name or "case", (Fault("thermal", "", None, "is missing.", remedy),))
+    plan = make_plan(case)
+    top = max(abs(case.speed.start), abs(case.speed.end)) if speed_Hz is None else speed_Hz
+    return WarmMachines(case, plan, make_system(case, plan)).at(2.0 * math.pi * top)
+
+
+class WarmMachines:
+    """Warm machines of a case at any speed; tables are made once."""
+
+    def __init__(self, case: Case, plan: Plan, system: System) -> None:
+        self._case, self._plan, self._system = case, plan, system
+        self._heat: Heat = heat_of(case)
+        self._flows: tuple[EndFlow, ...] = end_flows(system)
+        self._concentric = case.heat is not None and case.heat.side_flow == "concentric"
+
+    def at(self, omega: float, near: WarmMachine | None = None) -> WarmMachine:
+        """The machine at omega rad/s, sought from the state of a machine `near`. Raises NotConverged."""
+        system = self._system
+        resting = None if near is None else near.resting
+
+        def solve(viscosities: Array, clearances: Array) -> FilmHeat:
+            nonlocal system, resting
+            system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
+            resting = resting_position(system, omega, resting)
+            journals = system.rotor.journals @ resting
+            spins = ring_speeds(system, held_rotor(system.rotor), omega, journals)
+            power, flow = film_heat(self._case, system, self._flows, journals, omega, spins)
+            if self._concentric:
+                flow = self._heat.concentric * clearances**3 / viscosities
+            return FilmHeat(power, flow, np.concatenate([[omega], spins]))
+
+        begin = self._heat.start if near is None else near.steady.temperatures
+        speeds = np.zeros(1 + system.ring_count)
+        speeds[0] = omega
+        found = steady_heat(self._heat.model, system.names, solve, begin, speeds)
+        assert resting is not None
+        return self._machine(system, resting, found)
+
+    def _machine(self, system: System, resting: Array, found: SteadyHeat) -> WarmMachine:
+        t, films = found.temperatures, found.films
+        rows = zip(t, found.viscosities, found.clearances, films.power, films.flow, strict=False)
+        names = (name or "film" for name in system.names)
+        named = tuple(FilmTemperature(name, *map(float, row)) for name, row in zip(names, rows, strict=True))
+        rings = tuple(
+            RingTemperature(
+                ring.name or "ring",
+                float(t[ring.inner]),
+                float(t[ring.outer]),
+                float(films.speeds[1 + ring.turning] / films.speeds[0]) if ring.turning >= 0 else 0.0,
+            )
+            for ring in self._heat.rings
+        )
+        return WarmMachine(system, resting, found, named, rings)

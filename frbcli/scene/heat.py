@@ -1,0 +1,221 @@
+"""The heat of a machine: its nodes, conductances and clearances as arrays, made of a case (docs/heat.md)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.case.bearing import Bearing, ColdClearance, FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.schema import Case
+from frbcli.case.thermal import Thermal, WallNode
+from frbcli.film.grid import Array
+from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
+from frbcli.materials.solids import SOLIDS
+from frbcli.scene.films import film_places, turning_rings
+from frbcli.thermal.model import FROM_SUPPLY, HeatModel
+
+OIL_AT = 353.15, 393.15  # K between which the heat capacity of the oil is taken as linear
+BORES_SHARE = 0.6  # beta of the flow of a concentric film: bores feed less than a groove around the film
+
+
+@dataclass(frozen=True)
+class RingNodes:
+    """The nodes of a ring: name of its bearing; numbers of its inner and outer node; of its body as it turns, -1 if it
+    is blocked."""
+
+    name: str
+    inner: int
+    outer: int
+    turning: int
+
+
+@dataclass(frozen=True)
+class Heat:
+    """The model of a machine. nodes: names of all nodes, films first; rings; start (n,) K; concentric (F,): Q eta / C^3
+    of the formula of a concentric film, m Pa s / s."""
+
+    model: HeatModel
+    nodes: tuple[str, ...]
+    rings: tuple[RingNodes, ...]
+    start: Array
+    concentric: Array
+
+
+def heat_of(case: Case) -> Heat:
+    """The heat of a case that has it."""
+    assert case.heat is not None
+    return _Builder(case, case.heat).heat()
+
+
+class _Builder:
+    """Collects nodes and links, bearing by bearing."""
+
+    def __init__(self, case: Case, thermal: Thermal) -> None:
+        self._case, self._thermal, self._places = case, thermal, film_places(case)
+        self._names = [place.name or "film" for place in self._places]
+        oil, films = case.oil, len(self._places)
+        first, last = (case.oil.density * oil.heat_capacity_at(t) for t in OIL_AT)
+        slope = (last - first) / (OIL_AT[1] - OIL_AT[0])
+        self._oil_heat = np.array([first - slope * OIL_AT[0], slope])
+        initial = thermal.start_temperature or thermal.supply_temperature
+        self._initial = initial
+        self._start = [initial] * films
+        at_start = float(self._oil_heat[0] + self._oil_heat[1] * initial)
+        self._capacity = [at_start * _volume(place.geometry) for place in self._places]
+        self._links: list[tuple[int, int, float, int]] = []
+        self._rings: list[RingNodes] = []
+        self._expansions: list[tuple[int, int, float]] = []  # film, node, m/K
+        self._base = np.array([place.geometry.clearance for place in self._places])
+        self._growth = np.zeros((films, 1 + len(turning_rings(case))))
+
+    def heat(self) -> Heat:
+        film = 0
+        for bearing in self._case.bearings:
+            if isinstance(bearing, SingleFilmBearing):
+                self._single(bearing, film)
+                film += 1
+            else:
+                self._floating(bearing, film)
+                film += 2
+        count = len(self._capacity)
+        expansion = np.zeros((len(self._places), count))
+        for f, node, rate in self._expansions:
+            expansion[f, node] += rate
+        thermal, law = self._thermal, self._case.oil.law
+        assert law is not None  # the checks of a case see to it
+        supplies = [bearing.supply_temperature or thermal.supply_temperature for bearing in self._bearings()]
+        model = HeatModel(
+            capacity=np.array(self._capacity),
+            links=np.array([link[:2] for link in self._links], dtype=np.int64).reshape(-1, 2),
+            conductance=np.array([link[2] for link in self._links]),
+            of_film=np.array([link[3] for link in self._links], dtype=np.int64),
+            supply=np.array(supplies),
+            inlet=np.array(self._inlets(), dtype=np.int64),
+            mixing=thermal.mixing,
+            oil_heat=self._oil_heat,
+            viscosity=np.array([law.eta_0, law.a, law.c]),
+            clearance=self._base,
+            reference=np.array([place.geometry.clearance for place in self._places]),
+            expansion=expansion,
+            growth=self._growth,
+            hottest=thermal.hottest_film,
+        )
+        concentric = np.array([_concentric(self._case, place.geometry) for place in self._places])
+        return Heat(model, tuple(self._names), tuple(self._rings), np.array(self._start), concentric)
+
+    def _bearings(self) -> list[Bearing]:
+        """The bearing of each film."""
+        return [b for b in self._case.bearings for _ in range(1 if isinstance(b, SingleFilmBearing) else 2)]
+
+    def _inlets(self) -> list[int]:
+        """The film that feeds each film: an outer film that coupled channels join to the inner one."""
+        found: list[int] = []
+        for bearing in self._case.bearings:
+            if isinstance(bearing, FloatingRingBearing):
+                coupled = bearing.channels == "coupled"
+                found += [len(found) + 1 if coupled else FROM_SUPPLY, FROM_SUPPLY]
+            else:
+                found.append(FROM_SUPPLY)
+        return found
+
+    def _single(self, bearing: SingleFilmBearing, film: int) -> None:
+        shaft = self._wall(film, bearing.shaft or self._thermal.shaft, f"{bearing.name} shaft".lstrip())
+        housing = self._wall(film, bearing.housing or self._thermal.housing, f"{bearing.name} housing".lstrip())
+        self._follow(film, bearing, (shaft,), (housing,), self._shaft_expansion, self._housing_expansion)
+        self._grow_shaft(film, bearing)
+
+    def _floating(self, bearing: FloatingRingBearing, film: int) -> None:
+        ring, inner, outer = bearing.ring, bearing.inner, bearing.outer
+        solid, half = ring.solid, 0.5 * ring.mass * ring.solid.heat_capacity
+        inside, outside = (self._node(f"{bearing.name} ring {side}".lstrip(), half) for side in ("inner", "outer"))
+        resistance = math.log(outer.diameter / inner.diameter) / (2.0 * math.pi * solid.conductivity * inner.width)
+        self._links.append((inside, outside, 1.0 / resistance, -1))
+        self._to_film(film, inside)
+        self._to_film(film + 1, outside)
+        turning = self._places[film + 1].inside
+        self._rings.append(RingNodes(bearing.name, inside, outside, turning))
+        shaft = self._wall(film, bearing.shaft or self._thermal.shaft, f"{bearing.name} shaft".lstrip())
+        housing = self._wall(film + 1, bearing.housing or self._thermal.housing, f"{bearing.name} housing".lstrip())
+        both = (inside, outside)
+        self._follow(film, inner, (shaft,), both, self._shaft_expansion, solid.expansion)
+        self._follow(film + 1, outer, both, (housing,), solid.expansion, self._housing_expansion)
+        self._grow_shaft(film, inner)
+        if self._thermal.centrifugal_growth == "follows" and turning >= 0:
+            radii = 0.5 * inner.diameter, 0.5 * outer.diameter
+            strains = ring_rotation_strains(solid, 1.0, *radii)
+            self._growth[film, 1 + turning] += radii[0] * strains[0]
+            self._growth[film + 1, 1 + turning] -= radii[1] * strains[1]
+
+    def _grow_shaft(self, film: int, geometry: FilmGeometry) -> None:
+        if self._thermal.centrifugal_growth == "follows":
+            radius = 0.5 * geometry.diameter
+            self._growth[film, 0] -= radius * shaft_rotation_strain(SOLIDS[self._thermal.shaft_material], 1.0, radius)
+
+    @property
+    def _shaft_expansion(self) -> float:
+        return SOLIDS[self._thermal.shaft_material].expansion
+
+    @property
+    def _housing_expansion(self) -> float:
+        return SOLIDS[self._thermal.housing_material].expansion
+
+    def _node(self, name: str, capacity: float, temperature: float | None = None) -> int:
+        self._names.append(name)
+        self._capacity.append(capacity)
+        self._start.append(self._initial if temperature is None else temperature)
+        return len(self._capacity) - 1
+
+    def _to_film(self, film: int, node: int) -> None:
+        """h A between a film and a wall, h = Nu k / C."""
+        geometry = self._places[film].geometry
+        transfer = self._thermal.nusselt * self._case.oil.thermal_conductivity / geometry.clearance
+        self._links.append((film, node, transfer * math.pi * geometry.diameter * geometry.width, film))
+
+    def _wall(self, film: int, wall: str | float | WallNode, name: str) -> int:
+        """The node of a shaft or housing at a film; an adiabatic one has the temperature of its film, and no node."""
+        if isinstance(wall, WallNode):
+            node = self._node(name, wall.capacity)
+            place = self._node(f"beyond {name}", math.inf, wall.temperature)
+            self._links.append((node, place, wall.conductance, -1))
+        elif isinstance(wall, str):
+            return film
+        else:
+            node = self._node(name, math.inf, wall)
+        self._to_film(film, node)
+        return node
+
+    def _follow(
+        self, film: int, geometry: FilmGeometry, inside: tuple[int, ...], outside: tuple[int, ...], journal: float,
+        shell: float,
+    ) -> None:  # fmt: skip
+        """(4.24) of one film. inside, outside: nodes whose mean is the temperature of journal and shell; journal,
+        shell: their coefficients of expansion, 1/K, where the clearance has none."""
+        if self._thermal.clearance == "fixed":
+            return
+        given, radius, at = geometry.given_clearance, 0.5 * geometry.diameter, self._thermal.reference_temperature
+        if isinstance(given, ColdClearance):
+            journal, shell, at = given.journal_expansion, given.shell_expansion, given.reference_temperature
+            self._base[film] = given.cold
+        self._base[film] -= radius * (shell - journal) * at
+        for nodes, rate in ((inside, -radius * journal), (outside, radius * shell)):
+            self._expansions += [(film, node, rate / len(nodes)) for node in nodes]
+
+
+def _volume(film: FilmGeometry) -> float:
+    return math.pi * film.diameter * film.width * film.clearance
+
+
+def _concentric(case: Case, film: FilmGeometry) -> float:
+    """Q eta / C^3 with Q = 2 beta 2 pi R C^3 dp / (12 eta B/2); of a groove at one end a quarter: one land of B."""
+    supply = film.supply
+    gauge = getattr(supply, "pressure", case.oil.ambient_pressure) - case.oil.ambient_pressure
+    groove = supply.kind == "circumferential-groove"
+    share = film.side_flow_factor
+    if share is None:
+        share = 1.0 if groove else BORES_SHARE
+    if groove and getattr(supply, "axial_position", 0.5) != 0.5:
+        share *= 0.25
+    return 2.0 * share * math.pi * film.diameter * gauge / (6.0 * film.width)
+

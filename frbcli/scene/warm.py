@@ -1,0 +1,49 @@
+"""The machine at other viscosities and clearances than those of its case, without new tables.
+
+The pressure of a film is homogeneous in the velocity w and in the pressures that are given: with s times the scale
+12 eta / psi^2 it is that of the velocity s w. So a table serves for every uniform viscosity and every clearance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from frbcli.case.bearing import FloatingRingBearing, RingFilm, SingleFilmBearing
+from frbcli.case.schema import Case
+from frbcli.film.grid import Array
+from frbcli.scene.films import film_places
+from frbcli.scene.plan import Plan
+from frbcli.scene.system import System, make_system
+
+
+def warm_system(case: Case, plan: Plan, system: System, viscosities: Array, clearances: Array) -> System:
+    """The system of a case with viscosities in Pa s and clearances in m, (films,) each."""
+    if system.volumes:
+        return make_system(warm_case(case, viscosities, clearances), plan)
+    places = [place.geometry for place in film_places(case)]
+    thicker = viscosities / [case.viscosity(film) for film in places]
+    wider = clearances / system.clearances
+    return replace(
+        system,
+        clearances=tuple(clearances.tolist()),
+        drags=tuple((np.array(system.drags) * thicker / wider).tolist()),
+        scales=tuple((thicker / wider**2).tolist()),
+    )
+
+
+def warm_case(case: Case, viscosities: Array, clearances: Array) -> Case:
+    """The case without heat, its films with these viscosities in Pa s and clearances in m, (films,) each."""
+    values = iter(
+        {"viscosity": float(eta), "given_clearance": float(c)} for eta, c in zip(viscosities, clearances, strict=True)
+    )
+    bearings: list[SingleFilmBearing | FloatingRingBearing] = []
+    for bearing in case.bearings:
+        if isinstance(bearing, SingleFilmBearing):
+            bearings.append(bearing.model_copy(update=next(values)))
+        else:
+            inner: RingFilm = bearing.inner.model_copy(update=next(values))
+            outer: RingFilm = bearing.outer.model_copy(update=next(values))
+            bearings.append(bearing.model_copy(update={"inner": inner, "outer": outer}))
+    return case.model_copy(update={"bearings": tuple(bearings), "thermal": None})
