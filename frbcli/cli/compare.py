@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,7 @@ EXPLANATION = (
 @click.option("--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]")
 @click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [that of CASE]")
 @click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
+@click.option("--thermal", type=Names(), default=(), metavar="A,B", help="Models of heat: none, lumped. [that of CASE]")
 @click.option("--test", default="runup", show_default=True, metavar="TEST",
               help="The scene: runup, rotation, squeeze, whirl.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
@@ -51,6 +53,7 @@ def command(
     cavitation: tuple[str, ...],
     theory: tuple[str, ...],
     coupling: tuple[str, ...],
+    thermal: tuple[str, ...],
     test: str,
     output: Path | None,
     picture: bool,
@@ -66,6 +69,9 @@ def command(
 
     target = output or here(case.name, "-compare.png")
     if test in TESTS:
+        if thermal:
+            problem = f"is not for a {test}, whose film keeps its temperature."
+            raise InputError(case.name, (Fault("--thermal", ",".join(thermal), None, problem, "Leave it out."),))
         if coupling:
             problem = f"is not for a {test}, in which no rotor moves."
             raise InputError(case.name, (Fault("--coupling", ",".join(coupling), None, problem, "Leave it out."),))
@@ -73,8 +79,10 @@ def command(
     check_place(target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
-        found = compare(case, cavitation, theory, test, keep, watch, coupling)
+        found = compare(case, cavitation, theory, test, keep, watch, coupling, thermal)
     _report(found, bool(coupling), terminal)
+    if thermal:
+        _report_heat(found, terminal)
     results = [_document(result) for result in found.results]
     whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
     terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results})
@@ -126,6 +134,36 @@ def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
         terminal.result(f"Not all models were run: {' '.join(found.message.split()) or found.status}")
 
 
+def _report_heat(found: Comparison, terminal: Terminal) -> None:
+    """What heat changes at the end of the runs."""
+    rows = [
+        (
+            result.variant.name,
+            ", ".join(f"{ratio:.4f}" for ratio in result.ring_ratios.values()) or "-",
+            "-" if math.isnan(result.loss) else f"{result.loss:.4g}",
+            ", ".join(f"{hottest:.1f}" for hottest in _hottest(result)) or "-",
+        )
+        for result in found.results
+    ]
+    terminal.table("at the end", ("films", "ring over rotor", "loss, W", "films, degC"), rows)
+
+
+def _heat(result: VariantResult) -> dict[str, Any]:
+    """What heat changes at the end, in JSON."""
+    return {
+        "thermal": result.variant.thermal,
+        "ring_speed_ratios": result.ring_ratios,
+        "loss_W": None if math.isnan(result.loss) else result.loss,
+    }
+
+
+def _hottest(result: VariantResult) -> list[float]:
+    """Temperatures of the films in degC at the end."""
+    names = [name.replace("flow", "temperature").removesuffix("_m3_s") + "_K" for name in result.run.signals
+             if name.startswith("flow")]  # fmt: skip
+    return [float(result.run[name][-1]) - 273.15 for name in names]
+
+
 def _cells(result: VariantResult) -> tuple[str, ...]:
     critical, onset = result.first("critical-speed"), result.first("onset")
     error = result.run.error["film_force_relative"]
@@ -163,6 +201,7 @@ def _document(result: VariantResult) -> dict[str, Any]:
         "cavitation": result.variant.cavitation,
         "theory": result.variant.theory,
         "coupling": result.variant.coupled,
+        **(_heat(result) if result.variant.thermal else {}),
         "status": result.run.status,
         "events": result.run.events,
         "deviation": {

@@ -201,6 +201,19 @@ def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
     return [("oil", f"{came:.3g} mm^3 in", f"{left:.3g} mm^3 out{defect}")]
 
 
+def _heat_rows(run: Run) -> list[tuple[str, str, str]]:
+    """Where the heat of the films went, of one bearing each."""
+    if "heat_dissipated_J" not in run.cost:
+        return []
+    whole, oil, walls, kept = (
+        run.cost[f"heat_{name}_J"] for name in ("dissipated", "carried", "into_walls", "kept")
+    )
+    off = run.error.get("heat_balance_relative")
+    defect = "" if off is None else f", unaccounted for {off:.0e}"
+    parts = f"{oil:.4g} J with the oil, {walls:.4g} J into walls, {kept:.4g} J kept"
+    return [("heat", f"{whole:.4g} J", f"{parts}{defect}")]
+
+
 def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
     cost, error = run.cost, run.error
     film = error.get("film_force_relative")
@@ -214,6 +227,7 @@ def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
         ),
         ("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each"),
         *_oil_rows(run),
+        *_heat_rows(run),
         ("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes"),
         ("error, time integration", f"{error['time_integration']:.1e}", "of the eccentricity"),
         ("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}"),

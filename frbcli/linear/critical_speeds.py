@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case, FilmModel
 from frbcli.errors import FrbError, NotConverged
-from frbcli.linear.resting import resting_position
+from frbcli.linear.heat import Finder, machine_finder
 from frbcli.linear.stability import eigenvalues
 from frbcli.scene.films import rings
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.system import make_system
 
 Array = NDArray[np.float64]
 
@@ -41,26 +41,28 @@ def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
         full = case.model_copy(update={"film": film})
     top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))
     try:
-        system = make_system(full, make_plan(full))
+        plan = make_plan(full)
+        system = make_system(full, plan)
     except FrbError:  # an opening that this film does not know
         return None
     sweep = np.geomspace(top, LOWEST * top, SPEEDS).tolist() if top > 0.0 else []
-    points = list(_modes(system, sweep))
+    points = list(_modes(machine_finder(full, plan, system), sweep))
     found = (_crossings(below, above) for above, below in itertools.pairwise(points))
     return tuple(sorted(itertools.chain(*found))) if len(points) > 1 else None
 
 
-def _modes(system: System, speeds_Hz: Sequence[float]) -> Iterator[tuple[float, Array]]:
+def _modes(find: Finder, speeds_Hz: Sequence[float]) -> Iterator[tuple[float, Array]]:
     """Speed and natural frequencies (k,) in Hz of the modes that unbalance can excite, where the rotor can rest; from a
     fast journal near the middle outwards."""
-    still, start = np.zeros(2), None
+    still, machine = np.zeros(2), None
     for speed in speeds_Hz:
         omega = 2.0 * math.pi * speed
         try:
-            start = resting_position(system, omega, start)
+            machine = find(omega, machine)
         except NotConverged:
             continue
-        places, totals = system.rotor.journals @ start, system.omegas(omega, np.zeros(0))
+        system = machine.system
+        places, totals = system.rotor.journals @ machine.resting, system.omegas(omega, np.zeros(0))
         films = [system.film_force(i, place, still, float(totals[i])) for i, place in enumerate(places)]
         stiffness = -np.stack([film.by_displacement for film in films])
         damping = -np.stack([film.by_velocity for film in films])

@@ -64,6 +64,6 @@ def _on_cells(case: Case, system: System, i: int, place: Array, total: float, sl
     motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
     solution, at = steady_solution(film, motion), film_at(film, math.hypot(*d), total)
     found = loads(at, motion, solution, slip, case.film.cavitation_factor)
-    journal, shell = 0.5 * (total + slip), 0.5 * (total - slip)
-    power = -found.torque.journal * journal + found.torque.shell * shell
+    moment = float(place[0] * found.force[1] - place[1] * found.force[0])
+    power = -found.torque.couette * slip + 0.5 * moment * total
     return power, outflow(at, motion.d, at.pressure(solution.state))

@@ -21,6 +21,7 @@ ITERATIONS = 80
 STEP = 1e-10  # of the clearance: a full Newton step below this ends the iteration
 SMALLEST_GAP_CHANGE = 0.25  # a step may shrink 1 - eps of a journal to this share of it
 SMALLEST_SHARE = 1e-8  # of a Newton step that is tried
+STILL = 1e-6  # N: round-off of the films of a rotor without weight
 OUTER_START = 0.9  # eccentricity of the last start that is tried
 RING_STEP = 1e-10  # of the rotor speed: a change of the rings' speeds below this ends their iteration
 RING_ITERATIONS = 40
@@ -45,6 +46,8 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
             deflection: Array = held.shape + held.following @ position.ravel()
             return deflection
         left = min(left, residual)
+    if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
+        return held.shape
     raise NotConverged(
         f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
         f"{len(starts)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. "

@@ -16,7 +16,7 @@ import numpy as np
 from frbcli.results.signals import Signal, pieces
 
 COMMANDS = ("runup", "rundown")
-STATUSES = ("finished", "contact", "starved", "not-converged", "interrupted")
+STATUSES = ("finished", "contact", "starved", "overheated", "not-converged", "interrupted")
 TIME, SPEED = "time_s", "speed_Hz"
 LONGEST_LABEL = 200  # characters
 MOST_ENTRIES = 500  # of a table
@@ -34,7 +34,7 @@ EVENT_KEYS = ("kind", "film", *EVENT_NUMBERS, *EVENT_OPTIONAL)
 COST_OF_ALL = ("cpu_s", "steps", "rejected_steps", "steps_per_revolution", "film_solves", "ms_per_film_solve",
                "simulated_ms_per_hour")  # fmt: skip
 ERROR_OF_ALL = ("time_integration",)
-TOGETHER = {"oil_in_m3": "oil_out_m3", "eccentricity": "quiet_until_s"}
+TOGETHER = {"oil_in_m3": "oil_out_m3", "heat_dissipated_J": "heat_carried_J", "eccentricity": "quiet_until_s"}
 
 _NAME = "(_[A-Za-z0-9_-]{1,60})?"  # of a film, a bearing or a wheel
 _UNITS = {
@@ -43,6 +43,11 @@ _UNITS = {
     re.compile(f"(eccentricity|oil_fraction){_NAME}"): "",
     re.compile(f"(journal|disk|ring){_NAME}_[xy]_m"): "m",
     re.compile(f"ring_speed{_NAME}_Hz"): "Hz",
+    re.compile(f"temperature{_NAME}_K"): "K",
+    re.compile(f"viscosity{_NAME}_Pa_s"): "Pa*s",
+    re.compile(f"clearance{_NAME}_m"): "m",
+    re.compile(f"power{_NAME}_W"): "W",
+    re.compile(f"flow{_NAME}_m3_s"): "m^3/s",
 }
 _KIND = re.compile("[a-z]{1,30}(-[a-z]{1,30}){0,3}")
 _KEY = re.compile("[A-Za-z][A-Za-z0-9_-]{0,99}")

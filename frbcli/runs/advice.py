@@ -11,6 +11,7 @@ from typing import Any
 from frbcli.analysis.signals import films, joined
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
+from frbcli.runs.heat import hot_film
 from frbcli.scene.clearance_steps import case_at, step_times
 from frbcli.scene.coupling import APART
 from frbcli.scene.films import film_places
@@ -31,7 +32,8 @@ STIFFNESS = "1e9 N/m"  # suggested contact stiffness
 @dataclass(frozen=True)
 class RunEnd:
     """The end of a run: speed in Hz; film: the name of that with the largest eccentricity, which is given; step: the
-    last one in s that was tried, None if not known; whirl: the latest onset in it, an event of the run, or None."""
+    last one in s that was tried, None if not known; whirl: the latest onset in it, an event of the run, or None;
+    hot_film: the name of a film that became too hot."""
 
     status: str
     t_s: float
@@ -40,6 +42,7 @@ class RunEnd:
     eccentricity: float
     step_s: float | None
     whirl: dict[str, Any] | None
+    hot_film: str = ""
 
     @property
     def journal(self) -> str:
@@ -61,6 +64,7 @@ def run_end(run: Run) -> RunEnd:
         eccentricity=last.get(film, 0.0),
         step_s=None if numbers is None else float(numbers[STEP]),
         whirl=whirls[-1] if whirls and whirls[-1]["kind"] == "onset" else None,
+        hot_film=hot_film(run.signals, run.checkpoint or {}),
     )
 
 
@@ -70,6 +74,8 @@ def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
         return ("Go on with the same command and --resume.",)
     if end.status == "starved":
         return _starved(case)
+    if end.status == "overheated":
+        return _overheated(case, end)
     if end.status == "contact":
         return _contact(case, end)
     if end.status == "finished":
@@ -85,6 +91,18 @@ def _starved(case: Case) -> tuple[str, ...]:
             name = f"The film {film.name}" if film.name else "The film"
             told.append(f"{name} starved: {film.cause}, so that more oil left than flowed in. {film.remedy}")
     return tuple(told)
+
+
+def _overheated(case: Case, end: RunEnd) -> tuple[str, ...]:
+    """A film that became too hot, or whose gap heat has closed."""
+    thermal = case.heat
+    limit = "" if thermal is None else f" ({display(thermal.hottest_film, 'K')}, thermal.hottest_film)"
+    follows = thermal is not None and thermal.clearance == "follows"
+    gap = ", or heat closed its gap" if follows else ""
+    return (
+        f"At {end.speed_Hz:.4g} Hz the oil in the film {end.hot_film} became too hot{limit}{gap}{_while(end)}. "
+        "Give it more flow, a cooler supply, more clearance, or a wall that takes heat.",
+    )
 
 
 def _contact(case: Case, end: RunEnd) -> tuple[str, ...]:

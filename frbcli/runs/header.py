@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
+from frbcli.runs.heat import heat_units
 from frbcli.scene.bearing_model_films import model_record
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
@@ -39,6 +40,7 @@ def header(
     remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
+    units |= heat_units(case, system)
     return Header(
         title=case.title or case.name,
         command=command,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.error_budget import budget_of_segments, quick_budget, summed
 from frbcli.runs.film_error import sample_count
 from frbcli.runs.header import named, ring_names
+from frbcli.runs.heat import RunHeat
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
 from frbcli.runs.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
@@ -85,10 +86,11 @@ class March:
         self._profile = profile.with_stops(segment.start for segment in self._segments)
         self._take_up(0)
         system = self._system
+        self._heat = RunHeat(case, plan, system)
         self._control = control_of(case, plan)
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
-            self._state = first_state(case.start, system, profile)
+            self._state = first_state(case.start, self._heat.start, profile)
         self._apart = plan.coupling == "co-simulation"
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))
@@ -96,6 +98,8 @@ class March:
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
+        # what the loop takes beside the rest, nothing without heat
+        self._extra = self._heat.buffers(rows)
         # States at some fixed output times, at which the films are solved again and runs compared.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
         self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
@@ -130,6 +134,11 @@ class March:
         return self._system
 
     @property
+    def _now(self) -> System:
+        """The current machine with the clearances that heat has brought about."""
+        return replace(self._system, clearances=tuple(self._rotor.clearances.tolist()))
+
+    @property
     def samples(self) -> Array:
         """(k, 2 n + 1 + films) states so far at the fixed output times: see film_force_errors, and the mean oil
         fraction of each film, which is of no meaning where it keeps none."""
@@ -147,35 +156,32 @@ class March:
 
     def compile(self) -> None:
         """Have the time loop compiled, or found in the cache, before the clock starts."""
-        self._advance(
-            self._rotor, self._system.films, self._tableau, self._control, self._state, 0, self._q, self._v, self._oil
+        self._go(0)
+
+    def _go(self, budget: int) -> tuple[int, int]:
+        """Advance by some steps: (status, rows written)."""
+        films = self._heat.films or self._system.films
+        buffers = (self._q, self._v, self._oil, *self._extra)
+        found: tuple[int, int] = self._advance(
+            self._rotor, films, self._tableau, self._control, self._state, budget, *buffers
         )
+        return found
 
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
         cpu, wall = time.process_time(), time.perf_counter()
-        status, rows = self._advance(
-            self._rotor,
-            self._system.films,
-            self._tableau,
-            self._control,
-            self._state,
-            self._budget,
-            self._q,
-            self._v,
-            self._oil,
-        )
+        status, rows = self._go(self._budget)
         spent = time.perf_counter() - wall
         self._cpu_s += time.process_time() - cpu
         self._wall_s += spent
         self._budget = max(1, min(BUDGET, int(self._budget * min(GROWTH, CHUNK_s / max(spent, 1e-9)))))
         first = int(self._state.numbers[OUTPUTS]) - rows
-        times = (first + np.arange(rows)) * self._control.output_step
+        times: Array = (first + np.arange(rows, dtype=np.float64)) * self._control.output_step
         speeds = self._profile.speed(times)
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept]])
         self._samples = np.concatenate([self._samples, fresh])
-        signals = self._signals(times, speeds, self._q[:rows], self._v[:rows])
+        signals = self._signals(times, speeds, self._q[:rows], self._v[:rows]) | self._heat.signals(rows)
         if status == FINISHED and self._current + 1 < len(self._segments):
             status = self._change()
         if status == RUNNING and self._state.numbers[STEPS] > self._most_steps:
@@ -185,7 +191,8 @@ class March:
     def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
         system = self._system
-        for name, selection, clearance in zip(system.names, system.rotor.journals, system.clearances, strict=True):
+        clearances = self._heat.clearances(len(times)) or system.clearances
+        for name, selection, clearance in zip(system.names, system.rotor.journals, clearances, strict=True):
             journal = q @ selection.T
             signals[named("eccentricity", name)] = np.hypot(journal[:, 0], journal[:, 1]) / clearance
         for name, selection in system.rotor.points:
@@ -201,7 +208,7 @@ class March:
     def snapshot(self) -> dict[str, Array]:
         """The checkpoint, from which the run continues with the same result."""
         clock = np.array([self._cpu_s, self._wall_s])
-        return {**self._state._asdict(), "film_samples": self._samples, "clock": clock}
+        return {**self._state._asdict(), **self._heat.snapshot(), "film_samples": self._samples, "clock": clock}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
         """Take up the state of a checkpoint. Raises WrongCheckpoint if it is not one of this run."""
@@ -209,6 +216,7 @@ class March:
         rows = math.ceil(state.numbers[OUTPUTS] / self._sample_every)
         samples = array(checkpoint, "film_samples", (rows, self._samples.shape[1]))
         clock = array(checkpoint, "clock", (2,))
+        self._heat.restore(checkpoint)
         self._state, self._samples = state, samples
         self._take_up(sum(segment.start <= self.time for segment in self._segments[1:]))
         self._cpu_s, self._wall_s = (float(value) for value in clock)
@@ -233,12 +241,14 @@ class March:
             "ms_per_film_solve": 1e3 * self._cpu_s / max(float(numbers[SOLVES]), 1.0),
             "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
             **oil_passed(self._system, self._state),
+            **self._heat.passed(),
             **(micro_cost(self._state, self._cpu_s) if self._apart else {}),
         }
 
     def error_so_far(self) -> dict[str, float | None]:
         """The part of the error that is known during a run."""
-        return quick_budget(self._system, self._state, self._profile.angle(self.time))
+        known = quick_budget(self._now, self._state, self._profile.angle(self.time))
+        return {**known, **self._heat.balance()}
 
     def again(self, plan: Plan) -> March:
         """The same run from its beginning, by another plan. Raises NotConverged if it does not begin."""
@@ -261,7 +271,7 @@ class March:
         """The progress of the run. until: end in s of a run that is repeated for its error."""
         numbers = self._state.numbers
         t, end = self.time, self._profile.end if until is None else until
-        here = self._system.rotor.journals @ self._state.q / np.array(self._system.clearances)[:, None]
+        here = self._system.rotor.journals @ self._state.q / self._rotor.clearances[:, None]
         rate = t / max(self._wall_s, 1e-9)
         return Progress(
             t_s=t,

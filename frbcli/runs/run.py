@@ -27,13 +27,14 @@ from frbcli.scene.limits import require_affordable
 from frbcli.scene.plan import Plan, make_plan
 from frbcli.scene.profiles import run_down_profile, run_up_profile
 from frbcli.scene.segments import Segment, make_segments
-from frbcli.solve.state import CONTACT, FINISHED, RUNNING
+from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
 WAIT_s = 10.0  # CPU time for the error of a run that was interrupted
 PROFILES = {"runup": run_up_profile, "rundown": run_down_profile}
-STATUS, STARVED = {FINISHED: "finished", CONTACT: "contact"}, "starved"
+STATUS = {FINISHED: "finished", CONTACT: "contact", OVERHEATED: "overheated"}
+STARVED = "starved"
 
 Observer = Callable[[Progress], None]
 
@@ -47,7 +48,7 @@ def runup(
     force: replace also an interrupted run, which is refused else. observe: called some times a second.
     Raises InputError for a case that cannot be modelled or afforded, an output that cannot be written, or an
     interrupted run in its place. Any end for a physical or numerical reason is the status of the run: "finished",
-    "contact", "starved", "not-converged"; Ctrl-C ends it as "interrupted".
+    "contact", "starved", "overheated", "not-converged"; Ctrl-C ends it as "interrupted".
     """
     return _run("runup", case, output, resume, observe, force)
 
@@ -66,9 +67,6 @@ def run_cost(command: str, case: Case) -> ExpectedCost:
 
 
 def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost]:
-    if case.heat is not None:
-        fault = Fault("thermal.model", "lumped", None, "is not modelled in runs.", 'Write thermal.model = "none".')
-        raise InputError(case.name or "case", (fault,))
     plan, profile = make_plan(case), PROFILES[command](case)
     cost = expected_cost(case, plan, profile)
     require_affordable(case, plan, cost)
@@ -124,7 +122,7 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
     from frbcli.analysis.events import find_events  # the analysis at the end of a run
 
     ended = STATUS.get(status, "not-converged")
-    if status != FINISHED and march.starves:
+    if status not in (FINISHED, OVERHEATED) and march.starves:
         ended = STARVED
     so_far = writer.so_far(ended)
     events = [asdict(event) for event in find_events(so_far)]

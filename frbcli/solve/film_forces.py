@@ -11,6 +11,7 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
+from frbcli.compiled import compiled
 from frbcli.film.cells.data import REMEMBERS
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.solve.cell_films import (
@@ -27,7 +28,7 @@ from frbcli.solve.cell_films import (
 )
 from frbcli.solve.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.element_films import back_off, element_numbers, left_of_elements, move_elements
-from frbcli.solve.films import Work, have_cells, have_elements
+from frbcli.solve.films import Work, have_cells, have_elements, have_scales
 from frbcli.solve.state import Array
 
 
@@ -106,6 +107,8 @@ def _one_of(films: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, 
 
 @overload(_one_of)
 def _first_or_later(films, f, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
+    if isinstance(films, types.UniTuple):
+        return lambda films, f, d_x, d_y, v_x, v_y, omega: film_force(films[f], d_x, d_y, v_x, v_y, omega)
     if len(films) == 1:
         return lambda films, f, d_x, d_y, v_x, v_y, omega: film_force(films[0], d_x, d_y, v_x, v_y, omega)
 
@@ -117,8 +120,21 @@ def _first_or_later(films, f, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-unt
     return several
 
 
+@compiled()
+def _scaled(films: Any, f: int, scale: float, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Any:
+    """film_force of film f with `scale` times the scale of its pressures: that of as many times the velocities."""
+    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _one_of(
+        films, f, d_x, d_y, scale * v_x, scale * v_y, scale * omega
+    )
+    return f_x, f_y, k_xx, k_xy, k_yx, k_yy, scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy
+
+
 @overload(film_numbers, inline="always")
 def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
+    if have_scales(work):
+        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: _scaled(
+            films, f, work.scales[f], d_x, d_y, v_x, v_y, omega
+        )
     if isinstance(films, types.UniTuple):
         return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: film_force(
             films[f], d_x, d_y, v_x, v_y, omega

@@ -70,6 +70,20 @@ class NoCells(NamedTuple):
     cross: Array
 
 
+class Scaled(NamedTuple):
+    """The same for tabulated films of a machine with heat, with scales (F,) of their tables, see film_forces.py."""
+
+    stage_oil: Array
+    grids: Array
+    cross: Array
+    scales: Array
+
+
+def have_scales(work: Any) -> bool:
+    """Whether a type that the compiler knows is that of the work of tabulated films with heat."""
+    return getattr(work, "instance_class", None) is Scaled
+
+
 def have_cells(films: Any) -> bool:
     """Whether a type that the compiler knows is that of films with cells."""
     return getattr(films, "instance_class", None) is VolumeFilms
@@ -80,12 +94,15 @@ def have_elements(films: Any) -> bool:
     return getattr(films, "instance_class", None) is ElementFilm
 
 
-def make_work(films: Any, wet: Array, stages: int) -> Work | ElementWork | NoCells:
-    """Scratch for films and their state wet (WET, F, m, k)."""
+def make_work(
+    films: Any, wet: Array, stages: int, scales: Array | None = None
+) -> Work | ElementWork | NoCells | Scaled:
+    """Scratch for films and their state wet (WET, F, m, k). scales: of tabulated films with heat."""
     if isinstance(films, ElementFilm):
         return make_element_work(films, stages)
     if not isinstance(films, VolumeFilms):
-        return NoCells(np.zeros((stages, 0, 0, 0)), np.zeros((GRIDS, 0)), np.zeros((0, 0)))
+        none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros((GRIDS, 0)), np.zeros((0, 0)))
+        return none if scales is None else Scaled(*none, scales)
     _, count, m, k = wet.shape
     feed_holes = films.feed_holes.shape[0]
     slots = 1 + int(films.feed_holes[:, SLOT].max()) if feed_holes else 0

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-RUNNING, FINISHED, CONTACT, STUCK = range(4)  # what advance returns
+RUNNING, FINISHED, CONTACT, STUCK, OVERHEATED = range(5)  # what advance returns
 # omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by those of the rotor and of the rings.
 SUM, SLIP, GRID, TURNING = range(4)
 

@@ -15,6 +15,7 @@ from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import left_over
 from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterations, write_oil
+from frbcli.solve.heat import NO_HEAT, LumpedHeat, begin_heat, carry_heat, write_heat
 from frbcli.solve.inverse import outdated, prepare
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
@@ -37,6 +38,7 @@ from frbcli.solve.step import (
     write_outputs,
 )
 from frbcli.solve.tableau import Tableau
+from frbcli.thermal.exchange import SCALE
 
 NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
 
@@ -68,31 +70,34 @@ def _largest_eccentricity(clearances: Array, selection: Array, q: Array) -> floa
 
 def advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
-    out_v: Array, out_oil: Array,
+    out_v: Array, out_oil: Array, heat: Any = NO_HEAT, out_heat: Array | None = None,
 ) -> tuple[int, int]:  # fmt: skip
     """Advance the state until the output buffers are full, `budget` steps are done, or the run ends.
 
     out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more
-    than one step can write; out_oil: (rows, films) for the oil fraction of films that keep theirs. Returns (status,
-    rows written). The course of the steps does not depend on how often this is called.
+    than one step can write; out_oil: (rows, films) for the oil fraction of films that keep theirs; heat: a kind of
+    heat.py, whose state moves on, too, and out_heat (rows, columns_of(heat)) for it. Returns (status, rows written).
+    The course of the steps does not depend on how often this is called.
     """
     stages, m, bodies = tableau.times.shape[0], 2 * rotor.clearances.shape[0], 1 + rotor.spins.shape[0]
     scratch = make_scratch(rotor, state.numbers, stages)
-    work = make_work(films, state.wet, stages)
+    work = make_work(films, state.wet, stages, heat.now[SCALE] if isinstance(heat, LumpedHeat) else None)
+    begin_heat(heat, films, rotor, state.wet)
     own = Own(
         np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros_like(state.q), np.zeros(bodies),
         np.zeros(bodies), np.zeros(bodies - 1),
     )  # fmt: skip
     status, rows = _advance(
-        rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil
-    )
+        rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil, heat,
+        np.zeros((len(out_q), 0)) if out_heat is None else out_heat,
+    )  # fmt: skip
     return int(status), int(rows)
 
 
 @compiled()
 def _advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
-    own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array,
+    own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array, heat: Any, out_heat: Array,
 ) -> tuple[int, int]:  # fmt: skip
     """advance with the arrays that it works in."""
     # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
@@ -170,6 +175,9 @@ def _advance(
         written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
+        hot = carry_heat(heat, films, work, turning, rotor.torque_terms, film, bodies, wet, contact_at,
+                         contact_stiffness, g, step, clearances, rotor.drag)
+        write_heat(heat, out_heat, before, written)
         numbers[STEP_DONE] = step
         move_on(q, v, a, q_new, stage_v, stage_a)
         keep_past(past, past_now)
@@ -178,5 +186,7 @@ def _advance(
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance, largest)
         if status != RUNNING:
             return status, written
+        if hot != RUNNING:
+            return hot, written
         choose_next(numbers, h, error, order, math.inf)
     return RUNNING, written

@@ -30,23 +30,27 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TESTS = ("runup",)
+THERMALS = ("none", "lumped")
 FINISHED, INTERRUPTED = "finished", "interrupted"
+LAST = 0.02  # share of a run
 UNTIL = ("onset", "contact")  # afterwards two runs differ in phase, whatever their films
 
 
 @dataclass(frozen=True)
 class Variant:
-    """One model of the films, and how they are coupled to the rotor."""
+    """One model of the films, how they are coupled to the rotor, and a model of heat, "" for that of the case."""
 
     theory: str
     cavitation: str
     coupling: str = "auto"
+    thermal: str = ""
 
     @property
     def name(self) -> str:
         """For tables and file names."""
         films = f"{self.cavitation} {self.theory}" if self.theory in THEORIES else self.theory
-        return films + ("" if self.coupling == "auto" else f" {self.coupling}")
+        heat = {"": "", "none": " without heat"}.get(self.thermal, " with heat")
+        return films + ("" if self.coupling == "auto" else f" {self.coupling}") + heat
 
     @property
     def coupled(self) -> str:
@@ -77,6 +81,19 @@ class VariantResult:
         """CPU time of a step, of one of the films' own if they have them."""
         cost = self.run.cost
         return 1e3 * float(cost["cpu_s"]) / max(float(cost.get("micro_steps", cost["steps"])), 1.0)
+
+    @property
+    def ring_ratios(self) -> dict[str, float]:
+        """Speed of each ring over that of the rotor in the last LAST of the run, by the names of their signals."""
+        rotor = float(np.mean(_last(self.run, "speed_Hz")))
+        rings = [name for name in self.run.signals if name.startswith("ring_speed")]
+        return {name: float(np.mean(_last(self.run, name))) / rotor for name in rings} if rotor else {}
+
+    @property
+    def loss(self) -> float:
+        """Mean power in W that all films took in the last LAST of the run, of one bearing each; NaN without heat."""
+        powers = [name for name in self.run.signals if name.startswith("power")]
+        return float(sum(np.mean(_last(self.run, name)) for name in powers)) if powers else np.nan
 
     def first(self, kind: str) -> dict[str, Any] | None:
         """The first event of a kind, None if there is none."""
@@ -115,9 +132,10 @@ def compare(
     keep: str | Path | None = None,
     observe: Observer | None = None,
     couplings: Sequence[str] = (),
+    thermals: Sequence[str] = (),
 ) -> Comparison:
-    """Run a case with every combination of the given cavitation models, theories and couplings; () stands for that of
-    the case.
+    """Run a case with every combination of the given cavitation models, theories, couplings and models of heat; ()
+    stands for that of the case.
 
     With none given, that of the case is compared with all that have no state and cost little. keep: a directory for
     the run files, made if need be; interrupted runs there go on. observe: called some times a second. Ctrl-C, or a
@@ -126,7 +144,7 @@ def compare(
     allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
     """
     _check_test(test)
-    variants = make_variants(case, cavitations, theories, couplings)
+    variants = make_variants(case, cavitations, theories, couplings, thermals)
     cases = [_with_models(case, variant) for variant in variants]
     for variant, its_case in zip(variants, cases, strict=True):
         make_plan(its_case)
@@ -166,32 +184,37 @@ def _status(end: BaseException) -> str:
 
 
 def make_variants(
-    case: Case, cavitations: Sequence[str] = (), theories: Sequence[str] = (), couplings: Sequence[str] = ()
+    case: Case,
+    cavitations: Sequence[str] = (),
+    theories: Sequence[str] = (),
+    couplings: Sequence[str] = (),
+    thermals: Sequence[str] = (),
 ) -> tuple[Variant, ...]:
     """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
     known = (*THEORIES, *(model.name for model in models()))
     faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, known)]
-    faults += _unknown("--coupling", couplings, COUPLINGS)
+    faults += [*_unknown("--coupling", couplings, COUPLINGS), *_unknown("--thermal", thermals, THERMALS)]
     if faults:
         raise InputError(case.name or "case", tuple(faults))
     plan = make_plan(case)
     own = Variant(plan.theory, plan.cavitation, case.film.coupling)
-    if not cavitations and not theories and not couplings:
+    if not (cavitations or theories or couplings or thermals):
         closed = names(law for law in laws() if law.closed)
         others = (Variant(theory, cavitation, own.coupling) for cavitation in closed for theory in THEORIES)
         found = [own, *(variant for variant in others if _fits(case, variant))]
     else:
         found = [
-            Variant(theory, cavitation, coupling)
+            Variant(theory, cavitation, coupling, thermal)
             for cavitation in cavitations or (own.cavitation,)
             for theory in theories or (own.theory,)
             for coupling in couplings or (own.coupling,)
+            for thermal in thermals or ("",)
         ]
     variants = tuple(dict.fromkeys(found))
     if len(variants) < 2:
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
         remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(known)}, "
-        remedy += f"--coupling {','.join(COUPLINGS)}."
+        remedy += f"--coupling {','.join(COUPLINGS)}, --thermal {','.join(THERMALS)}."
         raise InputError(case.name or "case", (Fault("comparison", "", None, problem, remedy),))
     return variants
 
@@ -206,6 +229,10 @@ def deviation(run: Run, reference: Run) -> Deviation:
     if count < 2:
         return Deviation(np.nan, np.nan, until)
     return Deviation(float(np.abs(apart).max()), _rms(apart), until)
+
+
+def _last(run: Run, name: str) -> NDArray[np.float64]:
+    return run[name][-max(1, round(LAST * len(run))) :]
 
 
 def _rms(values: NDArray[np.float64]) -> float:
@@ -230,6 +257,7 @@ def _with_models(case: Case, variant: Variant) -> Case:
         f"film.theory={variant.theory}",
         f"film.cavitation={variant.cavitation}",
         f"film.coupling={variant.coupling}",
+        *([f"thermal.model={variant.thermal}"] if variant.thermal else []),
     )
     return load_case_text(case.source_text, settings, name=case.name)
 

@@ -1,0 +1,181 @@
+"""The heat of a run: what the time loop carries along, its signals, and its balance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.compiled import given_parameters
+from frbcli.film.cells.data import GIVEN_PRESSURE, RESISTANCE, VolumeFilms
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.side_flow import opens_far
+from frbcli.linear.film_heat import end_flows
+from frbcli.runs.restored import array
+from frbcli.scene.films import FilmPlace, film_places, make_law
+from frbcli.scene.heat import Heat, heat_of
+from frbcli.scene.plan import Plan
+from frbcli.scene.system import System
+from frbcli.scene.warm import warm_system
+from frbcli.solve.heat import TOLD, CellEnds, LumpedHeat, columns_of
+from frbcli.solve.state import Array
+from frbcli.thermal.exchange import BOOKS, CARRIED, CLEARANCE, DISSIPATED, FILM_ROWS, GIVEN, HOT, IN_FILMS, SHARE
+from frbcli.thermal.model import clearances_at, viscosities_at
+
+QUANTITIES = ("temperature_{}_K", "viscosity_{}_Pa_s", "clearance_{}_m", "power_{}_W", "flow_{}_m3_s")
+UNITS = ("K", "Pa*s", "m", "W", "m^3/s")
+
+
+class RunHeat:
+    """The heat of one run of a case; without heat all of it is empty. start: the machine at the temperatures that a run
+    begins with; films: those that the loop may change, None without heat."""
+
+    def __init__(self, case: Case, plan: Plan, system: System) -> None:
+        self._names, self._units = system.names, tuple(heat_units(case, system))
+        self._heat: Heat | None = None
+        self._loop: LumpedHeat | None = None
+        self._rows = np.zeros((0, 0))
+        self.films: Any = None
+        self.start = system
+        if case.heat is None:
+            return
+        self._heat = heat_of(case)
+        self._loop, self.films = _lumped(case, system, self._heat), _own(system.films)
+        model, start, still = self._heat.model, self._heat.start, np.zeros(1 + system.ring_count)
+        self.start = warm_system(case, plan, system, viscosities_at(model, start), clearances_at(model, start, still))
+
+    def buffers(self, rows: int) -> tuple[Any, ...]:
+        """What the loop is given beside the rest: the heat, and a buffer for output; nothing without heat."""
+        if self._loop is None:
+            return ()
+        self._rows = np.zeros((rows, columns_of(self._loop)))
+        return self._loop, self._rows
+
+    def signals(self, rows: int) -> dict[str, Array]:
+        """The signals of heat in the rows that the loop has written."""
+        return {name: self._rows[:rows, column].copy() for column, name in enumerate(self._units)}
+
+    def clearances(self, rows: int) -> list[Array]:
+        """(rows,) m of each film in the rows that the loop has written; none without heat."""
+        if self._loop is None:
+            return []
+        return [self._rows[:rows, TOLD * film + 2].copy() for film in range(len(self._names))]
+
+    def snapshot(self) -> dict[str, Array]:
+        """What a checkpoint holds of it."""
+        return {"heat": self._loop.state.copy()} if self._loop is not None else {}
+
+    def restore(self, checkpoint: Mapping[str, Array]) -> None:
+        """Take up what a checkpoint holds. Raises WrongCheckpoint if it is not one of this run."""
+        if self._loop is not None:
+            self._loop.state[:] = array(checkpoint, "heat", self._loop.state.shape)
+
+    def passed(self) -> dict[str, float]:
+        """Heat in J so far, of one bearing each: dissipated by the films, carried away by the oil, taken by places of
+        given temperature, kept; empty without heat."""
+        if self._heat is None or self._loop is None:
+            return {}
+        state, model = self._loop.state, self._heat.model
+        films, n = len(self._names), len(model.capacity)
+        warmer = state[-n:] - self._heat.start
+        bodies = films + np.flatnonzero(np.isfinite(model.capacity[films:]))
+        kept = float(model.capacity[bodies] @ warmer[bodies])
+        return {
+            "heat_dissipated_J": float(state[DISSIPATED]),
+            "heat_carried_J": float(state[CARRIED]),
+            "heat_into_walls_J": float(state[GIVEN]),
+            "heat_kept_J": kept + float(state[IN_FILMS]),
+        }
+
+    def balance(self) -> dict[str, float | None]:
+        """What is left over of the dissipated heat, relative; empty without heat."""
+        found = self.passed()
+        if not found:
+            return {}
+        whole, *parts = found.values()
+        return {"heat_balance_relative": abs(whole - sum(parts)) / abs(whole) if whole != 0.0 else None}
+
+
+def heat_units(case: Case, system: System) -> dict[str, str]:
+    """The signals of heat of a run and their units; none without heat."""
+    if case.heat is None:
+        return {}
+    nodes = (node.replace(" ", "_") for node in heat_of(case).nodes[len(system.names) :])
+    told = {_signal(form, name): unit for name in system.names for form, unit in zip(QUANTITIES, UNITS, strict=True)}
+    return told | {_signal(QUANTITIES[0], node): "K" for node in nodes}
+
+
+def hot_film(signals: Iterable[str], checkpoint: Mapping[str, Array]) -> str:
+    """The name of the film that became too hot in a run, or whose gap has closed; "" if there is none."""
+    begin, end = QUANTITIES[-1].split("{}")
+    names = [name.removeprefix(begin.rstrip("_")).removesuffix(end.lstrip("_")) for name in signals if _is_flow(name)]
+    number = int(checkpoint["heat"][HOT]) if "heat" in checkpoint else 0
+    return names[number - 1].strip("_") or "film" if 0 < number <= len(names) else ""
+
+
+def _is_flow(name: str) -> bool:
+    begin, end = QUANTITIES[-1].split("{}")
+    return name.startswith(begin.rstrip("_")) and name.endswith(end)
+
+
+def _signal(form: str, name: str) -> str:
+    return form.format(name) if name else form.replace("{}_", "")
+
+
+def _own(films: Any) -> Any:
+    """Films that the loop may change."""
+    if not isinstance(films, VolumeFilms):
+        return films
+    return films._replace(
+        numbers=films.numbers.copy(),
+        cells=films.cells.copy(),
+        feed_holes=films.feed_holes.copy(),
+        channels=films.channels.copy(),
+    )
+
+
+def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
+    model, places = heat.model, film_places(case)
+    count, n, bodies = len(places), len(heat.start), 1 + system.ring_count
+    state = np.zeros(BOOKS + bodies + n)
+    state[BOOKS + bodies :] = heat.start
+    now = np.zeros((FILM_ROWS, count))
+    now[SHARE], now[CLEARANCE] = 1.0, system.clearances
+    return LumpedHeat(
+        model=model,
+        ends=_cell_ends(case, system) if system.volumes else end_flows(system),
+        concentric=heat.concentric,
+        by_formula=case.heat is not None and case.heat.side_flow == "concentric",
+        viscosity=np.array([case.viscosity(place.geometry) for place in places]),
+        drag=np.array(system.drags),
+        state=state,
+        now=now,
+        gain=np.zeros(n),
+    )
+
+
+def _cell_ends(case: Case, system: System) -> CellEnds:
+    films = system.films
+    assert isinstance(films, VolumeFilms)
+    sections = [film.section for film in system.volumes]
+    return CellEnds(
+        far_open=np.array([opens_far(film) for film in system.volumes], dtype=np.int64),
+        units=np.array([section.copies * section.radius * section.width for section in sections]),
+        numbers=films.numbers.copy(),
+        given=films.cells[:, GIVEN_PRESSURE].copy(),
+        feed_holes=films.feed_holes.copy(),
+        resistance=films.channels[:, RESISTANCE] / case.oil_viscosity,
+        exponents=np.array([_exponents(case, *each) for each in zip(film_places(case), system.volumes, strict=True)]),
+    )
+
+
+def _exponents(case: Case, place: FilmPlace, film: VolumeFilm) -> Array:
+    """(p,) powers of the scale of the pressures that the parameters of a film's law are proportional to."""
+    cavitation, section = case.cavitation(place.geometry), film.section
+    doubled = replace(section, viscosity=2.0 * section.viscosity)
+    first, last = (given_parameters(make_law(case, cavitation, each)) for each in (section, doubled))
+    some = (first != 0.0) & (last != 0.0)
+    return np.where(some, np.log2(np.where(some, last, 1.0) / np.where(some, first, 1.0)), 0.0)

@@ -1,0 +1,314 @@
+"""Heat in the time loop, compiled. Two kinds ride in it:
+
+- NoHeat: every film keeps its viscosity and clearance, and nothing is computed;
+- LumpedHeat: after each accepted step films, rings and walls take up what the films have dissipated in it, and
+  viscosities and clearances follow for the next one. Films settle in milliseconds, hundreds of steps, so that a
+  viscosity changes by some 1e-5 from step to step.
+
+Which of them a function means is decided by the type of the heat when the loop is compiled.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import types
+from numba.extending import overload
+
+from frbcli.compiled import Array, Indices, compiled
+from frbcli.film.cells.data import (
+    AMBIENT,
+    CAVITY,
+    CENTRIFUGAL,
+    FAR_PRESSURE,
+    FILM,
+    FLOW_SCALE,
+    FORCE_SCALE,
+    GIVEN_PRESSURE,
+    INNER,
+    OUTER,
+    PARAMETERS,
+    PRESSURE_SCALE,
+    RESISTANCE,
+    VolumeFilms,
+)
+from frbcli.film.cells.side_flow import side_flow
+from frbcli.film.rectangles.end_flow import TableEndFlow, chain_end_flow, table_end_flow
+from frbcli.solve.cell_films import GRID_X, GRID_Y, oil_fraction
+from frbcli.solve.contact import feel
+from frbcli.solve.film_forces import drag_integral
+from frbcli.solve.films import have_cells
+from frbcli.solve.stage import FORCE, OMEGA, X_0, U
+from frbcli.solve.state import OIL, OVERHEATED, RATE, RUNNING, SLIP, RotorData
+from frbcli.thermal.exchange import (
+    BOOKS,
+    CLEARANCE,
+    ETA,
+    FLOW,
+    HOT,
+    POWER,
+    SCALE,
+    SHARE,
+    heat_step,
+    viscosity_at,
+    write_clearances,
+)
+from frbcli.thermal.model import HeatModel
+
+TOLD = 5  # columns of a film in the output: temperature, viscosity, clearance, power, flow; then all other nodes
+NARROWEST = 0.02  # of its reference: a clearance below this share has closed
+
+
+class NoHeat(NamedTuple):
+    """A machine that keeps its temperatures. now: empty."""
+
+    now: Array
+
+
+class CellEnds(NamedTuple):
+    """Films on cells as they were made. far_open (F,); units (F,) m^2: a flow of 1 over the clearance; numbers,
+    feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance (channels,) over the viscosity;
+    exponents (F, p): by which the parameters of the laws follow the scale of the pressures."""
+
+    far_open: Indices
+    units: Array
+    numbers: Array
+    given: Array
+    feed_holes: Array
+    resistance: Array
+    exponents: Array
+
+
+class LumpedHeat(NamedTuple):
+    """model: see HeatModel; ends: of each film its EndFlow, or CellEnds; concentric (F,): Q eta / C^3 of a formula in
+    their place, where by_formula; viscosity (F,) Pa s, drag (F,) N m s: those that films were made for; state (BOOKS +
+    bodies + n,): what a run carries on: books, speeds of rotor and rings, temperatures; now (FILM_ROWS, F); gain
+    (n,)."""
+
+    model: HeatModel
+    ends: Any
+    concentric: Array
+    by_formula: bool
+    viscosity: Array
+    drag: Array
+    state: Array
+    now: Array
+    gain: Array
+
+
+NO_HEAT = NoHeat(np.zeros((0, 0)))
+
+
+def have_heat(heat: Any) -> bool:
+    """Whether a type that the compiler knows is that of a machine with heat."""
+    return getattr(heat, "instance_class", None) is LumpedHeat
+
+
+def columns_of(heat: Any) -> int:
+    """Columns of heat in the output of a run."""
+    return (TOLD - 1) * heat.now.shape[1] + heat.gain.shape[0] if isinstance(heat, LumpedHeat) else 0
+
+
+def begin_heat(heat: Any, films: Any, rotor: RotorData, wet: Array) -> None:
+    """Viscosities and clearances at the temperatures that the state has, before the loop goes on."""
+    if isinstance(heat, LumpedHeat):
+        follow_temperatures(heat, films, rotor.drag, rotor.clearances, wet, False)
+
+
+def carry_heat(
+    heat: Any, films: Any, work: Any, turning: Array, terms: Indices, film: Array, bodies: Array, wet: Array,
+    contact_at: float, contact_stiffness: float, g: float, step: float, clearances: Array, drag: Array,
+) -> int:  # fmt: skip
+    """After an accepted step: temperatures, viscosities and clearances move on. RUNNING, or OVERHEATED. film: the rows
+    of stage.py in the last stage, with its speeds `bodies` of rotor and rings."""
+    raise NotImplementedError
+
+
+def write_heat(heat: Any, out_heat: Array, first: int, last: int) -> None:
+    """out_heat (rows, columns_of(heat)), rows from first up to last: temperatures and what the films do now."""
+    raise NotImplementedError
+
+
+@overload(carry_heat, inline="always")
+def _carry_heat(  # type: ignore[no-untyped-def]
+    heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
+):
+    def none(  # type: ignore[no-untyped-def]
+        heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
+    ):
+        return RUNNING
+
+    def lumped(  # type: ignore[no-untyped-def]
+        heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
+    ):
+        return _carry(
+            heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances,
+            drag,
+        )  # fmt: skip
+
+    return lumped if have_heat(heat) else none
+
+
+@overload(write_heat, inline="always")
+def _write_heat(heat, out_heat, first, last):  # type: ignore[no-untyped-def]
+    if not have_heat(heat):
+        return lambda heat, out_heat, first, last: None
+    return lambda heat, out_heat, first, last: _write(heat, out_heat, first, last)
+
+
+@compiled(inline=True)
+def _carry(
+    heat: LumpedHeat, films: Any, work: Any, turning: Array, terms: Indices, film: Array, bodies: Array, wet: Array,
+    contact_at: float, contact_stiffness: float, g: float, step: float, clearances: Array, drag: Array,
+) -> int:  # fmt: skip
+    """carry_heat of LumpedHeat: P = K slip^2 + (e x F) omega/2 - F . e', see docs/heat.md."""
+    model, now, count = heat.model, heat.now, clearances.shape[0]
+    for b in range(bodies.shape[0]):
+        heat.state[BOOKS + b] = bodies[b]
+    for f in range(count):
+        x, y, c = 2 * f, 2 * f + 1, clearances[f]
+        v_x, v_y, total = film[U, x], film[U, y], film[OMEGA, x]
+        e_x, e_y = film[X_0, x] + g * v_x, film[X_0, y] + g * v_y
+        slip = 0.0
+        for b in range(bodies.shape[0]):
+            slip += turning[f, SLIP, b] * bodies[b]
+        d_x, d_y, r_x, r_y, _, _, _, _, _, _ = feel(e_x / c, e_y / c, v_x / c, v_y / c, contact_at, contact_stiffness)
+        moved = e_x * film[FORCE, y] - e_y * film[FORCE, x]
+        now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, terms[1]) * slip * slip
+        now[POWER, f] += 0.5 * moved * total - film[FORCE, x] * v_x - film[FORCE, y] * v_y
+        if heat.by_formula:
+            now[FLOW, f] = heat.concentric[f] * c * c * c / now[ETA, f]
+        else:
+            w_x, w_y = r_x + 0.5 * total * d_y, r_y - 0.5 * total * d_x
+            now[FLOW, f] = c * leaving(heat.ends, films, work, f, d_x, d_y, w_x, w_y, now[SCALE, f])
+        now[SHARE, f] = oil_share(films, work, f)
+    heat_step(model, now, step, heat.state[BOOKS + bodies.shape[0] :], heat.gain, heat.state)
+    return int(_follow(heat, films, drag, clearances, wet, True))
+
+
+@compiled(inline=True)
+def _follow(
+    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Array, moved: bool
+) -> int:
+    """Viscosities, clearances and what follows from them <- those of the temperatures. moved: whether films keep the
+    volume of their oil. Returns OVERHEATED, with the film in the books, for one too hot or closed, else RUNNING."""
+    model, now, count = heat.model, heat.now, clearances.shape[0]
+    bodies = heat.state.shape[0] - BOOKS - model.capacity.shape[0]
+    temperatures = heat.state[BOOKS + bodies :]
+    write_clearances(model, temperatures, heat.state[BOOKS : BOOKS + bodies], now[CLEARANCE])
+    for f in range(count):
+        temperature, c, reference = temperatures[f], now[CLEARANCE, f], model.reference[f]
+        if not (temperature < model.hottest and c > NARROWEST * reference):
+            heat.state[HOT] = 1.0 + f
+            return OVERHEATED
+        thicker, narrower = viscosity_at(model.viscosity, temperature) / heat.viscosity[f], reference / c
+        now[ETA, f], now[SCALE, f] = thicker * heat.viscosity[f], thicker * narrower * narrower
+        drag[f] = heat.drag[f] * thicker * narrower
+        if moved and wet.shape[1] > f:
+            for layer in (OIL, RATE):
+                for i in range(wet.shape[2]):
+                    for j in range(wet.shape[3]):
+                        wet[layer, f, i, j] *= clearances[f] / c
+        clearances[f] = c
+        set_scale(heat.ends, films, f, now, reference)
+    return RUNNING
+
+
+@compiled()
+def follow_temperatures(
+    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Array, moved: bool
+) -> int:
+    """_follow, for a call from Python."""
+    return int(_follow(heat, films, drag, clearances, wet, moved))
+
+
+@compiled()
+def _write(heat: LumpedHeat, out_heat: Array, first: int, last: int) -> None:
+    """write_heat of LumpedHeat."""
+    now, n = heat.now, heat.gain.shape[0]
+    count, begin = now.shape[1], heat.state.shape[0] - n
+    for row in range(first, last):
+        for f in range(count):
+            out_heat[row, TOLD * f] = heat.state[begin + f]
+            out_heat[row, TOLD * f + 1], out_heat[row, TOLD * f + 2] = now[ETA, f], now[CLEARANCE, f]
+            out_heat[row, TOLD * f + 3], out_heat[row, TOLD * f + 4] = now[POWER, f], now[FLOW, f]
+        for i in range(count, n):
+            out_heat[row, (TOLD - 1) * count + i] = heat.state[begin + i]
+
+
+def leaving(
+    ends: Any, films: Any, work: Any, f: int, d_x: float, d_y: float, w_x: float, w_y: float, scale: float
+) -> float:
+    """Flow through the ends of film f over its clearance, m^2/s, see table_end_flow."""
+    raise NotImplementedError
+
+
+def oil_share(films: Any, work: Any, f: int) -> float:
+    """Share of the gap of film f that is oil."""
+    raise NotImplementedError
+
+
+def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:
+    """Films on cells <- pressures and law of film f at its scale; tabulated films are asked for scaled velocities."""
+    raise NotImplementedError
+
+
+@overload(oil_share, inline="always")
+def _oil_share(films, work, f):  # type: ignore[no-untyped-def]
+    if have_cells(films):
+        return lambda films, work, f: oil_fraction(films.cells[f], work.states[f])
+    return lambda films, work, f: 1.0
+
+
+@overload(leaving, inline="always")
+def _leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
+    if have_cells(films):
+        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: (
+            ends.units[f]
+            * side_flow(
+                films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[GRID_X, f],
+                work.grids[GRID_Y, f], ends.far_open[f] != 0,
+            )
+        )  # fmt: skip
+    one = table_end_flow if ends[0].instance_class is TableEndFlow else chain_end_flow
+    if isinstance(ends, types.UniTuple):
+        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: one(ends[f], d_x, d_y, w_x, w_y, scale)
+    if len(ends) == 1:
+        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: one(ends[0], d_x, d_y, w_x, w_y, scale)
+
+    def several(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
+        if f == 0:
+            return one(ends[0], d_x, d_y, w_x, w_y, scale)
+        return leaving(ends[1:], films, work, f - 1, d_x, d_y, w_x, w_y, scale)
+
+    return several
+
+
+@overload(set_scale, inline="always")
+def _set_scale(ends, films, f, now, reference):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        return lambda ends, films, f, now, reference: None
+    return lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference)
+
+
+@compiled()
+def _scale_cells(ends: CellEnds, films: VolumeFilms, f: int, now: Array, reference: float) -> None:
+    """Scaled pressures are those in Pa over 12 eta / psi^2: what is given in Pa falls with the scale, forces rise."""
+    scale = now[SCALE, f]
+    for place in (CAVITY, AMBIENT, FAR_PRESSURE, CENTRIFUGAL):
+        films.numbers[f, place] = ends.numbers[f, place] / scale
+    films.numbers[f, FORCE_SCALE] = ends.numbers[f, FORCE_SCALE] * scale
+    for p in range(ends.exponents.shape[1]):
+        films.numbers[f, PARAMETERS + p] = ends.numbers[f, PARAMETERS + p] * scale ** ends.exponents[f, p]
+    for i in range(films.cells.shape[2]):
+        for j in range(films.cells.shape[3]):
+            films.cells[f, GIVEN_PRESSURE, i, j] = ends.given[f, i, j] / scale
+    for q in range(films.feed_holes.shape[0]):
+        if int(films.feed_holes[q, FILM]) == f:
+            films.feed_holes[q, PRESSURE_SCALE] = ends.feed_holes[q, PRESSURE_SCALE] * scale
+            films.feed_holes[q, FLOW_SCALE] = ends.feed_holes[q, FLOW_SCALE] * now[CLEARANCE, f] / reference
+    for k in range(films.channels.shape[0]):  # filled with the oil of the outer film, or of a groove
+        hole = int(films.channels[k, OUTER if films.channels[k, OUTER] >= 0.0 else INNER])
+        if int(films.feed_holes[hole, FILM]) == f:
+            films.channels[k, RESISTANCE] = ends.resistance[k] * now[ETA, f]

@@ -1,0 +1,283 @@
+"""Heat in runs: its balance, where a run settles, what films on cells and clearances make of it, and how it is told."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_heat import RING, ring_case, single
+
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.linear.heat import warm_machine
+from frbcli.plot.heat import heat_figure
+from frbcli.results.store import Run
+from frbcli.runs.march import March
+from frbcli.runs.run import runup
+from frbcli.scene.heat import heat_of
+from frbcli.scene.plan import make_plan
+from frbcli.scene.profiles import run_up_profile
+from frbcli.scene.segments import make_segments
+from frbcli.solve.state import RUNNING
+from frbcli.studies.compare import compare
+from frbcli.thermal.exchange import (
+    BOOKS,
+    CARRIED,
+    CLEARANCE,
+    DISSIPATED,
+    FILM_ROWS,
+    FLOW,
+    GIVEN,
+    POWER,
+    SHARE,
+    heat_step,
+    viscosity_at,
+    write_clearances,
+    write_rates,
+)
+from frbcli.thermal.model import clearances_at, rates, viscosities_at
+
+HOUSING = "thermal.housing=60 degC"
+HOT_HOUSING = "thermal.housing=100 degC"
+STILL = ["rotor.unbalance=0", "start.position=resting"]
+
+
+def at_speed(speed: float, duration: float) -> list[str]:
+    return [f"speed.from={speed}", f"speed.to={speed}", f"speed.duration={duration}"]
+
+
+# --- kernels and their plain forms -----------------------------------------------------------------------------------
+
+
+def test_kernels_of_the_balance_are_their_plain_forms() -> None:
+    case = ring_case("thermal.clearance=follows", "thermal.centrifugal_growth=follows", "thermal.housing=60 degC",
+                     "thermal.shaft={ capacity = 40, conductance = 2, temperature = '200 degC' }")  # fmt: skip
+    heat = heat_of(case)
+    model = heat.model._replace(inlet=np.array([1, -1]))
+    rng = np.random.default_rng(4)
+    t = heat.start + 60.0 * rng.random(len(heat.start))
+    power, flow, speeds = np.array([300.0, 80.0]), np.array([8e-7, 2e-6]), np.array([4000.0, 800.0])
+    clearances, gain = np.empty(2), np.empty(len(t))
+    write_clearances(model, t, speeds, clearances)
+    assert clearances == pytest.approx(clearances_at(model, t, speeds), rel=1e-12)
+    carried, given = write_rates(model, t, power, flow, clearances, gain)
+    assert gain == pytest.approx(rates(model, t, power, flow, clearances), rel=1e-9, abs=1e-9)
+    assert float(gain.sum()) == pytest.approx(380.0 - carried, rel=1e-9)
+    assert given == pytest.approx(float(gain[np.isinf(model.capacity)].sum()), rel=1e-12)
+    assert [viscosity_at(model.viscosity, x) for x in t[:2]] == pytest.approx(viscosities_at(model, t), rel=1e-12)
+
+
+def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:
+    heat = heat_of(ring_case("thermal.housing=60 degC"))
+    model, count = heat.model, len(heat.start)
+    now = np.zeros((FILM_ROWS, 2))
+    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
+    t, gain, books = heat.start.copy(), np.zeros(count), np.zeros(BOOKS)
+    step = 1e-7
+    heat_step(model, now, step, t, gain, books)
+    expected = step * rates(model, heat.start, now[POWER], now[FLOW], now[CLEARANCE]) / model.capacity
+    assert t - heat.start == pytest.approx(expected, rel=1e-6, abs=1e-12)
+    for _ in range(200):
+        heat_step(model, now, 1e-2, t, gain, books)  # longer than the films' time constants
+    free = np.isfinite(model.capacity)
+    kept = float(model.capacity[free] @ (t - heat.start)[free])
+    assert books[DISSIPATED] == pytest.approx(380.0 * (2.0 + step), rel=1e-12)
+    assert books[DISSIPATED] == pytest.approx(books[CARRIED] + books[GIVEN] + kept, rel=1e-10)
+
+
+# --- where a run settles ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "duration"),
+    [
+        ([], 0.6),
+        (["thermal.mixing=1", "thermal.housing=75 degC"], 0.4),
+        (["film.cavitation=reynolds"], 0.4),
+        (["film.cavitation=two-phase"], 0.8),
+        (["film.cavitation=penalty"], 0.4),
+        (["film.cavitation=two-phase", "thermal.clearance=follows", "thermal.shaft=130 degC", HOT_HOUSING], 0.4),
+    ],
+    ids=str,
+)
+def test_run_at_constant_speed_settles_at_the_steady_temperatures(
+    settings: list[str], duration: float, tmp_path: Path
+) -> None:
+    case = single("rotor.gravity=9.81", "film.theory=auto", *STILL, *at_speed(40.0, duration), *settings)
+    run = runup(case, tmp_path / "run.h5")
+    (film,) = warm_machine(case, 40.0).films
+    assert run.status == "finished"
+    assert run["temperature_K"][-1] == pytest.approx(film.temperature, abs=0.05)
+    assert run["eccentricity"][-1] == pytest.approx(run["eccentricity"][-200], abs=1e-3)  # no whirl
+    assert run["power_W"][-1] == pytest.approx(film.power, rel=2e-3)
+    assert run["flow_m3_s"][-1] == pytest.approx(film.flow, rel=1e-2)
+    assert run["clearance_m"][-1] == pytest.approx(film.clearance, rel=1e-6)
+    balance = run.error["heat_balance_relative"]
+    assert balance is not None
+    assert balance < 1e-9
+
+
+def slow_ring(*settings: str) -> Case:
+    light = ["rotor.gravity=9.81", "bearing.ring.heat_capacity=40 J/(kg*K)", "bearing.inner.side_flow_factor=1"]
+    return ring_case(*light, *STILL, *settings)
+
+
+def test_ring_settles_at_the_steady_temperatures(tmp_path: Path) -> None:
+    case = slow_ring(*at_speed(50.0, 4.0), "thermal.supply_temperature=40 degC")
+    run = runup(case, tmp_path / "run.h5")
+    warm = warm_machine(case, 50.0)
+    (ring,) = warm.rings
+    assert run["eccentricity_outer"][-1] == pytest.approx(math.hypot(*_outer(warm)), abs=1e-3)  # no whirl
+    assert run["temperature_inner_K"][-1] == pytest.approx(warm.films[0].temperature, abs=0.1)
+    assert run["temperature_ring_inner_K"][-1] == pytest.approx(ring.inner, abs=0.1)
+    assert run["temperature_ring_outer_K"][-1] == pytest.approx(ring.outer, abs=0.1)
+    assert run["ring_speed_Hz"][-1] / 50.0 == pytest.approx(ring.speed_ratio, rel=1e-3)
+
+
+def _outer(warm: object) -> np.ndarray:
+    system = warm.system  # type: ignore[attr-defined]
+    return np.asarray(system.rotor.journals[1] @ warm.resting / system.clearances[1])  # type: ignore[attr-defined]
+
+
+# --- the balance of a run --------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def ring_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    case = ring_case("rotor.gravity=9.81", "speed.to=300 Hz", "speed.duration=0.5 s", "thermal.housing=60 degC",
+                     "output.step=2e-5 s")  # fmt: skip
+    return runup(case, tmp_path_factory.mktemp("ring") / "run.h5")
+
+
+def test_heat_of_a_run_up_balances_by_its_signals(ring_run: Run) -> None:
+    """What the signals say of power, flow and temperatures, not the books of the run."""
+    model, t = heat_of(ring_case("thermal.housing=60 degC")).model, ring_run["time_s"]
+    names = ("inner", "outer", "ring_inner", "ring_outer")
+    warm = {name: ring_run[f"temperature_{name}_K"] for name in names}
+    whole = sum(np.trapezoid(ring_run[f"power_{film}_W"], t) for film in names[:2])
+    rise = {film: warm[film] - model.supply[0] for film in names[:2]}
+    oil = sum(np.trapezoid(830.0 * 2100.0 * ring_run[f"flow_{film}_m3_s"] * rise[film] / 0.5, t) for film in names[:2])
+    transfer = 3.77 * 0.14 / 50e-6 * math.pi * 40e-3 * 16e-3
+    housing = np.trapezoid(transfer * (warm["outer"] - 333.15), t)
+    kept = sum(c * (warm[name][-1] - warm[name][0]) for c, name in zip(model.capacity, names, strict=False))
+    assert whole == pytest.approx(oil + housing + kept, rel=1e-3)
+    assert ring_run.cost["heat_dissipated_J"] == pytest.approx(whole, rel=1e-3)
+    assert ring_run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
+
+
+def test_rings_lag_behind_films(ring_run: Run) -> None:
+    """Films settle in milliseconds, rings do not within half a second."""
+    steady = warm_machine(ring_case("rotor.gravity=9.81", "thermal.housing=60 degC"), 300.0).rings[0]
+    warmed = ring_run["temperature_ring_inner_K"][-1] - ring_run["temperature_ring_inner_K"][0]
+    assert 0.0 < warmed < 0.7 * (steady.inner - ring_run["temperature_ring_inner_K"][0])
+    assert ring_run["viscosity_inner_Pa_s"][-1] < 0.7 * ring_run["viscosity_inner_Pa_s"][0]
+
+
+def test_a_run_that_was_interrupted_goes_on_as_if_it_had_not() -> None:
+    case = single("speed.duration=0.2 s", "film.cavitation=two-phase", "film.theory=auto", "speed.to=100 Hz",
+                  "thermal.clearance=follows", HOUSING)  # fmt: skip
+    plan = make_plan(case)
+
+    def march() -> March:
+        return March(case, plan, make_segments(case, plan), run_up_profile(case))
+
+    whole, first, second = march(), march(), march()
+    for _ in range(12):
+        first.chunk()
+    second.restore({name: array.copy() for name, array in first.snapshot().items()})
+    for one in (whole, second):
+        while one.chunk()[0] == RUNNING:
+            pass
+    for name, array in whole.snapshot().items():
+        if name != "clock":
+            assert np.array_equal(array, second.snapshot()[name]), name
+
+
+def test_without_heat_a_run_tells_none(tmp_path: Path) -> None:
+    settings = ["thermal.model=none", "oil.temperature=70 degC", "speed.duration=0.1 s"]
+    run = runup(single(*settings), tmp_path / "run.h5")
+    assert not [name for name in run.signals if "temperature" in name or "power" in name]
+    assert not [name for name in (*run.cost, *run.error) if "heat" in name]
+
+
+# --- trends ----------------------------------------------------------------------------------------------------------
+
+
+def test_cold_start_meets_thicker_oil_than_a_warm_one(tmp_path: Path) -> None:
+    cold, warm = (
+        runup(ring_case(f"thermal.supply_temperature={t} degC", "speed.to=200 Hz", "speed.duration=0.2 s"),
+              tmp_path / f"{t}.h5") for t in (20, 100)
+    )  # fmt: skip
+    assert cold["viscosity_inner_Pa_s"][-1] > 2.0 * warm["viscosity_inner_Pa_s"][-1]
+    assert cold["power_inner_W"][-1] > warm["power_inner_W"][-1]
+
+
+def test_blocked_ring_loses_more_than_a_free_one() -> None:
+    """Of equal films 1 - r, r being the ring speed ratio: 13 to 27 % between 900 Hz with heat and no heat at all."""
+    free, blocked = (
+        warm_machine(ring_case("thermal.side_flow=concentric", f"bearing.ring.spin={spin}"), 300.0)
+        for spin in ("free", "blocked")
+    )
+    saved = 1.0 - sum(film.power for film in free.films) / sum(film.power for film in blocked.films)
+    assert blocked.rings[0].speed_ratio == 0.0
+    assert 0.05 < saved < free.rings[0].speed_ratio
+
+
+# --- how it ends, and how it is told ---------------------------------------------------------------------------------
+
+
+def test_a_film_that_boils_ends_the_run_with_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "ring.toml"
+    file.write_text(RING)
+    settings = ["--set", "thermal.hottest_film=90 degC", "--set", "speed.duration=0.5 s", "--no-picture"]
+    assert frb(["runup", str(file), *settings, "-o", str(tmp_path / "run.h5"), "--json"]) == 3
+    document = json.loads(capsys.readouterr().out)
+    assert document["status"] == "overheated"
+    assert 0.0 < document["t_end_s"] < 0.5
+    assert frb(["runup", str(file), *settings, "-o", str(tmp_path / "run.h5")]) == 3
+    told = " ".join("".join(capsys.readouterr()).split())
+    assert "film inner became too hot (363.15 K, thermal.hottest_film)" in told
+
+
+def test_heat_of_a_run_is_printed_and_drawn(ring_run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert len(heat_figure([ring_run]).axes) == 4
+    assert len(heat_figure([ring_run, ring_run], over="speed").axes) == 4
+    assert frb(["plot", str(ring_run.path), "--what", "heat", "-o", str(tmp_path / "heat.png")]) == 0
+    assert (tmp_path / "heat.png").stat().st_size > 10_000
+    capsys.readouterr()
+    file = tmp_path / "ring.toml"
+    file.write_text(RING)
+    short = ["--set", "speed.duration=0.02 s", "--no-picture"]
+    assert frb(["runup", str(file), *short, "-o", str(tmp_path / "r.h5")]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "J with the oil" in told
+    assert "unaccounted for" in told
+
+
+def test_comparison_with_and_without_heat(tmp_path: Path) -> None:
+    case = ring_case("speed.to=200 Hz", "speed.duration=0.1 s")
+    found = compare(case, thermals=("none", "lumped"), keep=tmp_path)
+    without, with_heat = found.results
+    assert (without.variant.thermal, with_heat.variant.thermal) == ("none", "lumped")
+    assert math.isnan(without.loss)
+    assert with_heat.loss > 0.0
+    assert with_heat.ring_ratios["ring_speed_Hz"] < without.ring_ratios["ring_speed_Hz"]
+
+
+def test_comparison_with_heat_is_a_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "ring.toml"
+    file.write_text(RING)
+    short = ["--set", "speed.duration=0.05 s", "--set", "speed.to=100 Hz", "--no-picture"]
+    assert frb(["compare", str(file), "--thermal", "none,lumped", *short]) == 0
+    assert "ring over rotor" in capsys.readouterr().out
+    assert frb(["compare", str(file), "--thermal", "warm", *short]) == 2
+
+
+def test_shipped_case_without_heat_says_what_is_missing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["compare", "jeffcott", "--thermal", "none,lumped"]) == 2
+    assert "thermal.supply_temperature" in capsys.readouterr().err
+    assert load_case("jeffcott").heat is None
