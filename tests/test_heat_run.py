@@ -114,7 +114,9 @@ def test_run_at_constant_speed_settles_at_the_steady_temperatures(
     assert run["temperature_K"][-1] == pytest.approx(film.temperature, abs=0.05)
     assert run["eccentricity"][-1] == pytest.approx(run["eccentricity"][-200], abs=1e-3)  # no whirl
     assert run["power_W"][-1] == pytest.approx(film.power, rel=2e-3)
-    assert run["flow_m3_s"][-1] == pytest.approx(film.flow, rel=1e-2)
+    # the cells of a mass-conserving film turn in a run, and those of a film at rest do not
+    turning = "oil_fraction" in run.signals
+    assert run["flow_m3_s"][-1] == pytest.approx(film.flow, rel=4e-2 if turning else 1e-2)
     assert run["clearance_m"][-1] == pytest.approx(film.clearance, rel=1e-6)
     balance = run.error["heat_balance_relative"]
     assert balance is not None

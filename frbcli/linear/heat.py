@@ -16,7 +16,8 @@ from frbcli.linear.film_heat import end_flows, film_heat
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.heat import Heat, heat_of
-from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.plan import make_plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.system import System, make_system
 from frbcli.scene.warm import warm_system
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat

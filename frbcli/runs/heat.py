@@ -17,7 +17,7 @@ from frbcli.linear.film_heat import end_flows
 from frbcli.runs.restored import array
 from frbcli.scene.films import FilmPlace, film_places, make_law
 from frbcli.scene.heat import Heat, heat_of
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.system import System
 from frbcli.scene.warm import warm_system
 from frbcli.solve.heat import TOLD, CellEnds, LumpedHeat, columns_of

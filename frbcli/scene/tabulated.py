@@ -26,8 +26,8 @@ def table_obstacle(case: Case) -> str:
             return f"{cavitation} has no such table"
     if case.heat is not None:
         return "heat needs the flow out of the films, which is not in the table"
-    if film.grid != "fixed":
-        return f"a {film.grid} grid needs cells"
+    if film.grid == "half-speed":
+        return "a half-speed grid needs cells"
     for place in film_places(case):
         if place.feed_holes is not None or not is_plain(place.geometry):
             return TURNING

@@ -14,7 +14,7 @@ from frbcli.case.bearing import FloatingRingBearing, RingFilm, SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.film.grid import Array
 from frbcli.scene.films import film_places
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.system import System, make_system
 
 
