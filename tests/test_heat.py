@@ -23,6 +23,7 @@ from frbcli.film.rectangles.end_flow import TableEndFlow, chain_end_flow, make_e
 from frbcli.film.rectangles.film import make_film
 from frbcli.linear.heat import warm_machine
 from frbcli.linear.stability import stability
+from frbcli.materials.oils import OILS
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
 from frbcli.scene.warm import warm_case, warm_system
@@ -92,6 +93,61 @@ def test_concentric_ring_has_the_temperatures_of_an_independent_balance(row: dic
         assert film.power == pytest.approx(row[f"P_{name}_W"], rel=2e-3)
         assert 1e6 * film.flow == pytest.approx(row[f"Q_{name}_ml_s"], rel=2e-3)
     assert warm.balance < 1e-6
+
+
+def independent_balance(
+    speed: float, supply: float, mixing: float, nusselt: float, gauge: float, walls: tuple[float | None, float | None]
+) -> tuple[np.ndarray, float]:
+    """(inner, outer film, ring inside, outside) in K and the ring speed ratio of RING by a root finder of its own;
+    walls: temperatures of shaft and housing in K, None: adiabatic."""
+    from scipy.optimize import root
+
+    law, omega = OILS["SAE 10W-40"].law, 2.0 * math.pi * speed
+    radius, width, clearance = np.array([12.5e-3, 20e-3]), np.array([20e-3, 16e-3]), np.array([40e-6, 50e-6])
+    transfer = nusselt * 0.14 / clearance * 2.0 * math.pi * radius * width
+    conduction = 2.0 * math.pi * 60.0 * 20e-3 / math.log(40.0 / 25.0)
+
+    def state(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        eta = np.array([law.at(float(x)) for x in t[:2]])
+        k = 2.0 * math.pi * eta * radius**3 * width / clearance
+        ratio = k[0] / k.sum()
+        flow = 2.0 * 2.0 * math.pi * radius * clearance**3 * gauge / (12.0 * eta * 0.5 * width)
+        return k * np.array([1.0 - ratio, ratio]) ** 2 * omega**2, flow, float(ratio)
+
+    def left(t: np.ndarray) -> list[float]:
+        power, flow, _ = state(t)
+        oil = 830.0 * 2100.0 * flow * (t[:2] - supply) / mixing
+        to_ring = transfer * (t[:2] - t[2:])
+        to_walls = [0.0 if wall is None else h * (x - wall) for wall, h, x in zip(walls, transfer, t, strict=False)]
+        through = conduction * (t[2] - t[3])
+        films = power - oil - to_ring - np.array(to_walls)
+        return [*films, to_ring[0] - through, to_ring[1] + through]
+
+    best = min(
+        (root(left, np.full(4, supply + more), method="hybr") for more in (5.0, 20.0, 50.0, 90.0)),
+        key=lambda found: float(np.abs(found.fun).max()),
+    )
+    assert np.abs(best.fun).max() < 1e-6
+    return best.x, state(best.x)[2]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_other_rings_have_the_temperatures_of_an_independent_balance(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    speed, supply, nusselt = rng.uniform(50.0, 1500.0), rng.uniform(20.0, 110.0), rng.uniform(2.0, 8.0)
+    mixing, gauge = (0.5, 1.0)[seed % 2], rng.uniform(0.3, 4.0)
+    walls = [None if rng.random() < 0.4 else float(rng.uniform(40.0, 160.0)) for _ in range(2)]
+    told = [f"thermal.{name}={wall} degC" for name, wall in zip(("shaft", "housing"), walls, strict=True)
+            if wall is not None]  # fmt: skip
+    pressures = [f"bearing.{side}.supply.pressure={1.0 + gauge} bar" for side in ("inner", "outer")]
+    case = ring_case(f"thermal.supply_temperature={supply} degC", f"thermal.mixing={mixing}",
+                     f"thermal.nusselt={nusselt}", *pressures, *told)  # fmt: skip
+    warm = warm_machine(case, speed)
+    kelvin = tuple(None if wall is None else wall + ZERO for wall in walls)
+    expected, ratio = independent_balance(speed, supply + ZERO, mixing, nusselt, 1e5 * gauge, kelvin)  # type: ignore[arg-type]
+    found = [film.temperature for film in warm.films] + [warm.rings[0].inner, warm.rings[0].outer]
+    assert found == pytest.approx(expected.tolist(), abs=0.02)
+    assert warm.rings[0].speed_ratio == pytest.approx(ratio, abs=2e-5)
 
 
 def test_flow_of_a_concentric_film_is_the_formula_with_a_groove() -> None:

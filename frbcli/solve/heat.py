@@ -205,7 +205,7 @@ def _follow(
         thicker, narrower = viscosity_at(model.viscosity, temperature) / heat.viscosity[f], reference / c
         now[ETA, f], now[SCALE, f] = thicker * heat.viscosity[f], thicker * narrower * narrower
         drag[f] = heat.drag[f] * thicker * narrower
-        if moved and wet.shape[1] > f:
+        if moved and wet.shape[1] > f and clearances[f] != c:
             for layer in (OIL, RATE):
                 for i in range(wet.shape[2]):
                     for j in range(wet.shape[3]):
@@ -300,7 +300,8 @@ def _scale_cells(ends: CellEnds, films: VolumeFilms, f: int, now: Array, referen
         films.numbers[f, place] = ends.numbers[f, place] / scale
     films.numbers[f, FORCE_SCALE] = ends.numbers[f, FORCE_SCALE] * scale
     for p in range(ends.exponents.shape[1]):
-        films.numbers[f, PARAMETERS + p] = ends.numbers[f, PARAMETERS + p] * scale ** ends.exponents[f, p]
+        if ends.exponents[f, p] != 0.0:
+            films.numbers[f, PARAMETERS + p] = ends.numbers[f, PARAMETERS + p] * scale ** ends.exponents[f, p]
     for i in range(films.cells.shape[2]):
         for j in range(films.cells.shape[3]):
             films.cells[f, GIVEN_PRESSURE, i, j] = ends.given[f, i, j] / scale
