@@ -14,6 +14,8 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+from scipy.optimize import fsolve
 
 import frbcli
 from frbcli.case.shipped import find_shipped
@@ -34,7 +36,7 @@ GRAVITY, CLEARANCE, MASS, WIDTH, RADIUS = 9.81, 50e-6, 6.0, 10e-3, 25e-3
 UNIT_Hz = math.sqrt(GRAVITY / CLEARANCE) / (2.0 * math.pi)  # w = 1
 
 
-def rigid(gamma: float, low: float, high: float, **more: str) -> frbcli.Case:
+def rigid(gamma: float, low: float, high: float, **more: float) -> frbcli.Case:
     """The rigid rotor from w = low to high."""
     viscosity = gamma * 0.5 * MASS * GRAVITY * CLEARANCE**2 / (RADIUS * WIDTH**3) / math.sqrt(GRAVITY / CLEARANCE)
     rotor = {"kind": "rigid", "mass": MASS, "gravity": GRAVITY, **more}
@@ -220,6 +222,55 @@ def test_the_trivial_multiplier_is_one(gamma: float) -> None:
     still at one moment; and the number of growing disturbances changes at folds alone."""
     for point in diagram(gamma, 2.4, 2.9).branches[0].points:
         assert abs(point.multipliers[0] - 1.0) < (1e-6 if point.kind == "" else 1e-3)
+
+
+@pytest.mark.parametrize("damping", [100.0, 300.0])
+def test_the_circle_without_gravity_solves_its_algebraic_equation(damping: float) -> None:
+    """Of the two equal bearings along and across the line of centres: 2 F_r = -m nu^2 e, 2 F_t = d nu e."""
+    case = rigid(4.538, 2.0, 3.0, gravity=0.0, external_damping=damping)
+    machine = machine_of(case)
+    asked = 2.5 * UNIT_Hz
+    found = frbcli.limit_cycles(case, [asked])
+    assert found.of("hopf") == ()
+    (branch,) = found.branches
+    (cycle,) = [point for point in branch.points if point.kind == "asked"]
+    (film,), omega = machine.films, 2.0 * math.pi * asked
+
+    def unbalanced(unknowns: np.ndarray) -> list[float]:
+        eccentricity, nu = unknowns[0], unknowns[1] * omega
+        radial, tangential = film_force(film, eccentricity, 0.0, 0.0, eccentricity * nu, omega)[:2]
+        pull = MASS * nu**2 * eccentricity * CLEARANCE
+        return [2.0 * radial / pull + 1.0, (2.0 * tangential - damping * nu * eccentricity * CLEARANCE) / pull]
+
+    (eccentricity, ratio), _, ended, _ = fsolve(
+        unbalanced, [cycle.eccentricity_max[0], 0.499], xtol=1e-13, full_output=True
+    )
+    assert ended == 1
+    assert cycle.eccentricity_max[0] == pytest.approx(eccentricity, abs=1e-7)
+    assert cycle.frequency_Hz / asked == pytest.approx(ratio, abs=1e-7)
+    assert np.abs(cycle.harmonics[2:]).max() < 1e-9
+    np.testing.assert_allclose(np.hypot(*cycle.orbit().T), eccentricity, atol=1e-7)
+
+
+@pytest.mark.parametrize("speed_Hz", [190.0, 220.0])
+def test_harmonic_balance_agrees_with_the_time_loop(speed_Hz: float, tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """Jeffcott rotor, half-Sommerfeld, tabulated film: a run at constant speed after its transients."""
+    settings = [f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz", "speed.duration=2 s", "output.step=2e-5 s"]
+    settings += ["accuracy.tolerance=1e-8", "accuracy.steps_per_revolution=400", "start.displacement=[0.3, -0.3]"]
+    signals = frbcli.runup(
+        frbcli.load_case("jeffcott", ["rotor.unbalance=0 g*mm", *settings]), tmp_path / "r.h5"
+    ).signals
+    last = slice(-8000, None)
+    time, y = np.asarray(signals["time_s"])[last], np.asarray(signals["journal_y_m"])[last]
+    motion = CubicSpline(time, y - y.mean())
+    rising = [t for t in motion.roots(extrapolate=False) if motion(t, 1) > 0.0]
+    largest = CubicSpline(time, np.asarray(signals["eccentricity"])[last])
+    case = frbcli.load_case("jeffcott", ["rotor.unbalance=0 g*mm"])
+    (cycle,) = [p for p in frbcli.limit_cycles(case, [speed_Hz]).branches[0].points if p.kind == "asked"]
+    assert cycle.stable
+    assert cycle.frequency_Hz == pytest.approx((len(rising) - 1) / (rising[-1] - rising[0]), rel=1e-6)
+    top = largest(largest.derivative().roots(extrapolate=False)).max()
+    assert cycle.eccentricity_max[0] == pytest.approx(top, abs=1e-6)
 
 
 def test_half_of_the_drive_is_dissipated_at_rest() -> None:

@@ -13,22 +13,33 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import live_lines
 from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint
 
+ASKED = "asked"
 MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
 
 @click.command()
 @case_argument
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
+              help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
 @output_options
-def command(case: Case, output: Path | None, no_picture: bool, csv: Path | None, terminal: Terminal) -> None:
+def command(
+    case: Case,
+    speeds: tuple[float, ...],
+    output: Path | None,
+    no_picture: bool,
+    csv: Path | None,
+    terminal: Terminal,
+) -> None:
     """Resting positions of CASE over its speed, the Hopf points where a whirl is born, and the limit cycles from there.
 
     Branches of cycles, stable or not, are followed through folds; unbalance is left out.
@@ -42,7 +53,7 @@ def command(case: Case, output: Path | None, no_picture: bool, csv: Path | None,
     check_place(picture)
     require_place(csv)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = limit_cycles(case, _showing(show))
+        found = limit_cycles(case, speeds, _showing(show))
     _tell(terminal, found)
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)
@@ -85,6 +96,12 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
         stable = sum(point.stable for point in branch.points)
         told = f"{len(speeds)} cycles from {min(speeds):.1f} to {max(speeds):.1f} Hz, {stable} stable."
         terminal.result(_wrapped(f"Branch {number + 1}: {told} {branch.note}"))
+    for number, branch in enumerate(found.branches):
+        for point in branch.points:
+            if point.kind == ASKED:
+                how = "stable" if point.stable else "unstable"
+                at = f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {point.frequency_Hz:.3f} Hz, {how}"
+                terminal.result(f"{at}, eccentricity {point.eccentricity_max.max():.5f}")
     for note in (*found.notes, *_left_out(found)):
         terminal.result(_wrapped(note))
     terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
@@ -122,7 +139,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
         ],
         "branches": [
             {
-                "from": _special(found, found.special[branch.start]),
+                "from": None if branch.start is None else _special(found, found.special[branch.start]),
                 "points": [_cycle(found, point) for point in branch.points],
                 "note": branch.note,
             }
@@ -144,7 +161,11 @@ def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
         "ring_speeds_Hz": point.ring_speeds_Hz,
         "torque_N_m": point.torque_N_m,
         "kind": point.kind or None,
-    }
+    } | ({"orbits": _orbits(found, point)} if point.kind == ASKED else {})
+
+
+def _orbits(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
+    return {name: point.orbit(film) for film, name in enumerate(found.films)}
 
 
 def _special(found: LimitCycles, point: SpecialPoint) -> dict[str, object]:

@@ -26,10 +26,13 @@ SAMPLES_PER_HARMONIC, FEWEST_SAMPLES = 6, 64
 
 @dataclass(frozen=True)
 class Balance:
-    """The equations of a motion with H harmonics; reference: (H + 1, c) the motion that the phase is compared with."""
+    """The equations of a motion with H harmonics; reference: (H + 1, c) the motion that the phase is compared with;
+    omega: None, or a speed of the rotor in rad/s that is kept, the last unknown then being the share in which the
+    springs and dashpots kappa remain beside the films (seed.py)."""
 
     machine: Machine
     reference: Complex
+    omega: float | None = None
 
     @property
     def harmonics(self) -> int:
@@ -41,22 +44,30 @@ class Balance:
         machine, h = self.machine, self.harmonics
         c = machine.size
         motion, nu, omega = unpacked(y[:-2], c), float(y[-2] * machine.pace), float(y[-1] * machine.pace)
+        added = np.ones(c)
+        if self.omega is not None:
+            omega, added[: 2 * machine.film_count] = self.omega, 1.0 - y[-1]
         passing = transfer(machine, h, nu, omega)
+        kappa = added * passing.kappa
         loads, rate = loads_along(machine, motion, nu, omega)
         values, slope = _harmonics(loads.values, h), _derivative(loads, h, nu)
-        inner = values + passing.kappa * motion
+        inner = values + kappa * motion
         out = motion - _through(passing.values, inner)
         out[0] -= passing.rest
-        slope[np.arange(h + 1), :, h + np.arange(h + 1), :] += passing.kappa[:, :, None] * np.eye(c)
+        slope[np.arange(h + 1), :, h + np.arange(h + 1), :] += kappa[:, :, None] * np.eye(c)
         by_motion = -np.einsum("kij,kjlm->kilm", passing.values, slope)
         by_motion[np.arange(h + 1), :, h + np.arange(h + 1), :] += np.eye(c)
-        with_nu = _harmonics(np.einsum("nij,nj->ni", loads.by_v, rate), h) + passing.kappa_by_frequency * motion
+        with_nu = _harmonics(np.einsum("nij,nj->ni", loads.by_v, rate), h) + added * passing.kappa_by_frequency * motion
         by_nu = -_through(passing.by_frequency, inner) - _through(passing.values, with_nu)
-        by_omega = -_through(passing.by_speed, inner) - _through(passing.values, _harmonics(loads.by_speed, h))
+        if self.omega is None:
+            last = -_through(passing.by_speed, inner) - _through(passing.values, _harmonics(loads.by_speed, h))
+            last *= machine.pace
+        else:
+            last = _through(passing.values, (np.arange(c) < 2 * machine.film_count) * passing.kappa * motion)
         n = c * (2 * h + 1)
         residual, jacobian = np.empty(n + 1), np.zeros((n + 1, n + 2))
         residual[:n], jacobian[:n, :n] = packed(out), _real(by_motion)
-        jacobian[:n, n], jacobian[:n, n + 1] = machine.pace * packed(by_nu), machine.pace * packed(by_omega)
+        jacobian[:n, n], jacobian[:n, n + 1] = machine.pace * packed(by_nu), packed(last)
         row = phase_row(self.reference)
         residual[n], jacobian[n, :n] = row @ y[:n], row
         return residual, jacobian

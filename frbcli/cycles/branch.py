@@ -8,7 +8,7 @@ smaller.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,12 +30,13 @@ MOST_UNKNOWNS = 1100  # up to which harmonics are added for the trivial multipli
 TAIL = 1e-7  # of the clearance: what the harmonics left out may have
 SPARE = 1e-2  # of it: what the last harmonics have where there are too many
 NARROWER = 0.6  # share of the smallest gap that one step may leave
-LARGEST = 0.9995  # eccentricity beyond which no cycle is followed
+LARGEST = 0.9998  # eccentricity beyond which no cycle is followed
 NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
 SMALL = 2e-3  # amplitude over the clearance below which a branch has come back to rest
 MOMENTS = 256  # of a period at which eccentricities are taken
 HALVINGS = 14  # to locate a flip or a torus point: of the step
 FOLD, FLIP, TORUS, HOPF = "fold", "flip", "torus", "hopf"
+ASKED = "asked"  # a cycle at a speed that was asked for
 
 
 @dataclass(frozen=True)
@@ -64,13 +65,17 @@ class Branch:
     ends_at_rest: bool = False
 
 
-class _Follower:
-    """One branch while it is followed."""
+class Follower:
+    """One branch while it is followed; omega: as in Balance."""
 
-    def __init__(self, machine: Machine, slowest: float, fastest: float) -> None:
+    def __init__(
+        self, machine: Machine, slowest: float, fastest: float, asked: Sequence[float] = (), omega: float | None = None
+    ) -> None:
         self.machine = machine
+        self.omega = omega
         self.space: StateSpace = state_space(machine)
         self.range = (slowest / machine.pace, fastest / machine.pace)
+        self.asked = tuple(speed / machine.pace for speed in asked)
 
     def cycle(self, place: Place, kind: str = "") -> Cycle:
         """A point of the branch with all that is told of it."""
@@ -84,7 +89,13 @@ class _Follower:
 
     def equations(self, place: Place) -> Balance:
         moving = amplitude(self.machine, place.y) > NOTHING  # at a Hopf point only the tangent has a phase
-        return Balance(self.machine, unpacked((place.y if moving else place.tangent)[:-2], self.machine.size))
+        return Balance(
+            self.machine, unpacked((place.y if moving else place.tangent)[:-2], self.machine.size), self.omega
+        )
+
+    def as_cycle(self, y: Array) -> Array:
+        """The unknowns y with the speed of the rotor at their end."""
+        return y if self.omega is None else np.append(y[:-1], self.omega / self.machine.pace)
 
     def with_more(self, place: Place) -> Place | None:
         """The place with half as many harmonics more, None if those are too many."""
@@ -100,7 +111,7 @@ class _Follower:
         c = self.machine.size
         for _ in range(12):
             harmonics = (len(place.y) - 2) // c // 2
-            tail = left_out(self.machine, place.y)
+            tail = left_out(self.machine, self.as_cycle(place.y))
             motion = unpacked(place.y[:-2], c)
             if tail < TAIL:
                 used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * TAIL)
@@ -137,15 +148,19 @@ class _Follower:
 
 def follow_branch(
     machine: Machine,
-    hopf: HopfPoint,
+    start: Place,
     slowest: float,
     fastest: float,
+    asked: Sequence[float] = (),
     observe: Callable[[Cycle], None] | None = None,
     strides: Strides = STRIDES,
 ) -> Branch:
-    """The cycles from a Hopf point on, between two speeds in rad/s. observe: called with each of them."""
-    follower = _Follower(machine, slowest, fastest)
-    place, length = first_place(machine, hopf), strides.first
+    """The cycles from a place on, as that of a Hopf point, between two speeds in rad/s.
+
+    asked: speeds at which cycles are computed exactly; observe: called with each cycle.
+    """
+    follower = Follower(machine, slowest, fastest, asked)
+    place, length = start, strides.first
     cycles: list[Cycle] = []
     note = ""
     for _ in range(strides.points):
@@ -158,7 +173,8 @@ def follow_branch(
             break
         beyond = not follower.range[0] <= found.y[-1] <= follower.range[1]
         if beyond:
-            found, note = _at_limit(follower, place, found), "It leaves the range of speeds."
+            limit = follower.range[0] if found.y[-1] < follower.range[0] else follower.range[1]
+            found, note = at_speed(follower, place, found, limit), "It leaves the range of speeds."
             if found is None:
                 break
         cycle = follower.cycle(found)
@@ -227,17 +243,24 @@ def amplitude(machine: Machine, y: Array) -> float:
     return float(2.0 * np.abs(motion).max(initial=0.0))
 
 
-def special_cycles(follower: _Follower, before: Cycle | None, place: Place, after: Cycle, length: float) -> list[Cycle]:
+def special_cycles(follower: Follower, before: Cycle | None, place: Place, after: Cycle, length: float) -> list[Cycle]:
     """Folds, flips and torus points between a place and the cycle a step behind it."""
     found: list[Cycle] = []
     if place.tangent[-1] * after.place.tangent[-1] < 0.0:
         fold = follower.fold(resized_like(place, after.place, follower.machine.size), length)
         if fold is not None:
             found.append(follower.cycle(fold, FOLD))
+    ends = sorted((place.y[-1], after.y[-1]))
+    for speed in follower.asked if not found else ():  # beside a fold there are two of them, or none
+        there = at_speed(follower, place, after.place, speed) if ends[0] < speed <= ends[1] else None
+        if there is not None:
+            found.append(follower.cycle(there, ASKED))
+    found.sort(key=lambda cycle: abs(cycle.y[-1] - place.y[-1]))
     if before is None:
         return found
     change = after.multipliers.unstable - before.multipliers.unstable
-    if change == 0 or (found and abs(change) == 1):
+    folds = any(cycle.kind == FOLD for cycle in found)
+    if change == 0 or (folds and abs(change) == 1):
         return found
     kind = _kind(before if change < 0 else after)
     if kind == FOLD:  # a real multiplier at 1 away from a fold is one that the harmonics have not resolved
@@ -261,7 +284,7 @@ def _kind(cycle: Cycle) -> str:
     return FLIP if nearest.real < 0.0 else FOLD
 
 
-def _bisected(follower: _Follower, place: Place, unstable: int, length: float) -> Place | None:
+def _bisected(follower: Follower, place: Place, unstable: int, length: float) -> Place | None:
     """Where the number of growing disturbances changes from `unstable` within a step."""
     low, high, found = 0.0, length, None
     for _ in range(HALVINGS):
@@ -277,11 +300,10 @@ def _bisected(follower: _Follower, place: Place, unstable: int, length: float) -
     return found
 
 
-def _at_limit(follower: _Follower, place: Place, beyond: Place) -> Place | None:
-    """The cycle at the end of the range of speeds between two."""
-    limit = follower.range[0] if beyond.y[-1] < follower.range[0] else follower.range[1]
+def at_speed(follower: Follower, place: Place, beyond: Place, speed: float) -> Place | None:
+    """The cycle at a speed over the pace between two."""
     near = resized_like(place, beyond, follower.machine.size)
-    share = (limit - near.y[-1]) / (beyond.y[-1] - near.y[-1])
+    share = (speed - near.y[-1]) / (beyond.y[-1] - near.y[-1])
     guess = near.y + share * (beyond.y - near.y)
     along = np.zeros(len(guess))
     along[-1] = 1.0
@@ -289,10 +311,10 @@ def _at_limit(follower: _Follower, place: Place, beyond: Place) -> Place | None:
     return None if found is None else oriented(found, beyond.tangent)
 
 
-def _why_not(follower: _Follower, place: Place) -> str:
+def _why_not(follower: Follower, place: Place) -> str:
     """Why no step leads on."""
     machine = follower.machine
-    harmonics, tail = (len(place.y) - 2) // machine.size // 2, left_out(machine, place.y)
+    harmonics, tail = (len(place.y) - 2) // machine.size // 2, left_out(machine, follower.as_cycle(place.y))
     speed, eccentricity = place.y[-1] * machine.pace / (2.0 * math.pi), largest(machine, place.y)
     told = f"It could not be followed beyond {speed:.4g} Hz, an eccentricity of {eccentricity:.4f}"
     if harmonics >= MOST_HARMONICS - 2:

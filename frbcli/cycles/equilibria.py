@@ -158,13 +158,25 @@ def _between(
     machine: Machine, space: StateSpace, low: Equilibrium, high: Equilibrium, halvings: int
 ) -> list[HopfPoint]:
     """The Hopf points between two equilibria."""
-    change = high.unstable - low.unstable
-    if change == 0 or halvings == 0:
+    crossing = _crossing(low, high)
+    if crossing == 0 or halvings == 0:
         return []
-    if abs(change) == 1:
+    if crossing == 1:
         return [_located(machine, space, low, high)]
     middle = _solved(machine, space, low, high, 0.5 * (low.omega + high.omega))
     return _between(machine, space, low, middle, halvings - 1) + _between(machine, space, middle, high, halvings - 1)
+
+
+def _crossing(low: Equilibrium, high: Equilibrium) -> int:
+    """How many oscillating pairs cross the imaginary axis between two equilibria, one way or the other: eigenvalues are
+    the same motion where they are nearest to each other."""
+    from scipy.optimize import linear_sum_assignment
+
+    before, after = (at.eigenvalues[at.eigenvalues.imag >= 0.0] for at in (low, high))
+    mine, others = linear_sum_assignment(np.abs(before[:, None] - after[None, :]))
+    turned = (before[mine].real > 0.0) != (after[others].real > 0.0)
+    oscillating = np.abs(before[mine].imag) + np.abs(after[others].imag) > OSCILLATING * np.abs(before[mine])
+    return max(int(np.count_nonzero(turned & oscillating)), abs(high.unstable - low.unstable))
 
 
 def _solved(machine: Machine, space: StateSpace, low: Equilibrium, high: Equilibrium, omega: float) -> Equilibrium:

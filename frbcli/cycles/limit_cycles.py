@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.cycles.balance import loads_along, unpacked
-from frbcli.cycles.branch import HOPF, Branch, Cycle, follow_branch
-from frbcli.cycles.continuation import Unreachable
+from frbcli.cycles.branch import FLIP, FOLD, HOPF, TORUS, Branch, Cycle, first_place, follow_branch
+from frbcli.cycles.continuation import Place, Unreachable
 from frbcli.cycles.criticality import lyapunov_coefficient
 from frbcli.cycles.equilibria import Equilibrium, HopfPoint, resting_curve
 from frbcli.cycles.faults import check
@@ -26,6 +27,7 @@ from frbcli.cycles.result import (
     RestingPoint,
     SpecialPoint,
 )
+from frbcli.cycles.seed import seed_cycle
 from frbcli.errors import NotConverged
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
@@ -36,9 +38,10 @@ Observer = Callable[[int, float, float], None]
 SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf point ends in it
 
 
-def limit_cycles(case: Case, observe: Observer | None = None) -> LimitCycles:
+def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer | None = None) -> LimitCycles:
     """The resting positions of a case over its speed range, its Hopf points, and the branches of limit cycles.
 
+    speeds_Hz: at which cycles are computed exactly, of the kind "asked", for their orbits;
     observe: called with the number of cycles so far and the speed in Hz and the largest eccentricity of the latest one.
     Raises InputError if the films have no force that follows from the motion alone, or without a speed range;
     NotConverged without a resting position at the highest speed.
@@ -55,6 +58,7 @@ def limit_cycles(case: Case, observe: Observer | None = None) -> LimitCycles:
             f"The resting positions could not be followed down from {fastest / (2.0 * math.pi):.4g} Hz."
         ) from None
     branches: list[Branch | None] = []
+    asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     cycles = 0
 
     def tell(cycle: Cycle) -> None:
@@ -65,12 +69,24 @@ def limit_cycles(case: Case, observe: Observer | None = None) -> LimitCycles:
 
     for number, hopf in enumerate(resting.hopf):
         known = any(branch is not None and _ends_in(machine, branch, hopf) for branch in branches[:number])
-        branches.append(None if known else follow_branch(machine, hopf, slowest, fastest, tell))
-    followed = [(i, branch) for i, branch in enumerate(branches) if branch is not None]
+        branches.append(
+            None if known else follow_branch(machine, first_place(machine, hopf), slowest, fastest, asked, tell)
+        )
+    followed: list[tuple[int | None, Branch]] = [(i, branch) for i, branch in enumerate(branches) if branch is not None]
     numbers = {hopf: number for number, (hopf, _) in enumerate(followed)}
+    notes = [resting.note]
+    if not resting.hopf and not any(point.stable for point in resting.points):
+        seeded = _seeded(
+            machine, resting.points, lambda place: follow_branch(machine, place, slowest, fastest, asked, tell)
+        )
+        notes.append(_unstable(resting.points))
+        if seeded is not None:
+            followed.append((None, seeded))
+    elif not resting.hopf:
+        notes.append(_verdict(resting.points))
     special = [_hopf(machine, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
     for number, (_, branch) in enumerate(followed):
-        special += [_special(machine, cycle, number) for cycle in branch.cycles if cycle.kind]
+        special += [_special(machine, cycle, number) for cycle in branch.cycles if cycle.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
         case=case,
         films=system.names,
@@ -80,20 +96,35 @@ def limit_cycles(case: Case, observe: Observer | None = None) -> LimitCycles:
             for hopf, branch in followed
         ),
         special=tuple(special),
-        notes=tuple(filter(None, [resting.note, _verdict(resting.points, resting.hopf)])),
+        notes=tuple(filter(None, notes)),
         cost=Cost(time.process_time() - begun, cycles),
     )
 
 
-def _verdict(points: tuple[Equilibrium, ...], hopf: tuple[HopfPoint, ...]) -> str:
+def _seeded(machine: Machine, points: tuple[Equilibrium, ...], both_ways: Callable[[Place], Branch]) -> Branch | None:
+    """The branch through a cycle that no Hopf point in the range leads to, from its slow to its fast end."""
+    for resting in (points[len(points) // 2], points[0], points[-1]):
+        place = seed_cycle(machine, resting)
+        if place is not None:
+            break
+    else:
+        return None
+    up, down = both_ways(place), both_ways(replace(place, tangent=-place.tangent))
+    notes = dict.fromkeys((down.note, up.note))
+    return Branch((*reversed(down.cycles), *up.cycles), " ".join(notes), down.ends_at_rest or up.ends_at_rest)
+
+
+def _unstable(points: tuple[Equilibrium, ...]) -> str:
+    """What is to be said where the rotor whirls at all speeds."""
+    low, high = _hertz(points[0].omega), _hertz(points[-1].omega)
+    return f"Unstable at rest from {low:.4g} to {high:.4g} Hz: the whirl is born outside of the range."
+
+
+def _verdict(points: tuple[Equilibrium, ...]) -> str:
     """What is to be said where no whirl is born."""
-    if hopf:
-        return ""
     low, high = _hertz(points[0].omega), _hertz(points[-1].omega)
     if all(point.stable for point in points):
         return f"No whirl is born between {low:.4g} and {high:.4g} Hz: every small motion decays there."
-    if all(not point.stable for point in points):
-        return f"Unstable from {low:.4g} to {high:.4g} Hz: the whirl is born below. Lower speed.from."
     return f"No whirl is born between {low:.4g} and {high:.4g} Hz."
 
 

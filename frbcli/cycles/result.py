@@ -43,7 +43,8 @@ class CyclePoint:
     """A limit cycle. speed_Hz: of the rotor; frequency_Hz: of the cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,)
     mean; torque_N_m: mean, that turns the rotor against its films; stable: whether all disturbances decay; multipliers:
     (N,) the trivial one first, then by falling size; harmonics: (H + 1, F, 2) complex, of the displacements over the
-    clearance; kind: "" or that of a special point."""
+    clearance; kind: "", that of a special point,
+    or "asked" at a speed that was asked for."""
 
     speed_Hz: float
     frequency_Hz: float
@@ -63,9 +64,10 @@ class CyclePoint:
 
 @dataclass(frozen=True)
 class CycleBranch:
-    """Cycles in their order from a Hopf point on. start: its number among the special points; note: why it ends."""
+    """Cycles in their order from a Hopf point on. start: its number among the special points,
+    None where the Hopf point lies outside of the range; note: why it ends."""
 
-    start: int
+    start: int | None
     points: tuple[CyclePoint, ...]
     note: str
 
