@@ -23,12 +23,15 @@ from frbcli.cli.main import run
 from frbcli.cycles.balance import Balance, packed
 from frbcli.cycles.continuation import Place, Strides, fold_between, follow
 from frbcli.cycles.equilibria import resting_curve
+from frbcli.cycles.explain import explanations
 from frbcli.cycles.floquet import multipliers
 from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine, film_loads, make_machine, transfer
 from frbcli.cycles.result import LimitCycles
+from frbcli.cycles.threshold import threshold_kind
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.stability import stability
+from frbcli.plot.run_track import run_tracks
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
 
@@ -325,3 +328,42 @@ def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path,
     assert document["special"][1]["speed_Hz"] < document["special"][0]["speed_Hz"]
     assert (tmp_path / "jeffcott-limit-cycles.png").exists()
     assert (tmp_path / "table.csv").read_text().startswith("branch,speed_Hz,frequency_Hz,stable")
+
+
+@pytest.mark.parametrize(("gamma", "criticality"), [(4.538, "subcritical"), (1.313, "supercritical")])
+def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality: str) -> None:
+    case, found = rigid(gamma, 2.4, 2.9), diagram(gamma, 2.4, 2.9)
+    kind = threshold_kind(case, found.of("hopf")[0].speed_Hz)
+    assert kind is not None
+    assert kind.criticality == criticality
+    if criticality == "subcritical":
+        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=1e-6)
+    else:
+        assert kind.fold_Hz is None
+    assert threshold_kind(frbcli.load_case("jeffcott", ["film.cavitation=reynolds"]), 170.0) is None
+
+
+def test_onset_and_offset_are_explained() -> None:
+    found = diagram(4.538, 2.4, 2.9)
+    (hopf,), (fold,) = found.of("hopf"), found.of("fold")
+    seen = [("onset", hopf.speed_Hz + 20.0, hopf.frequency_Hz), ("offset", fold.speed_Hz - 3.0, fold.frequency_Hz)]
+    events = [{"kind": kind, "speed_Hz": speed, "frequency_Hz": frequency} for kind, speed, frequency in seen]
+    onset, offset = explanations(found, [*events, {"kind": "contact", "speed_Hz": 1.0, "frequency_Hz": None}])
+    assert "hard Hopf point" in onset
+    assert "20.0 Hz later" in onset
+    assert "end in the fold" in offset
+    assert "3.0 Hz away" in offset
+
+
+def test_runs_are_drawn_over_the_diagram(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.chdir(tmp_path)
+    short = ["--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
+    assert run(["rundown", "jeffcott", *short, "--no-picture", "-o", "down.h5", "--explain", "--quiet"]) == 0
+    up, down = run_tracks(frbcli.read_run("down.h5"), "down")
+    assert up.rising
+    assert not down.rising
+    assert up.largest[""].max() == pytest.approx(
+        np.max(frbcli.read_run("down.h5").signals["eccentricity"][:]), abs=0.05
+    )
+    assert run(["limit-cycles", "jeffcott", *short, "--runs", "down.h5", "-o", "all.svg", "--quiet"]) == 0
+    assert "down, up" in (tmp_path / "all.svg").read_text()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import live_lines
 from frbcli.cli.pictures import check_place, draw
@@ -19,6 +19,7 @@ from frbcli.cli.runs import OUTPUT, here
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint
+    from frbcli.plot.run_track import RunTrack
 
 ASKED = "asked"
 MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
@@ -28,6 +29,8 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @case_argument
 @click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
+@click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
+              help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
@@ -35,6 +38,7 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 def command(
     case: Case,
     speeds: tuple[float, ...],
+    runs: tuple[str, ...],
     output: Path | None,
     no_picture: bool,
     csv: Path | None,
@@ -52,6 +56,7 @@ def command(
     picture = None if no_picture else output or here(case.name, "-limit-cycles.png")
     check_place(picture)
     require_place(csv)
+    tracks = [track for name in runs for track in _tracks(Path(name))]
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         found = limit_cycles(case, speeds, _showing(show))
     _tell(terminal, found)
@@ -61,8 +66,16 @@ def command(
     if picture is not None:
         from frbcli.plot.limit_cycles import limit_cycles_figure
 
-        picture = draw(terminal, lambda: limit_cycles_figure(found), picture)
+        picture = draw(terminal, lambda: limit_cycles_figure(found, tracks), picture)
     terminal.emit(_document(found) | {"picture": picture, "csv": csv})
+
+
+def _tracks(path: Path) -> tuple[RunTrack, ...]:
+    """The way up of a run, and the way down if it has one."""
+    from frbcli.plot.run_track import run_tracks
+    from frbcli.results.store import read_run
+
+    return run_tracks(read_run(path), path.stem)
 
 
 def _showing(show: Callable[[str], None] | None) -> Callable[[int, float, float], None]:

@@ -26,9 +26,10 @@ Array = NDArray[np.float64]
 STRIDES = Strides(first=0.01, shortest=1e-6, longest=0.06, points=600)
 FIRST_HARMONICS, MOST_HARMONICS = 5, 80
 REFITS = 4  # of a fold with more harmonics
-MOST_UNKNOWNS = 1100  # up to which harmonics are added for the trivial multiplier alone
-TAIL = 1e-7  # of the clearance: what the harmonics left out may have
-SPARE = 1e-2  # of it: what the last harmonics have where there are too many
+# Of one film, of several: what the harmonics left out may have of the clearance, and unknowns up to which harmonics are
+# added for the trivial multiplier alone.
+TAIL, MOST_UNKNOWNS = (1e-7, 1e-6), (1100, 450)
+SPARE = 0.1  # of it: what the last harmonics have where there are too many
 NARROWER = 0.6  # share of the smallest gap that one step may leave
 LARGEST = 0.9998  # eccentricity beyond which no cycle is followed
 NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
@@ -101,7 +102,7 @@ class Follower:
         """The place with half as many harmonics more, None if those are too many."""
         c, harmonics = self.machine.size, (len(place.y) - 2) // self.machine.size // 2
         more = resized(place, c, harmonics + harmonics // 2)
-        if len(more.y) > MOST_UNKNOWNS:
+        if len(more.y) > MOST_UNKNOWNS[self.machine.film_count > 1]:
             return None
         found = corrected(self.equations(more), more.y, more.tangent)
         return None if found is None else oriented(found, more.tangent)
@@ -113,8 +114,8 @@ class Follower:
             harmonics = (len(place.y) - 2) // c // 2
             tail = left_out(self.machine, self.as_cycle(place.y))
             motion = unpacked(place.y[:-2], c)
-            if tail < TAIL:
-                used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * TAIL)
+            if tail < TAIL[self.machine.film_count > 1]:
+                used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * TAIL[self.machine.film_count > 1])
                 wanted = max(FIRST_HARMONICS, int(used[-1]) + 2)
                 return place if wanted >= harmonics else resized(place, c, wanted)
             if harmonics >= MOST_HARMONICS:
@@ -153,14 +154,15 @@ def follow_branch(
     fastest: float,
     asked: Sequence[float] = (),
     observe: Callable[[Cycle], None] | None = None,
-    strides: Strides = STRIDES,
+    until: Callable[[Cycle], bool] | None = None,
 ) -> Branch:
     """The cycles from a place on, as that of a Hopf point, between two speeds in rad/s.
 
-    asked: speeds at which cycles are computed exactly; observe: called with each cycle.
+    asked: speeds at which cycles are computed exactly; observe: called with each cycle;
+    until: called with each cycle, special ones too, the last one being that for which it says so.
     """
     follower = Follower(machine, slowest, fastest, asked)
-    place, length = start, strides.first
+    place, length, strides = start, STRIDES.first, STRIDES
     cycles: list[Cycle] = []
     note = ""
     for _ in range(strides.points):
@@ -178,8 +180,11 @@ def follow_branch(
             if found is None:
                 break
         cycle = follower.cycle(found)
+        known = len(cycles)
         cycles += special_cycles(follower, cycles[-1] if cycles else None, place, cycle, length)
         cycles.append(cycle)
+        if until is not None and any(until(one) for one in cycles[known:]):
+            return Branch(tuple(cycles), "")
         if observe is not None:
             observe(cycle)
         if beyond:

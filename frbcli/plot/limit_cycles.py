@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from frbcli.cycles.result import CycleBranch, LimitCycles
-from frbcli.plot.style import BLACK, COLOURS, GREY, new_figure, styled
+from frbcli.plot.run_track import RunTrack
+from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
 
 Array = NDArray[np.float64]
+COLOURS = (BLUE, VERMILION, PURPLE, SKY, GREY)  # of branches
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
 
-def limit_cycles_figure(found: LimitCycles) -> Figure:
+def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> Figure:
     """Largest eccentricities of resting positions and cycles over the speed, a panel for each film, and below the
-    frequencies of the cycles with half the rotor speed and the lines of the rings."""
+    frequencies of the cycles with half the rotor speed and the lines of the rings.
+
+    tracks: of runs, drawn over it as thin lines.
+    """
     case = found.case
     count = len(found.films)
     with styled():
@@ -25,6 +32,7 @@ def limit_cycles_figure(found: LimitCycles) -> Figure:
         panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
         for film, axes in enumerate(panels[:-1]):
             _film(axes, found, film)
+            _runs(axes, tracks, found.films[film])
         _frequencies(panels[-1], found)
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(*panels[-1].get_legend_handles_labels(), loc="outside lower center", ncols=4)
@@ -48,6 +56,15 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
             axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel(f"largest eccentricity\n{found.films[film].replace('_', ' ')}".rstrip())
+
+
+def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
+    """The largest eccentricities of runs: up in orange, down in green."""
+    for track in tracks:
+        values = track.largest.get(film)
+        if values is not None:
+            colour = ORANGE if track.rising else GREEN
+            axes.plot(track.speed_Hz, values, color=colour, linewidth=0.7, label=track.label, zorder=1.8)
 
 
 def _frequencies(axes: Axes, found: LimitCycles) -> None:
