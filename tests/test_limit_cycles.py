@@ -362,8 +362,7 @@ def test_runs_are_drawn_over_the_diagram(tmp_path, monkeypatch) -> None:  # type
     up, down = run_tracks(frbcli.read_run("down.h5"), "down")
     assert up.rising
     assert not down.rising
-    assert up.largest[""].max() == pytest.approx(
-        np.max(frbcli.read_run("down.h5").signals["eccentricity"][:]), abs=0.05
-    )
+    whole = frbcli.read_run("down.h5").signals["eccentricity"][:].max()
+    assert max(up.largest[""].max(), down.largest[""].max()) == pytest.approx(whole)
     assert run(["limit-cycles", "jeffcott", *short, "--runs", "down.h5", "-o", "all.svg", "--quiet"]) == 0
     assert "down, up" in (tmp_path / "all.svg").read_text()
