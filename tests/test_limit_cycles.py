@@ -21,14 +21,18 @@ import frbcli
 from frbcli.case.shipped import find_shipped
 from frbcli.cli.main import run
 from frbcli.cycles.balance import Balance, packed
-from frbcli.cycles.continuation import Place, Strides, fold_between, follow
+from frbcli.cycles.continuation import Place, Strides, corrected, fold_between, follow, step_from
 from frbcli.cycles.equilibria import resting_curve
 from frbcli.cycles.explain import explanations
+from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import multipliers
 from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine, film_loads, make_machine, transfer
 from frbcli.cycles.result import LimitCycles
 from frbcli.cycles.threshold import threshold_kind
+from frbcli.film.cells.frame import turned
+from frbcli.film.cells.steady_force import steady_force
+from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.stability import stability
 from frbcli.plot.run_track import run_tracks
@@ -284,6 +288,49 @@ def test_half_of_the_drive_is_dissipated_at_rest() -> None:
     loads = film_loads(machine, u, np.zeros_like(u), machine.pace)
     expected = 2.0 * math.pi * machine.drags[0] * 0.75 * machine.pace
     assert loads.drive[0] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("film", [0, 1], ids=["bores that turn", "groove"])
+def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
+    """Against the steady films of the same cells with their bores at six angles, forces within the error of the cells
+    up to an eccentricity of 0.6; and the derivatives are those of the force."""
+    case = frbcli.load_case("floating-ring", ["film.cavitation=half-sommerfeld"])
+    system = make_system(case, make_plan(case))
+    mean, volume = smooth_films(system)[film]._replace(drop=0.0), system.volumes[film]
+    c, omega, bores = volume.section.clearance, 2000.0, len(volume.section.holes)
+    for eccentricity, v in ((0.2, (0.0, 0.0)), (0.6, (100.0, 50.0))):
+        d = (eccentricity * math.cos(0.3), eccentricity * math.sin(0.3))
+        found = evaluate(mean, c, np.multiply(d, c), np.multiply(v, c), omega)
+        forces = []
+        for j in range(6 if bores else 1):
+            angle = 2.0 * math.pi / 6.0 * j / 6.0
+            place, rate = (np.multiply(turned(vector, -angle), c) for vector in (d, v))
+            forces.append(turned(tuple(steady_force(volume, place, rate, omega).force), angle))
+        expected = np.mean(forces, axis=0)
+        assert np.linalg.norm(found.force - expected) < 0.01 * np.linalg.norm(expected)
+        step = 1e-6 * c
+        columns = []
+        for unit in step * np.eye(2):
+            ends = [
+                evaluate(mean, c, np.multiply(d, c) + side * unit, np.multiply(v, c), omega).force for side in (1, -1)
+            ]
+            columns.append((ends[0] - ends[1]) / (2.0 * step))
+        by_d = found.by_displacement
+        np.testing.assert_allclose(by_d, np.transpose(columns), atol=1e-6 * np.abs(by_d).max())
+
+
+def test_a_step_does_not_change_to_a_part_of_the_curve_that_passes_close_by() -> None:
+    """Two straight lines p = x and p = x + 0.02: a guess that is nearer to the other one is not taken for it."""
+
+    def lines(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        a = y[1] - y[0]
+        return np.array([a * (a - 0.02)]), np.array([[-(2.0 * a - 0.02), 2.0 * a - 0.02]])
+
+    start = corrected(lines, np.array([0.0, 0.0]), np.array([0.6, 0.8]))
+    assert start is not None
+    astray = Place(start.y, np.array([0.0, 1.0]), side=start.side)
+    assert step_from(lines, astray, 0.03) is None
+    assert step_from(lines, start, 0.03) is not None
 
 
 def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[str]) -> None:

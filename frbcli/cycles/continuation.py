@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lu_factor, lu_solve
 
 Array = NDArray[np.float64]
 Equations = Callable[[Array], tuple[Array, Array]]  # residual (n,), and its derivative (n, n + 1)
@@ -20,6 +21,7 @@ STEP = 1e-10  # a Newton step below this ends the iteration
 SLOW = 0.5  # a Newton step that is not shorter than this share of the one before ends it without success
 WANTED = 4.0  # iterations that keep the step size
 SHARPEST = 0.9  # cosine of the angle between two tangents that a step may turn by
+CLOSEST = 1e-4  # step below which a change of the side is one of the curve itself: it branches there
 TURNED_BY = 0.98  # beyond which the step size does not grow
 
 
@@ -29,11 +31,14 @@ class Unreachable(Exception):
 
 @dataclass(frozen=True)
 class Place:
-    """A point of a curve: the unknowns y (n + 1,) and the unit tangent (n + 1,) there; iterations: that it took."""
+    """A point of a curve: the unknowns y (n + 1,) and the unit tangent (n + 1,) there; iterations: that it took; side:
+    sign of the determinant of the derivative bordered by the tangent, which does not change along a curve, 0 if it is
+    not known."""
 
     y: Array
     tangent: Array
     iterations: int = 0
+    side: int = 0
 
 
 @dataclass(frozen=True)
@@ -60,14 +65,17 @@ def corrected(equations: Equations, guess: Array, tangent: Array) -> Place | Non
         right = np.zeros((len(y), 2))
         right[:-1, 0], right[-1, 0] = -residual, tangent @ (guess - y)
         right[-1, 1] = 1.0
-        try:
-            step, along = np.linalg.solve(matrix, right).T
-        except np.linalg.LinAlgError:
+        factors, swaps = lu_factor(matrix, overwrite_a=True, check_finite=False)
+        pivots = np.diag(factors)
+        if not np.all(pivots):
             return None
+        step, along = lu_solve((factors, swaps), right, check_finite=False).T
         y = y + step
         size = float(np.linalg.norm(step))
         if size < STEP:
-            return Place(y, along / np.linalg.norm(along), iteration)
+            swapped = np.count_nonzero(swaps != np.arange(len(swaps)))
+            side = (-1) ** int(np.count_nonzero(pivots < 0.0) + swapped)
+            return Place(y, along / np.linalg.norm(along), iteration, side)
         if iteration > 2 and size > SLOW * before:
             return None
         before = size
@@ -76,13 +84,16 @@ def corrected(equations: Equations, guess: Array, tangent: Array) -> Place | Non
 
 def oriented(place: Place, direction: Array) -> Place:
     """The point with its tangent turned so that it goes along a direction."""
-    return place if place.tangent @ direction >= 0.0 else replace(place, tangent=-place.tangent)
+    if place.tangent @ direction >= 0.0:
+        return place
+    return replace(place, tangent=-place.tangent, side=-place.side)
 
 
 def step_from(equations: Equations, place: Place, length: float) -> Place | None:
-    """The point at a length along the tangent; None if it is not found, or if the curve turns too much on the way."""
+    """The point at a length along the tangent; None if it is not found, if the curve turns too much on the way, or if
+    the step has come to another part of the curve that passes close by."""
     found = corrected(equations, place.y + length * place.tangent, place.tangent)
-    if found is None:
+    if found is None or (found.side * place.side < 0 and length > CLOSEST):
         return None
     return found if abs(found.tangent @ place.tangent) >= SHARPEST else None
 

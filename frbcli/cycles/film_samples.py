@@ -9,6 +9,7 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.bearing_model.film import BearingModelFilm
+from frbcli.film.mean_fields.table import MeanFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm
 from frbcli.film.rectangles.film_force import FilmData, film_force
 
@@ -26,7 +27,7 @@ def film_samples(film: FilmData, d: Array, v: Array, omega: Array) -> Array:
         film = film._replace(central=1)
     found = np.empty((len(d), COLUMNS))
     _sample(film, d, v, omega, found)
-    if isinstance(film, PenaltyTableFilm | BearingModelFilm):
+    if isinstance(film, PenaltyTableFilm | BearingModelFilm | MeanFilm):
         step = DIFFERENCE * np.maximum(np.abs(omega), 1.0)
         ahead, behind = np.empty_like(found), np.empty_like(found)
         _sample(film, d, v, omega + step, ahead)

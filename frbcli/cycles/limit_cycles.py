@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
+from frbcli.case.bearing import Bores
 from frbcli.case.schema import Case
 from frbcli.cycles.balance import loads_along, unpacked
 from frbcli.cycles.branch import FLIP, FOLD, HOPF, TORUS, Branch, Cycle, first_place, follow_branch
-from frbcli.cycles.continuation import Place, Unreachable
+from frbcli.cycles.continuation import Place, Unreachable, oriented
 from frbcli.cycles.criticality import lyapunov_coefficient
 from frbcli.cycles.equilibria import Equilibrium, HopfPoint, resting_curve
 from frbcli.cycles.faults import check
@@ -29,6 +29,7 @@ from frbcli.cycles.result import (
 )
 from frbcli.cycles.seed import seed_cycle
 from frbcli.errors import NotConverged
+from frbcli.scene.films import film_places
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
 from frbcli.scene.system import make_system
@@ -75,6 +76,8 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
     followed: list[tuple[int | None, Branch]] = [(i, branch) for i, branch in enumerate(branches) if branch is not None]
     numbers = {hopf: number for number, (hopf, _) in enumerate(followed)}
     notes = [resting.note]
+    if any(isinstance(place.geometry.supply, Bores) for place in film_places(case)):
+        notes.append("Bores that turn enter by their mean over the angle.")
     if not resting.hopf and not any(point.stable for point in resting.points):
         seeded = _seeded(
             machine, resting.points, lambda place: follow_branch(machine, place, slowest, fastest, asked, tell)
@@ -109,7 +112,7 @@ def _seeded(machine: Machine, points: tuple[Equilibrium, ...], both_ways: Callab
             break
     else:
         return None
-    up, down = both_ways(place), both_ways(replace(place, tangent=-place.tangent))
+    up, down = both_ways(place), both_ways(oriented(place, -place.tangent))
     notes = dict.fromkeys((down.note, up.note))
     return Branch((*reversed(down.cycles), *up.cycles), " ".join(notes), down.ends_at_rest or up.ends_at_rest)
 

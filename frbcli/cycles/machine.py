@@ -15,13 +15,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.film_samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
+from frbcli.cycles.films import smooth_films
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.linear import LinearRotor
@@ -121,8 +121,8 @@ class Transfer:
 
 
 def make_machine(system: System, top: float) -> Machine:
-    """The machine of a system whose films are no cells. top: largest speed of the rotor, rad/s."""
-    films = cast(tuple[FilmData, ...], system.films)
+    """The machine of a system. top: largest speed of the rotor, rad/s."""
+    films = smooth_films(system)
     drags = np.array(system.drags)
     held = np.zeros(system.ring_count)
     for ring in range(system.ring_count):
