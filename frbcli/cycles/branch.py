@@ -66,6 +66,9 @@ class Branch:
     ends_at_rest: bool = False
 
 
+AT_REST = "It ends at rest, in another Hopf point."
+
+
 class Follower:
     """One branch while it is followed; omega: as in Balance."""
 
@@ -122,7 +125,7 @@ class Follower:
                 return None
             place = resized(place, c, min(MOST_HARMONICS, harmonics + max(2, harmonics // 3)))
             found = corrected(self.equations(place), place.y, place.tangent)
-            if found is None:
+            if found is None or found.side * place.side < 0:  # of another part of the branch that passes close by
                 return None
             place = oriented(found, place.tangent)
         return None
@@ -173,6 +176,8 @@ def follow_branch(
         if found is None:
             note = _why_not(follower, place)
             break
+        if cycles and passed_rest(machine, place, found):
+            return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
         beyond = not follower.range[0] <= found.y[-1] <= follower.range[1]
         if beyond:
             limit = follower.range[0] if found.y[-1] < follower.range[0] else follower.range[1]
@@ -193,7 +198,7 @@ def follow_branch(
             note = f"The journal comes nearer to its shell than an eccentricity of {LARGEST}."
             break
         if len(cycles) > 3 and amplitude(machine, found.y) < SMALL:
-            return Branch(tuple(cycles), "It ends at rest, in another Hopf point.", ends_at_rest=True)
+            return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
         length = next_length(length, strides, resized_like(place, found, machine.size), found)
         place = found
     else:
@@ -246,6 +251,12 @@ def amplitude(machine: Machine, y: Array) -> float:
     """Size over the clearance of what is not the mean of the cycle."""
     motion = unpacked(y[:-2], machine.size)[1:, : 2 * machine.film_count]
     return float(2.0 * np.abs(motion).max(initial=0.0))
+
+
+def passed_rest(machine: Machine, before: Place, after: Place) -> bool:
+    """Whether the cycle has shrunk to rest between two places: behind it the branch comes back."""
+    one, other = (unpacked(place.y[:-2], machine.size)[1] for place in (before, after))
+    return bool(np.sum(np.conj(one) * other).real < 0.0)
 
 
 def special_cycles(follower: Follower, before: Cycle | None, place: Place, after: Cycle, length: float) -> list[Cycle]:
