@@ -34,6 +34,7 @@ COMMANDS = {
     "bearing": ("frbcli.cli.bearing", "A bearing's sheet over speed or eccentricity: position, K, C, loss, flow."),
     "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
     "response": ("frbcli.cli.response", "Linear unbalance response: amplitudes, phases, bearing forces over speed."),
+    "limit-cycles": ("frbcli.cli.limit_cycles", "Hopf points and branches of limit cycles over speed, stable or not."),
     "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
     "sweep": ("frbcli.cli.sweep", "Run one case with many settings, on all cores or a cluster."),
     "export": ("frbcli.cli.export", "Write the signals of a run as CSV, Parquet or MAT."),
