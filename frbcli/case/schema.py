@@ -57,6 +57,7 @@ STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
 
 Confirmation = Literal["surface-speed", "gap-growth", "clearance"]
+FilmSignal = Literal["force", "film-thickness", "power", "torque", "oil-flow"]
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
 
 
@@ -216,6 +217,12 @@ class Output(Model):
 
     step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = Field(
         default=OUTPUT_STEP, description="between the samples of a run file"
+    )
+    signals: tuple[FilmSignal, ...] = Field(
+        default=(),
+        description="what a run records of each film beside its eccentricity: the force on the journal, the smallest "
+        "film thickness, the power that goes into the film, its torque on the journal, the oil that leaves it (of "
+        "films on cells)",
     )
 
 

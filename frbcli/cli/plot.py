@@ -1,5 +1,5 @@
-"""`frb plot`: eccentricities, ring speeds, oil content, orbits, displacements, or the summary of a run; the cavitation
-laws of a case."""
+"""`frb plot`: eccentricities, ring speeds, oil content, what a run records of its films, orbits, displacements, or the
+summary of a run; the cavitation laws of a case."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
 
 LAW = "law"  # of a case, the others of runs
-CURVES = ("eccentricity", "ring-speed", "oil-content")
+FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow")  # of output.signals
+CURVES = ("eccentricity", "ring-speed", "oil-content", *FILM_SIGNALS)
 PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 
 
@@ -91,6 +92,7 @@ def _figure(
 ) -> Picture:
     from frbcli.plot.displacement import displacement_figure
     from frbcli.plot.eccentricity import eccentricity_figure
+    from frbcli.plot.film_signals import film_signal_figure
     from frbcli.plot.oil_content import oil_content_figure
     from frbcli.plot.orbit import orbit_figure
     from frbcli.plot.ring_speed import ring_speed_figure
@@ -102,5 +104,7 @@ def _figure(
         return orbit_figure(runs, *span)
     if what == "displacement":
         return displacement_figure(runs, signal, *span)
+    if what in FILM_SIGNALS:
+        return film_signal_figure(runs, what, *span, over)
     curves = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure}.get(what, eccentricity_figure)
     return curves(runs, *span, over)
