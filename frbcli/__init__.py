@@ -33,6 +33,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
+    from frbcli.report.page import write_report as write_report
     from frbcli.results.store import read_run as read_run
     from frbcli.runs.run import rundown as rundown
     from frbcli.runs.run import runup as runup
@@ -79,6 +80,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "sweep": "frbcli.studies.sweep.sweep",
     "whirl": "frbcli.bearing_tests.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
+    "write_report": "frbcli.report.page",
 }
 
 __all__ = ["__version__", *_PUBLIC]

@@ -144,6 +144,6 @@ def test_what_a_run_cannot_record_is_refused(tmp_path: Path) -> None:
 def test_what_was_not_recorded_is_not_drawn(tmp_path: Path) -> None:
     run = run_of("jeffcott", tmp_path, SHORT, ["force"])
     figure = film_signal_figure([run], "force")
-    assert [axes.get_ylabel() for axes in figure.axes] == [f"force on the journal, {a}, in N" for a in "xy"]
+    assert [axes.get_ylabel() for axes in figure.axes] == [f"force {a} in N" for a in "xy"]
     with pytest.raises(RunFileError, match=r"output\.signals"):
         film_signal_figure([run], "power")

@@ -36,6 +36,7 @@ COMMANDS = {
     "response": ("frbcli.cli.response", "Linear unbalance response: amplitudes, phases, bearing forces over speed."),
     "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
     "sweep": ("frbcli.cli.sweep", "Run one case with many settings, on all cores or a cluster."),
+    "report": ("frbcli.cli.report", "Write a run as one page: machine, events, waterfall, orbits, errors."),
     "export": ("frbcli.cli.export", "Write the signals of a run as CSV, Parquet or MAT."),
     "cases": ("frbcli.cli.cases", "List, show or copy the shipped cases."),
     "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),

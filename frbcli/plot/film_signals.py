@@ -19,8 +19,8 @@ from frbcli.runs.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TORQ
 PANEL_HEIGHT = 2.4  # inches
 # The name of an axis, and its unit in SI units.
 AXES = {
-    FORCE: ("force on the journal, {}, in N", 1.0),
-    THICKNESS: ("film thickness in um", 1e6),
+    FORCE: ("force {} in N", 1.0),
+    THICKNESS: ("film thickness in µm", 1e6),
     POWER: ("power in W", 1.0),
     TORQUE: ("torque on the journal in N mm", 1e3),
     FLOW: ("oil flow in cm³/s", 1e6),

@@ -71,7 +71,7 @@ def waterfall_figure(
         for axes, (name, part) in zip(panels, parts, strict=True):
             axes.set_title(name)
             if cascade:
-                draw_cascade(axes, part, over, LEVELS_dB, _orders(run, signal, part))
+                draw_cascade(axes, part, over, LEVELS_dB, orders(run, signal, part))
             else:
                 mesh = draw_levels(axes, run, signal, part, over, log)
         if not cascade:
@@ -143,7 +143,7 @@ def draw_levels(axes: Axes, run: Run, signal: str, found: Spectrogram, over: Ove
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(ScalarFormatter())
-    for label, frequency in _orders(run, signal, found):
+    for label, frequency in orders(run, signal, found):
         axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
         _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
     axes.grid(False)
@@ -152,7 +152,7 @@ def draw_levels(axes: Axes, run: Run, signal: str, found: Spectrogram, over: Ove
     return mesh
 
 
-def _orders(run: Run, signal: str, found: Spectrogram) -> list[tuple[str, Values]]:
+def orders(run: Run, signal: str, found: Spectrogram) -> list[tuple[str, Values]]:
     """The synchronous line, and the frequencies of free whirls."""
     lines = [("ω", found.speed_Hz)]
     bearing = bearing_of(run, signal)
