@@ -33,6 +33,15 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
+    from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
+    from frbcli.plot.axes import campbell as draw_campbell  # noqa: F401
+    from frbcli.plot.axes import eccentricity as draw_eccentricity  # noqa: F401
+    from frbcli.plot.axes import film_signal as draw_film_signal  # noqa: F401
+    from frbcli.plot.axes import orbit as draw_orbit  # noqa: F401
+    from frbcli.plot.axes import response as draw_response  # noqa: F401
+    from frbcli.plot.axes import ring_speed as draw_ring_speed  # noqa: F401
+    from frbcli.plot.axes import spectrum as draw_spectrum  # noqa: F401
+    from frbcli.plot.axes import waterfall as draw_waterfall  # noqa: F401
     from frbcli.report.page import write_report as write_report
     from frbcli.results.store import read_run as read_run
     from frbcli.runs.run import rundown as rundown
@@ -60,6 +69,15 @@ _PUBLIC = {  # module, or module:attribute of another name
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.load",
     "compare": "frbcli.studies.compare",
+    "draw_bearing": "frbcli.plot.axes:bearing",
+    "draw_campbell": "frbcli.plot.axes:campbell",
+    "draw_eccentricity": "frbcli.plot.axes:eccentricity",
+    "draw_film_signal": "frbcli.plot.axes:film_signal",
+    "draw_orbit": "frbcli.plot.axes:orbit",
+    "draw_response": "frbcli.plot.axes:response",
+    "draw_ring_speed": "frbcli.plot.axes:ring_speed",
+    "draw_spectrum": "frbcli.plot.axes:spectrum",
+    "draw_waterfall": "frbcli.plot.axes:waterfall",
     "find_events": "frbcli.analysis.events",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",

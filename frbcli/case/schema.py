@@ -47,6 +47,7 @@ from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
+from frbcli.html import html_table
 from frbcli.units import NUMBER
 
 ATMOSPHERE = 1e5
@@ -279,6 +280,13 @@ class Case(Model):
     def __eq__(self, other: object) -> bool:
         """Whether all values are equal."""
         return isinstance(other, Case) and self.__dict__ == other.__dict__
+
+    def _repr_html_(self) -> str:
+        """In a notebook: its values in SI and as they are written."""
+        from frbcli.case.listing import values  # it is made of cases
+
+        told = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
+        return html_table(self.title or self.name, ("key", "SI", "", "reads"), told, len(told))
 
     def same_run(self, other: Case) -> bool:
         """Whether `other` is the same machine and run; labels may differ."""

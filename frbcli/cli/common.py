@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
+from frbcli.cli.picture_options import Look, look_of
 from frbcli.cli.streams import OutputLost
 from frbcli.errors import printable
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+DEFAULT_LOOK = Look()
 PIPE_WIDTH = 80  # columns of a table in a pipe or a file
 
 _JSON = "frbcli.json"
@@ -49,6 +51,7 @@ class Terminal:
 
     json: bool = False
     quiet: bool = False
+    look: Look = DEFAULT_LOOK  # of the pictures
 
     @property
     def live(self) -> bool:
@@ -181,7 +184,7 @@ def _remember_json(context: click.Context, _: click.Parameter, as_json: bool) ->
 
 
 def _terminal(context: click.Context, _: click.Parameter, quiet: bool) -> Terminal:
-    return Terminal(json=bool(context.meta.get(_JSON)), quiet=quiet)
+    return Terminal(json=bool(context.meta.get(_JSON)), quiet=quiet, look=look_of(context))
 
 
 def _load(context: click.Context, _: click.Parameter, source: str) -> Case:

@@ -10,6 +10,7 @@ import click
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import live_lines, progress_line
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import exit_code
@@ -45,6 +46,7 @@ EXPLANATION = (
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
 @click.option("--picture/--no-picture", default=True, help="A picture of all.")
 @click.option("--keep", metavar="DIR", type=OUTPUT, help="Keep the run files in this directory.")
+@picture_options
 @output_options
 def command(
     case: Case,

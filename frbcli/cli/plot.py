@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.quantities import TIME_OPTION
 from frbcli.cli.runs import OUTPUT, RUN, beside, here
@@ -34,6 +35,7 @@ PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 @click.option("--signal", help="Of a displacement: disk or journal; journal_NAME of a bearing.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Of a law: set a key of CASE. Repeatable.")
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-WHAT.png]")
+@picture_options
 @output_options
 def command(
     run_files: tuple[Path, ...],

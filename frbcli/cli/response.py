@@ -11,6 +11,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import counting, live_lines
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, RUN, here
@@ -37,6 +38,7 @@ EXPLANATION = (
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-response.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all amplitudes and phases as a table, too.")
+@picture_options
 @output_options
 def command(
     case: Case,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.transient import run_options, transient
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 @click.command()
 @case_argument
 @run_options
+@picture_options
 @output_options
 def command(
     case: Case, output: Path | None, resume: bool, force: bool, picture: bool, verify: bool, terminal: Terminal

@@ -13,6 +13,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.modes import emit_modes, modes_document, tell_modes
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
 from frbcli.cli.runs import OUTPUT
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
               help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
 @click.option("--no-picture", is_flag=True, help="No Campbell diagram.")
+@picture_options
 @output_options
 def command(
     case: Case,

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films
-from frbcli.plot.curves import Over, draw_curves, finish
+from frbcli.plot.curves import Over, Span, draw_curves, finish
 from frbcli.plot.signals import heading
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.container import refuse
@@ -46,25 +47,32 @@ def film_signal_figure(
 ) -> Figure:
     """One of FILM_SIGNALS of each film, the runs overlaid, from from_time to to_time in s; x and y of a force have a
     panel each. Raises RunFileError if a run has not recorded it."""
+    count = len(signal_names(kind, ""))
+    with styled():
+        figure = new_figure(*heading(runs), height=max(4.4, 0.8 + PANEL_HEIGHT * count))
+        panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        for part, axes in enumerate(panels):
+            draw_film_signal(axes, runs, kind, part, over, (from_time, to_time))
+        finish(panels[-1], over)
+        legend_below(figure, panels[0])
+    return figure
+
+
+def draw_film_signal(
+    axes: Axes, runs: Sequence[Run], kind: str, part: int = 0, over: Over = "time", span: Span = (None, None)
+) -> None:
+    """The curves on axes of a figure; part: 0 and 1 are x and y of a force. Raises as film_signal_figure."""
     names = list(films(runs[0].signals)) or [""]
     for run in runs:
         if any(signal not in run.signals for name in names for signal in signal_names(kind, name)):
             remedy = f"Run the case with --set 'output.signals=[\"{kind}\"]'."
             raise refuse(run.path, f"has not recorded {FILM_SIGNALS[kind][0].replace('_', ' ')}.", remedy)
     words, factor = AXES[kind]
-    count = len(signal_names(kind, ""))
-    with styled():
-        figure = new_figure(*heading(runs), height=max(4.4, 0.8 + PANEL_HEIGHT * count))
-        panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-        for part, axes in enumerate(panels):
-            curves = [
-                (name.replace("_", " "), [_Scaled(run.signal(signal_names(kind, name)[part]), factor) for run in runs])
-                for name in names
-            ]
-            draw_curves(axes, runs, curves, over, (from_time, to_time))
-            axes.set_ylabel(words.format("xy"[part]))
-            if kind == THICKNESS:
-                axes.set_ylim(bottom=0.0)
-        finish(panels[-1], over)
-        legend_below(figure, panels[0])
-    return figure
+    curves = [
+        (name.replace("_", " "), [_Scaled(run.signal(signal_names(kind, name)[part]), factor) for run in runs])
+        for name in names
+    ]
+    draw_curves(axes, runs, curves, over, span)
+    axes.set_ylabel(words.format("xy"[part]))
+    if kind == THICKNESS:
+        axes.set_ylim(bottom=0.0)

@@ -111,6 +111,13 @@ def legend_below(figure: Figure, axes: Axes) -> None:
         figure.legend(handles, labels, loc="outside lower center", ncols=min(len(handles), 3))
 
 
+def legend_beside(axes: Axes) -> None:
+    """A legend to the right of a panel, where it hides no curve; none for one curve, or for more than there is room
+    for."""
+    if 1 < len(axes.get_legend_handles_labels()[0]) <= MOST_NAMED:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
+
+
 def check_picture(path: Path) -> None:
     """Raises InputError if a picture cannot have this name or this place; called before the work."""
     if path.suffix.lower() not in FORMATS:

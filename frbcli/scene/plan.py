@@ -14,6 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
+from frbcli.html import html_table
 from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
@@ -79,6 +80,11 @@ class Plan:
     coupling: str
     macro_step: float | None
     decisions: tuple[Decision, ...]
+
+    def _repr_html_(self) -> str:
+        """In a notebook: its decisions."""
+        rows = [(each.choice, each.value, each.reason) for each in self.decisions]
+        return html_table("plan", ("choice", "value", "reason"), rows, len(rows))
 
 
 def make_plan(case: Case) -> Plan:
