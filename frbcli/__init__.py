@@ -30,6 +30,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.errors import RunFileError as RunFileError
     from frbcli.linear.bearing_sheet import bearing_sheet as bearing_sheet
     from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
+    from frbcli.linear.critical_map import critical_map as critical_map
+    from frbcli.linear.damped_modes import damped_modes as damped_modes
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
@@ -78,6 +80,8 @@ _PUBLIC = {  # module, or module:attribute of another name
     "draw_ring_speed": "frbcli.plot.axes:ring_speed",
     "draw_spectrum": "frbcli.plot.axes:spectrum",
     "draw_waterfall": "frbcli.plot.axes:waterfall",
+    "critical_map": "frbcli.linear.critical_map",
+    "damped_modes": "frbcli.linear.damped_modes",
     "find_events": "frbcli.analysis.events",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",

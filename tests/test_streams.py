@@ -60,6 +60,7 @@ SLOW = [
     Command(("waterfall", "run.h5", "--window", "10 ms"), "out"),
     Command(("plot", "run.h5"), "out"),
     Command(("export", "run.h5"), "out"),
+    Command(("report", "run.h5"), "out"),
 ]  # fmt: skip
 LOST = [("out", fault) for fault in SHELL] + [("err", fault) for fault in SHELL] + [("out err", f) for f in SHELL]
 

@@ -34,6 +34,7 @@ PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 @click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
 @click.option("--signal", help="Of a displacement: disk or journal; journal_NAME of a bearing.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Of a law: set a key of CASE. Repeatable.")
+@click.option("--animate", is_flag=True, help="Of an orbit: a moving picture, GIF, or MP4 where ffmpeg is installed.")
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-WHAT.png]")
 @picture_options
 @output_options
@@ -45,6 +46,7 @@ def command(
     over: Over,
     signal: str | None,
     settings: tuple[str, ...],
+    animate: bool,
     output: Path | None,
     terminal: Terminal,
 ) -> None:
@@ -52,6 +54,8 @@ def command(
     from frbcli.plot.style import check_picture
     from frbcli.results.store import read_run
 
+    if animate and (what != "orbit" or len(run_files) > 1):
+        raise click.UsageError("--animate belongs to --what orbit, of one run.")
     if what == LAW:
         if len(run_files) > 1:
             raise click.UsageError("A law is of one case.")
@@ -69,12 +73,27 @@ def command(
         raise click.UsageError("--signal belongs to --what displacement.")
     if over != "time" and what not in CURVES:
         raise click.UsageError(f"--over belongs to --what {', '.join(CURVES)}.")
-    target = output or beside(run_files[0], f"-{what}.png")
+    target = output or beside(run_files[0], f"-{what}.gif" if animate else f"-{what}.png")
+    if animate:
+        _animate(run_files[0], target, (from_time, to_time), terminal)
+        return
     check_picture(target)
     runs = [read_run(path) for path in run_files]
     draw_wanted(terminal, lambda: _figure(what, runs, (from_time, to_time), over, signal), target, what)
     first = run_files[0] if len(run_files) == 1 else list(run_files)
     terminal.emit({"command": "plot", "run": first, "output": target, "what": what})
+
+
+def _animate(
+    run_file: Path, target: Path, span: tuple[float | None, float | None], terminal: Terminal
+) -> None:
+    from frbcli.plot.animation import animate_orbits, check_animation
+    from frbcli.results.store import read_run
+
+    check_animation(target)
+    animate_orbits(read_run(run_file), target, *span)
+    terminal.result(f"orbit: {target}")
+    terminal.emit({"command": "plot", "run": run_file, "output": target, "what": "orbit"})
 
 
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
