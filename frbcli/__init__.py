@@ -12,6 +12,8 @@ from frbcli.version import __version__
 
 if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.events import find_events as find_events
+    from frbcli.analysis.measured import Measurement as Measurement
+    from frbcli.analysis.measured import measured_run as measured_run
     from frbcli.analysis.order_tracking import order_track as order_track
     from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.case.load import case_from_dict as case_from_dict
@@ -50,7 +52,9 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.runs.run import runup as runup
     from frbcli.scene.plan import make_plan as make_plan
     from frbcli.studies.accuracy import accuracy as accuracy
+    from frbcli.studies.against import against_measured as against_measured
     from frbcli.studies.compare import compare as compare
+    from frbcli.studies.fit import fit as fit
     from frbcli.studies.sweep.sweep import sweep as sweep
 
 
@@ -65,9 +69,11 @@ _PUBLIC = {  # module, or module:attribute of another name
     "BearingModel": "frbcli.film.bearing_model.model",
     "CavitationLaw": "frbcli.film.cavitation.law:Law",
     "CavitationKey": "frbcli.film.cavitation.law:Key",
+    "Measurement": "frbcli.analysis.measured",
     "accuracy": "frbcli.studies.accuracy",
     "add_bearing": "frbcli.case.schema",
     "add_law": "frbcli.case.schema",
+    "against_measured": "frbcli.studies.against",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.load",
     "compare": "frbcli.studies.compare",
@@ -83,9 +89,11 @@ _PUBLIC = {  # module, or module:attribute of another name
     "critical_map": "frbcli.linear.critical_map",
     "damped_modes": "frbcli.linear.damped_modes",
     "find_events": "frbcli.analysis.events",
+    "fit": "frbcli.studies.fit",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",
+    "measured_run": "frbcli.analysis.measured",
     "natural_modes": "frbcli.linear.modes",
     "order_track": "frbcli.analysis.order_tracking",
     "read_run": "frbcli.results.store",

@@ -59,6 +59,7 @@ SLOW = [
              "rotor.unbalance=1 g*mm,2 g*mm", "--no-picture"), "out err"),
     Command(("waterfall", "run.h5", "--window", "10 ms"), "out"),
     Command(("plot", "run.h5"), "out"),
+    Command(("fit", "jeffcott", "--measured", "run.h5", "--vary", "oil.viscosity", *SHORT), "err", 2),
     Command(("export", "run.h5"), "out"),
     Command(("report", "run.h5"), "out"),
 ]  # fmt: skip

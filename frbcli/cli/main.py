@@ -32,6 +32,7 @@ COMMANDS = {
     "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits or displacements of runs."),
     "compare": ("frbcli.cli.compare", "Run one case with several models and compare them."),
     "bearing": ("frbcli.cli.bearing", "A bearing's sheet over speed or eccentricity: position, K, C, loss, flow."),
+    "fit": ("frbcli.cli.fit", "Find numbers of a case from a measured run-up."),
     "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
     "response": ("frbcli.cli.response", "Linear unbalance response: amplitudes, phases, bearing forces over speed."),
     "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
