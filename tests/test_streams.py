@@ -60,7 +60,9 @@ SLOW = [
              "rotor.unbalance=1 g*mm,2 g*mm", "--no-picture"), "out err"),
     Command(("waterfall", "run.h5", "--window", "10 ms"), "out"),
     Command(("plot", "run.h5"), "out"),
+    Command(("fit", "jeffcott", "--measured", "run.h5", "--vary", "oil.viscosity", *SHORT), "err", 2),
     Command(("export", "run.h5"), "out"),
+    Command(("report", "run.h5"), "out"),
 ]  # fmt: skip
 LOST = [("out", fault) for fault in SHELL] + [("err", fault) for fault in SHELL] + [("out err", f) for f in SHELL]
 

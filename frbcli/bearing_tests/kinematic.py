@@ -22,6 +22,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import Loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
+from frbcli.html import Tabular
 from frbcli.scene.remedies import advised, film_advice
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class KinematicResult:
 
 
 @dataclass(frozen=True)
-class KinematicTest:
+class KinematicTest(Tabular):
     """A test, "rotation", "squeeze" or "whirl", with one result per cavitation model, in their order; complete: not
     interrupted before the last of them."""
 

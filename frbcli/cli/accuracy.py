@@ -11,6 +11,7 @@ import click
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import live_lines, progress_line
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import TIME_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -38,6 +39,7 @@ RESOLVED = 0.01  # Hz; resolution of the table
 @click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-accuracy.png, here]")
 @click.option("--picture/--no-picture", default=True, help="A picture of error over cost.")
+@picture_options
 @output_options
 def command(
     case: Case,

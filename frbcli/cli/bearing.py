@@ -12,6 +12,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import counting, live_lines
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import LOAD_OPTION, SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -43,6 +44,7 @@ SETTLED = "Coefficients of mass-conserving films are of oil that has settled; th
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all numbers as a table, too.")
 @click.option("--ross", metavar="FILE", type=OUTPUT, help="Write stiffness and damping over speed as ROSS reads them.")
+@picture_options
 @output_options
 def command(
     case: Case,

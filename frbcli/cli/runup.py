@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.transient import run_options, transient
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     help="Run again with other ramps, steps and cells: between which speeds a whirl begins.",
 )
 @click.option("--explain", is_flag=True, help="Name the Hopf point or fold behind each onset and offset of a whirl.")
+@picture_options
 @output_options
 def command(
     case: Case,

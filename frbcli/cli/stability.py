@@ -13,9 +13,11 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.modes import emit_modes, modes_document, tell_modes
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
 from frbcli.cli.runs import OUTPUT
+from frbcli.cli.shapes import emit_shapes
 from frbcli.cli.stability_table import tell_points
 
 if TYPE_CHECKING:
@@ -30,13 +32,17 @@ if TYPE_CHECKING:
               help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [60 over the range of the case]')  # fmt: skip
 @click.option("--stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
+@click.option("--shapes", type=SPEED_OPTION, metavar="SPEED",
+              help='Only the damped modes at this rotor speed, with their shapes, e.g. "200 Hz".')  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
 @click.option("--no-picture", is_flag=True, help="No Campbell diagram.")
+@picture_options
 @output_options
 def command(
     case: Case,
     speeds: tuple[float, ...],
     stiffness: float | None,
+    shapes: float | None,
     output: Path | None,
     no_picture: bool,
     terminal: Terminal,
@@ -52,9 +58,15 @@ def command(
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    drawn = "campbell" if stiffness is None else "modes"
+    if shapes is not None and (stiffness is not None or speeds):
+        raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")
+    drawn = "shapes" if shapes is not None else "campbell" if stiffness is None else "modes"
     picture = None if no_picture else output or Path(f"{_file_name(case.name)}-{drawn}.png")
     check_place(picture)
+    if shapes is not None:
+        with compilation_shown(terminal, case):
+            emit_shapes(terminal, case, shapes, picture)
+        return None
     if stiffness is not None:
         emit_modes(terminal, case, stiffness, speeds, picture)
         return None

@@ -21,6 +21,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.html import Tabular
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
@@ -131,7 +132,7 @@ class Threshold:
 
 
 @dataclass(frozen=True)
-class Stability:
+class Stability(Tabular):
     """Linear stability of a case.
 
     points: at the speeds asked for; sweep: at all speeds that were computed, ascending; threshold: None if none lies

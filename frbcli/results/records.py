@@ -43,6 +43,11 @@ _UNITS = {
     re.compile(f"(eccentricity|oil_fraction){_NAME}"): "",
     re.compile(f"(journal|disk|ring){_NAME}_[xy]_m"): "m",
     re.compile(f"ring_speed{_NAME}_Hz"): "Hz",
+    re.compile(f"film_force{_NAME}_[xy]_N"): "N",
+    re.compile(f"film_thickness{_NAME}_m"): "m",
+    re.compile(f"power{_NAME}_W"): "W",
+    re.compile(f"torque{_NAME}_N_m"): "N m",
+    re.compile(f"oil_flow{_NAME}_m3_s"): "m^3/s",
 }
 _KIND = re.compile("[a-z]{1,30}(-[a-z]{1,30}){0,3}")
 _KEY = re.compile("[A-Za-z][A-Za-z0-9_-]{0,99}")

@@ -18,6 +18,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
+from frbcli.html import Tabular
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.run import earlier_run, is_interrupted, runup
@@ -84,7 +85,7 @@ class VariantResult:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Tabular):
     """Results in the order of the variants; the first is what the others are compared with.
 
     status: "finished", or why not all variants have a result: "interrupted", "not-converged", "input-error"; message
