@@ -69,7 +69,7 @@ def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
 
 def _frequencies(axes: Axes, found: LimitCycles) -> None:
     speeds = np.array([point.speed_Hz for point in found.equilibria])
-    ends = np.array([0.0, speeds.max(initial=1.0)])
+    ends = np.array([speeds.min(initial=speeds.max()), speeds.max()])
     axes.plot(ends, 0.5 * ends, color=GREY, linestyle=(0, (1, 2)), label="ω/2")
     rings = np.array([point.ring_speeds_Hz for point in found.equilibria])
     for ring in range(rings.shape[1] if rings.size else 0):
@@ -84,7 +84,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
         points = found.of(kind)
         at = [point.speed_Hz for point in points], [point.frequency_Hz for point in points]
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
-    axes.set_xlim(0.0, float(ends[1]))
+    axes.set_xlim(float(ends[0]), float(ends[1]))
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("rotor speed in Hz")
     axes.set_ylabel("frequency in Hz")

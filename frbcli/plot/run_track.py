@@ -13,7 +13,7 @@ from frbcli.results.store import Run
 
 Array = NDArray[np.float64]
 
-SPANS = 800  # of a run
+SPANS = 200  # of a run: longer than the periods of its whirl
 ECCENTRICITY, SPEED = "eccentricity", "speed_Hz"
 
 
