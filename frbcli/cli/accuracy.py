@@ -10,7 +10,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines, progress_line
+from frbcli.cli.live import live_lines, of_runs
 from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import TIME_OPTION
@@ -56,8 +56,8 @@ def command(
     target = output or here(case.name, "-accuracy.png")
     check_place(target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        watch = None if show is None else lambda rung, progress: show(f"{rung.name}\n{progress_line(progress)}")
-        found = accuracy(case, until, theory, coupling, watch)
+        tell = of_runs(terminal, show)
+        found = accuracy(case, until, theory, coupling, lambda rung, *rest: tell(rung.name, *rest))
     _report(found, terminal)
     reference = _document(found.reference) | {"compared_with": _rung(found.coarser)}
     reference["change"] = reference.pop("error")

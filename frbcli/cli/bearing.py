@@ -68,9 +68,9 @@ def command(
     require_place(csv, ross)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         if over == "speed":
-            found = bearing_sheet(case, speeds or None, load, counting(show))
+            found = bearing_sheet(case, speeds or None, load, counting(terminal, show))
         else:
-            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=counting(show))
+            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=counting(terminal, show))
     _tell(terminal, found)
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)

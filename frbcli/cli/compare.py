@@ -10,7 +10,7 @@ import click
 from frbcli.cli.against import beside_measured
 from frbcli.cli.common import Names, Terminal, case_or_run_argument, output_options
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines, progress_line
+from frbcli.cli.live import live_lines, of_runs
 from frbcli.cli.measured import measured_options
 from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
@@ -90,8 +90,10 @@ def command(
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
     check_place(target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
-        found = compare(case, cavitation, theory, test, keep, watch, coupling)
+        tell = of_runs(terminal, show)
+        found = compare(
+            case, cavitation, theory, test, keep, lambda variant, *rest: tell(variant.name, *rest), coupling
+        )
     _report(found, bool(coupling), terminal)
     results = [_document(result) for result in found.results]
     whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}

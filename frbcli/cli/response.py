@@ -64,7 +64,7 @@ def command(
     require_place(csv)
     tracks = () if run_file is None else _tracks(run_file)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = response(case, speeds or None, counting(show))
+        found = response(case, speeds or None, counting(terminal, show))
     _tell(terminal, found, bool(speeds))
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)

@@ -12,6 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.live import counting, live_lines
 from frbcli.cli.modes import emit_modes, modes_document, tell_modes
 from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
@@ -70,8 +71,8 @@ def command(
     if stiffness is not None:
         emit_modes(terminal, case, stiffness, speeds, picture)
         return None
-    with compilation_shown(terminal, case):
-        found = stability(case, speeds or None)
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = stability(case, speeds or None, counting(terminal, show))
         kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
     _tell(terminal, found, kind, bool(speeds))
     if picture is not None:

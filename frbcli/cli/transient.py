@@ -13,7 +13,7 @@ import click
 from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.events import EVENT_COLUMNS, event_row
-from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, live_lines, progress_line
+from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, TOLD_EVERY_s, live_lines, progress_line
 from frbcli.cli.onset_spread import spread_shown
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
@@ -33,7 +33,6 @@ EXIT_CODES = {"finished": 0, "input-error": 2, "interrupted": 130}
 ENDED_EARLY = 3  # for any other reason, which is named
 SUMMARY = "-summary.png"
 TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
-TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
 SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
 

@@ -152,18 +152,21 @@ class Stability(Tabular):
         return pd.DataFrame([_row(point) for point in self.points])
 
 
-def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability:
+def stability(
+    case: Case, speeds_Hz: Sequence[float] | None = None, observe: Callable[[int, int], None] | None = None
+) -> Stability:
     """Resting positions, linear coefficients and eigenvalues at speeds_Hz (> 0), and the threshold of stability.
 
     The threshold is sought in the speed range of the case, whatever speeds_Hz; without speeds_Hz the points are those
-    of this sweep. A speed without a resting position gives a point that says so.
+    of this sweep. A speed without a resting position gives a point that says so. observe: called with each speed's
+    number and their number.
 
     Raises InputError if the case cannot be modelled or a speed is not positive.
     """
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
-    system, sweep = stability_points(case, speeds)
+    system, sweep = stability_points(case, speeds, observe)
     found = {point.speed_Hz: point for point in sweep}
     threshold, note = _threshold(case, system, sweep)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
