@@ -1,4 +1,4 @@
-"""Error over CPU time of films on cells, as the plan chooses them for targets of 2e-2 to 5e-4, and before oil was carried
+"""Error over CPU time of films on cells, for targets of 2e-2 to 5e-4, and before oil was carried
 with second order: draws docs/images/work-precision.png from the measurements beside this file.
 
 `cd tests && python -m accuracy.work_precision`. CPU time of the time loop of one core, the smaller of two runs; largest
