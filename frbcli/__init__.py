@@ -12,6 +12,8 @@ from frbcli.version import __version__
 
 if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.events import find_events as find_events
+    from frbcli.analysis.measured import Measurement as Measurement
+    from frbcli.analysis.measured import measured_run as measured_run
     from frbcli.analysis.order_tracking import order_track as order_track
     from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.case.load import case_from_dict as case_from_dict
@@ -23,6 +25,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.case.schema import remove_bearing as remove_bearing
     from frbcli.case.schema import remove_law as remove_law
     from frbcli.case.shipped import shipped_cases as shipped_cases
+    from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
     from frbcli.errors import InputError as InputError
@@ -30,16 +33,30 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.errors import RunFileError as RunFileError
     from frbcli.linear.bearing_sheet import bearing_sheet as bearing_sheet
     from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
+    from frbcli.linear.critical_map import critical_map as critical_map
+    from frbcli.linear.damped_modes import damped_modes as damped_modes
     from frbcli.linear.heat import warm_machine as warm_machine
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
+    from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
+    from frbcli.plot.axes import campbell as draw_campbell  # noqa: F401
+    from frbcli.plot.axes import eccentricity as draw_eccentricity  # noqa: F401
+    from frbcli.plot.axes import film_signal as draw_film_signal  # noqa: F401
+    from frbcli.plot.axes import orbit as draw_orbit  # noqa: F401
+    from frbcli.plot.axes import response as draw_response  # noqa: F401
+    from frbcli.plot.axes import ring_speed as draw_ring_speed  # noqa: F401
+    from frbcli.plot.axes import spectrum as draw_spectrum  # noqa: F401
+    from frbcli.plot.axes import waterfall as draw_waterfall  # noqa: F401
+    from frbcli.report.page import write_report as write_report
     from frbcli.results.store import read_run as read_run
     from frbcli.runs.run import rundown as rundown
     from frbcli.runs.run import runup as runup
     from frbcli.scene.plan import make_plan as make_plan
     from frbcli.studies.accuracy import accuracy as accuracy
+    from frbcli.studies.against import against_measured as against_measured
     from frbcli.studies.compare import compare as compare
+    from frbcli.studies.fit import fit as fit
     from frbcli.studies.sweep.sweep import sweep as sweep
 
 
@@ -54,16 +71,32 @@ _PUBLIC = {  # module, or module:attribute of another name
     "BearingModel": "frbcli.film.bearing_model.model",
     "CavitationLaw": "frbcli.film.cavitation.law:Law",
     "CavitationKey": "frbcli.film.cavitation.law:Key",
+    "Measurement": "frbcli.analysis.measured",
     "accuracy": "frbcli.studies.accuracy",
     "add_bearing": "frbcli.case.schema",
     "add_law": "frbcli.case.schema",
+    "against_measured": "frbcli.studies.against",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.load",
     "compare": "frbcli.studies.compare",
+    "draw_bearing": "frbcli.plot.axes:bearing",
+    "draw_campbell": "frbcli.plot.axes:campbell",
+    "draw_eccentricity": "frbcli.plot.axes:eccentricity",
+    "draw_film_signal": "frbcli.plot.axes:film_signal",
+    "draw_orbit": "frbcli.plot.axes:orbit",
+    "draw_response": "frbcli.plot.axes:response",
+    "draw_ring_speed": "frbcli.plot.axes:ring_speed",
+    "draw_spectrum": "frbcli.plot.axes:spectrum",
+    "draw_waterfall": "frbcli.plot.axes:waterfall",
+    "critical_map": "frbcli.linear.critical_map",
+    "damped_modes": "frbcli.linear.damped_modes",
     "find_events": "frbcli.analysis.events",
+    "fit": "frbcli.studies.fit",
+    "limit_cycles": "frbcli.cycles.limit_cycles",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",
+    "measured_run": "frbcli.analysis.measured",
     "natural_modes": "frbcli.linear.modes",
     "order_track": "frbcli.analysis.order_tracking",
     "read_run": "frbcli.results.store",
@@ -81,6 +114,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "warm_machine": "frbcli.linear.heat",
     "whirl": "frbcli.bearing_tests.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
+    "write_report": "frbcli.report.page",
 }
 
 __all__ = ["__version__", *_PUBLIC]

@@ -27,8 +27,9 @@ LIBRARY_ROOMS = {
     "pydantic": {"case"},
     "pydantic_core": {"case"},
     "h5py": {"results"},
+    "jinja2": {"report"},
 }
-HEAVY = ("numpy", "scipy", "numba", "pydantic", "pint", "matplotlib", "pandas", "h5py", "skfem", "rich")
+HEAVY = ("numpy", "scipy", "numba", "pydantic", "pint", "matplotlib", "pandas", "h5py", "skfem", "rich", "jinja2")
 
 
 def documented_dependencies() -> dict[str, set[str]]:

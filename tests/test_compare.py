@@ -159,7 +159,8 @@ def test_ctrl_c_ends_the_comparison_with_the_run_under_way(monkeypatch: pytest.M
     monkeypatch.setattr(march, "BUDGET", 60)
     seen: list[str] = []
 
-    def observe(variant: Variant, _: Progress) -> None:
+    def observe(variant: Variant, number: int, count: int, _: Progress) -> None:
+        assert 1 <= number <= count == 2
         seen.append(variant.name)
         if seen.count("sommerfeld short") == 2:
             signal.raise_signal(signal.SIGINT)

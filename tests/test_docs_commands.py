@@ -100,8 +100,10 @@ def test_a_line_runs(line: str, folder: Path, tmp_path: Path) -> None:
     """Each in a process; what takes longer than a minute is interrupted, and says so."""
     place = shutil.copytree(folder, tmp_path / "here")
     words = words_of(line)
-    if "runup" in words or "rundown" in words:
+    if words[0] in ("runup", "rundown"):
         words.append("--force")
+    if words[0] == "cases" and "-o" in words:  # frb does not write over a file of one's own
+        (place / words[words.index("-o") + 1]).unlink(missing_ok=True)
     process = subprocess.Popen(
         [sys.executable, "-m", "frbcli", *words], cwd=place, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

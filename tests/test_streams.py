@@ -48,6 +48,7 @@ SLOW = [
     Command(("stability", "jeffcott", "--speed", "30 Hz", "--set", "film.theory=short", "--no-picture"), "out"),
     Command(("bearing", "jeffcott", "--speed", "30 Hz", "--no-picture"), "out"),
     Command(("response", "jeffcott", "--speed", "30 Hz", "--set", "film.theory=short", "--no-picture"), "out"),
+    Command(("limit-cycles", "jeffcott", "--set", "film.theory=short", "--no-picture"), "out"),
     Command(("rotation", "bearing-axial-groove", *COARSE), "out"),
     Command(("squeeze", "squeeze", *MOMENT), "out"),
     Command(("whirl", "whirl", *MOMENT), "out"),
@@ -59,7 +60,9 @@ SLOW = [
              "rotor.unbalance=1 g*mm,2 g*mm", "--no-picture"), "out err"),
     Command(("waterfall", "run.h5", "--window", "10 ms"), "out"),
     Command(("plot", "run.h5"), "out"),
+    Command(("fit", "jeffcott", "--measured", "run.h5", "--vary", "oil.viscosity", *SHORT), "err", 2),
     Command(("export", "run.h5"), "out"),
+    Command(("report", "run.h5"), "out"),
 ]  # fmt: skip
 LOST = [("out", fault) for fault in SHELL] + [("err", fault) for fault in SHELL] + [("out err", f) for f in SHELL]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,14 +67,17 @@ class _Moment:
     gap: float
 
 
-def film_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> Course:
-    """The film along a path from a full one at times[0]. times: (n,) s, n at least 2.
+def film_course(
+    case: Case, plan: KinematicPlan, path: Path, times: Array, observe: Callable[[int], None] | None = None
+) -> Course:
+    """The film along a path from a full one at times[0]. times: (n,) s, n at least 2; observe: called with the number
+    of each moment, from 1 on.
 
     A film that does not converge ends the course with a problem; NotConverged is raised if that is at once.
     """
     path = path_seen_from(path, plan.turning)
     film = _film(case, plan, path, times)
-    moments, problem = _moments(case, plan, film, path, times)
+    moments, problem = _moments(case, plan, film, path, times, observe)
     worst = max(moments, key=_size)
     if plan.remembers:
         error, spent = _error_of_course(case, plan, path, times[: len(moments) + 1], moments)
@@ -90,12 +94,17 @@ def film_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> Co
     )
 
 
-def _moments(case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array) -> tuple[list[_Moment], str]:
+def _moments(
+    case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array,
+    observe: Callable[[int], None] | None = None,
+) -> tuple[list[_Moment], str]:  # fmt: skip
     """Those until the film does not converge, and why it does not. Raises NotConverged if there are none."""
     moments: list[_Moment] = []
     try:
         for moment in march(film, path, times, film_at=_film_at(case, plan, film)):
             moments.append(_moment(case, plan, film, moment))
+            if observe is not None:
+                observe(len(moments))
     except NotConverged as failure:
         if not moments:
             raise

@@ -22,10 +22,13 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import Loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
+from frbcli.html import Tabular
 from frbcli.scene.remedies import advised, film_advice
 
 if TYPE_CHECKING:
     import pandas as pd
+
+Observer = Callable[[int, int], None]
 
 OK, NOT_CONVERGED = "ok", "not-converged"
 FEWEST_TIMES = 8
@@ -68,7 +71,7 @@ class KinematicResult:
 
 
 @dataclass(frozen=True)
-class KinematicTest:
+class KinematicTest(Tabular):
     """A test, "rotation", "squeeze" or "whirl", with one result per cavitation model, in their order; complete: not
     interrupted before the last of them."""
 
@@ -86,42 +89,66 @@ class KinematicTest:
         return pd.concat([_table(result) for result in self.results], ignore_index=True)
 
 
-def rotation(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
+def rotation(
+    case: Case, cavitations: Sequence[str] = (), observe: Observer | None = None
+) -> KinematicTest:
     """A journal that turns at a displacement, or rests under a load; () stands for the case's own model.
 
-    Raises InputError if the case does not fit; a model that does not converge is a result with that status. Ctrl-C ends
+    observe: called with the number of each moment of each model, and how many there are. Raises InputError if the case
+    does not fit; a model that does not converge is a result with that status. Ctrl-C ends
     it with the models that are done, or is raised on if there are none.
     """
-    return _test(case, cavitations, "rotation", _rotation)
+    return _test(case, cavitations, "rotation", _rotation, observe)
 
 
-def squeeze(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
+def squeeze(
+    case: Case, cavitations: Sequence[str] = (), observe: Observer | None = None
+) -> KinematicTest:
     """A journal that moves up and down (4.47) for the periods of the case; see rotation."""
-    return _test(case, cavitations, "squeeze", _course)
+    return _test(case, cavitations, "squeeze", _course, observe)
 
 
-def whirl(case: Case, cavitations: Sequence[str] = ()) -> KinematicTest:
+def whirl(
+    case: Case, cavitations: Sequence[str] = (), observe: Observer | None = None
+) -> KinematicTest:
     """A journal that moves on a circle (4.48), (4.49) for the periods of the case; see rotation."""
-    return _test(case, cavitations, "whirl", _course)
+    return _test(case, cavitations, "whirl", _course, observe)
+
+
+Tell = Callable[[int], None]
 
 
 def _test(
-    case: Case, cavitations: Sequence[str], test: str, solve: Callable[[Case, KinematicPlan], KinematicResult]
-) -> KinematicTest:
+    case: Case, cavitations: Sequence[str], test: str,
+    solve: Callable[[Case, KinematicPlan, Tell | None], KinematicResult], observe: Observer | None,
+) -> KinematicTest:  # fmt: skip
     own = None if case.film.bearing_model else case.film.cavitation
     names: dict[str | None, None] = dict.fromkeys(cavitations or (own,))
     plans = [kinematic_plan(case, name, test) for name in names]
     results: list[KinematicResult] = []
     try:
-        for plan in plans:
-            results.append(solve(case, plan))
+        for number, plan in enumerate(plans):
+            results.append(solve(case, plan, None if observe is None else _telling(observe, number, plans, case)))
     except KeyboardInterrupt:
         if not results:
             raise
     return KinematicTest(case, test, tuple(results), len(results) == len(plans))
 
 
-def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
+def _telling(observe: Observer, done: int, plans: Sequence[KinematicPlan], case: Case) -> Tell:
+    """What counts the moments of one model on behind those of the models before it."""
+    counts = [_moment_count(case, plan) for plan in plans]
+    before, whole = sum(counts[:done]), sum(counts)
+    return lambda number: observe(before + number, whole)
+
+
+def _moment_count(case: Case, plan: KinematicPlan) -> int:
+    """Of one model."""
+    assert case.motion is not None
+    return 1 if plan.test == "rotation" else max(round(case.motion.periods * plan.steps), FEWEST_TIMES)
+
+
+def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
     assert case.motion is not None
     motion, begun = case.motion, time.process_time()
     omega = 2.0 * math.pi * (motion.speed or 0.0)
@@ -150,6 +177,8 @@ def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
                 moment = film_moment(case, plan, lasting, plan.cells)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
+    if tell is not None:
+        tell(1)
     return KinematicResult(
         cavitation=plan.cavitation,
         status=OK,
@@ -166,7 +195,7 @@ def _rotation(case: Case, plan: KinematicPlan) -> KinematicResult:
     )
 
 
-def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
+def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
     assert case.motion is not None
     motion, begun = case.motion, time.process_time()
     assert motion.eccentricity is not None
@@ -174,11 +203,14 @@ def _course(case: Case, plan: KinematicPlan) -> KinematicResult:
     omega = 2.0 * math.pi * (motion.speed or 0.0)
     make = squeeze_path if plan.test == "squeeze" else whirl_path
     path = make(motion.eccentricity, motion.frequency, omega)
-    count = max(round(motion.periods * plan.steps), FEWEST_TIMES)
+    count = _moment_count(case, plan)
     times = np.linspace(0.0, motion.periods / motion.frequency, count + 1)
     try:
         with advised(with_model(case, plan.cavitation)):
-            course = (model_course if plan.model is not None else film_course)(case, plan, path, times)
+            if plan.model is not None:
+                course = model_course(case, plan, path, times)
+            else:
+                course = film_course(case, plan, path, times, tell)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
     worst = int(np.argmax(np.hypot(*course.history.force.T)))

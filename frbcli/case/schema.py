@@ -44,6 +44,7 @@ from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
+from frbcli.html import html_table
 from frbcli.units import NUMBER
 
 DEFAULT_HOLD = 0.5
@@ -53,6 +54,7 @@ STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
 
 Confirmation = Literal["surface-speed", "gap-growth", "clearance"]
+FilmSignal = Literal["force", "film-thickness", "power", "torque", "oil-flow"]
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
 
 
@@ -178,6 +180,12 @@ class Output(Model):
     step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = Field(
         default=OUTPUT_STEP, description="between the samples of a run file"
     )
+    signals: tuple[FilmSignal, ...] = Field(
+        default=(),
+        description="what a run records of each film beside its eccentricity: the force on the journal, the smallest "
+        "film thickness, the power that goes into the film, its torque on the journal, the oil that leaves it (of "
+        "films on cells)",
+    )
 
 
 _UNCOMPUTED = {"name": "", "title": "", "confirm": ()}
@@ -234,6 +242,13 @@ class Case(Model):
     def __eq__(self, other: object) -> bool:
         """Whether all values are equal."""
         return isinstance(other, Case) and self.__dict__ == other.__dict__
+
+    def _repr_html_(self) -> str:
+        """In a notebook: its values in SI and as they are written."""
+        from frbcli.case.listing import values  # it is made of cases
+
+        told = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
+        return html_table(self.title or self.name, ("key", "SI", "", "reads"), told, len(told))
 
     def same_run(self, other: Case) -> bool:
         """Whether `other` is the same machine and run; labels may differ."""

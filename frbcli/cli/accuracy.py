@@ -10,7 +10,8 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines, progress_line
+from frbcli.cli.live import live_lines, of_runs
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import TIME_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -38,6 +39,7 @@ RESOLVED = 0.01  # Hz; resolution of the table
 @click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-accuracy.png, here]")
 @click.option("--picture/--no-picture", default=True, help="A picture of error over cost.")
+@picture_options
 @output_options
 def command(
     case: Case,
@@ -54,20 +56,28 @@ def command(
     target = output or here(case.name, "-accuracy.png")
     check_place(target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        watch = None if show is None else lambda rung, progress: show(f"{rung.name}\n{progress_line(progress)}")
-        found = accuracy(case, until, theory, coupling, watch)
+        tell = of_runs(terminal, show)
+        found = accuracy(case, until, theory, coupling, lambda rung, *rest: tell(rung.name, *rest))
     _report(found, terminal)
     reference = _document(found.reference) | {"compared_with": _rung(found.coarser)}
     reference["change"] = reference.pop("error")
-    terminal.emit({
-        "command": "accuracy",
-        "case": case.name,
-        **({} if found.complete else {"status": "interrupted"}),
-        "until_s": found.until_s,
-        "reference": reference,
-        "ladder": [_document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder],
-        **({"failed": [_rung(rung) | {"message": problem} for rung, problem in found.failed]} if found.failed else {}),
-    })
+    terminal.emit(
+        {
+            "command": "accuracy",
+            "case": case.name,
+            **({} if found.complete else {"status": "interrupted"}),
+            "until_s": found.until_s,
+            "reference": reference,
+            "ladder": [
+                _document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder
+            ],
+            **(
+                {"failed": [_rung(rung) | {"message": problem} for rung, problem in found.failed]}
+                if found.failed
+                else {}
+            ),
+        }
+    )
     if picture and found.ladder:
         from frbcli.plot.accuracy import accuracy_figure
 

@@ -12,6 +12,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import counting, live_lines
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import LOAD_OPTION, SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -43,6 +44,7 @@ SETTLED = "Coefficients of mass-conserving films are of oil that has settled; th
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all numbers as a table, too.")
 @click.option("--ross", metavar="FILE", type=OUTPUT, help="Write stiffness and damping over speed as ROSS reads them.")
+@picture_options
 @output_options
 def command(
     case: Case,
@@ -66,9 +68,9 @@ def command(
     require_place(csv, ross)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         if over == "speed":
-            found = bearing_sheet(case, speeds or None, load, counting(show))
+            found = bearing_sheet(case, speeds or None, load, counting(terminal, show))
         else:
-            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=counting(show))
+            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=counting(terminal, show))
     _tell(terminal, found)
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)

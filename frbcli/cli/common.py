@@ -18,11 +18,12 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
+from frbcli.cli.picture_options import Look, look_of
 from frbcli.cli.streams import OutputLost
 from frbcli.errors import printable
 
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+RUN_SUFFIX = ".h5"
+DEFAULT_LOOK = Look()
 PIPE_WIDTH = 80  # columns of a table in a pipe or a file
 
 _JSON = "frbcli.json"
@@ -49,6 +52,7 @@ class Terminal:
 
     json: bool = False
     quiet: bool = False
+    look: Look = DEFAULT_LOOK  # of the pictures
 
     @property
     def live(self) -> bool:
@@ -143,7 +147,9 @@ class Names(click.ParamType[tuple[str, ...]]):
         return tuple(name.strip() for name in names if name.strip())
 
 
-def case_argument(function: Function) -> Function:
+def case_argument(
+    function: Function, load: Callable[..., object] | None = None, metavar: str = "CASE"
+) -> Function:
     """Give a command the argument CASE and the option --set; it receives the loaded `case: Case`."""
     settings = click.option(
         "--set",
@@ -154,8 +160,13 @@ def case_argument(function: Function) -> Function:
         callback=_remember_settings,
         help="Set a key of the case, e.g. --set bearing.clearance='40 um'. Repeatable.",
     )
-    case = click.argument("case", metavar="CASE", callback=_load)
+    case = click.argument("case", metavar=metavar, callback=load or _load)
     return case(settings(function))
+
+
+def case_or_run_argument(function: Function) -> Function:
+    """As case_argument; a file of a run, RUN.h5, is given as its path."""
+    return case_argument(function, _load_or_path, "CASE|RUN.h5")
 
 
 def output_options(function: Function) -> Function:
@@ -181,13 +192,17 @@ def _remember_json(context: click.Context, _: click.Parameter, as_json: bool) ->
 
 
 def _terminal(context: click.Context, _: click.Parameter, quiet: bool) -> Terminal:
-    return Terminal(json=bool(context.meta.get(_JSON)), quiet=quiet)
+    return Terminal(json=bool(context.meta.get(_JSON)), quiet=quiet, look=look_of(context))
 
 
 def _load(context: click.Context, _: click.Parameter, source: str) -> Case:
     from frbcli.case.load import load_case
 
     return load_case(source, context.meta.get(_SETTINGS, ()))
+
+
+def _load_or_path(context: click.Context, option: click.Parameter, source: str) -> Case | Path:
+    return Path(source) if source.endswith(RUN_SUFFIX) else _load(context, option, source)
 
 
 def _as_json(letter: str) -> str:

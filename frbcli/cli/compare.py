@@ -8,15 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.against import beside_measured
+from frbcli.cli.common import Names, Terminal, case_or_run_argument, output_options
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines, progress_line
+from frbcli.cli.live import live_lines, of_runs
+from frbcli.cli.measured import measured_options
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
-from frbcli.cli.runs import OUTPUT, here
+from frbcli.cli.runs import OUTPUT, RUN, here
 from frbcli.cli.transient import exit_code
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
+    from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
     from frbcli.studies.compare import Comparison, VariantResult
 
@@ -37,7 +41,7 @@ EXPLANATION = (
 
 
 @click.command()
-@case_argument
+@case_or_run_argument
 @click.option("--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]")
 @click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [that of CASE]")
 @click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
@@ -47,9 +51,14 @@ EXPLANATION = (
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
 @click.option("--picture/--no-picture", default=True, help="A picture of all.")
 @click.option("--keep", metavar="DIR", type=OUTPUT, help="Keep the run files in this directory.")
+@click.option("--measured", "file", metavar="FILE", type=RUN,
+              help="Of a run: a measured run-up to set beside it, CSV, WAV or MAT, see --x.")  # fmt: skip
+@click.option("--signal", default="journal", show_default=True, help="Of the run beside it: journal or journal_NAME.")
+@measured_options
+@picture_options
 @output_options
 def command(
-    case: Case,
+    case: Case | Path,
     cavitation: tuple[str, ...],
     theory: tuple[str, ...],
     coupling: tuple[str, ...],
@@ -58,15 +67,24 @@ def command(
     output: Path | None,
     picture: bool,
     keep: Path | None,
+    file: Path | None,
+    signal: str,
+    measurement: Measurement | None,
     terminal: Terminal,
 ) -> int:
-    """Run CASE with several models of its films: events, deviations and cost in one table and one picture.
+    """Run CASE with several models of its films: events, deviations and cost in one table and one picture; or set a
+    measurement beside RUN.h5.
 
     Without --cavitation, --theory and --coupling it is compared with all models whose films have no state and low cost.
     """
     from frbcli.bearing_tests.plan import TESTS
     from frbcli.studies.compare import compare
 
+    if isinstance(case, Path) or file is not None:
+        if not isinstance(case, Path) or file is None or cavitation or theory or coupling or test != "runup" or keep:
+            raise click.UsageError("A measurement stands beside a run: frb compare RUN.h5 --measured FILE --x COLUMN.")
+        beside_measured(terminal, case, file, measurement, signal, output if picture else None, picture)
+        return 0
     target = output or here(case.name, "-compare.png")
     if test in TESTS:
         if thermal:
@@ -78,8 +96,10 @@ def command(
         return _kinematic(case, test, cavitation, theory, target, picture, terminal)
     check_place(target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        watch = None if show is None else lambda variant, progress: show(f"{variant.name}\n{progress_line(progress)}")
-        found = compare(case, cavitation, theory, test, keep, watch, coupling, thermal)
+        tell = of_runs(terminal, show)
+        found = compare(
+            case, cavitation, theory, test, keep, lambda variant, *rest: tell(variant.name, *rest), coupling, thermal
+        )
     _report(found, bool(coupling), terminal)
     if thermal:
         _report_heat(found, terminal)

@@ -11,6 +11,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.live import counting, live_lines
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import INTERRUPTED, NotConverged
@@ -58,8 +59,8 @@ def run_test(
     target = output or here(case.name, f"-{test}.png")
     check_place(target if picture else None)
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
-    with compilation_shown(terminal, case):
-        found = tests[test](case, cavitation)
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = tests[test](case, cavitation, counting(terminal, show))
     report(found, terminal)
     results = [result_document(result) for result in found.results]
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 REFRESH_Hz = 8
 COLUMNS = 80  # of a terminal
+TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
 LONGEST_LEFT_s = 1e9  # longest time that is shown
 
 
@@ -30,12 +32,43 @@ def live_lines(terminal: Terminal) -> Iterator[Callable[[str], None] | None]:
         yield lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis"))
 
 
-def counting(show: Callable[[str], None] | None) -> Callable[[int, int], None]:
-    """What shows a number of so many by `show`, if there is one."""
+def counting(terminal: Terminal, show: Callable[[str], None] | None, what: str = "") -> Callable[[int, int], None]:
+    """What shows a number of so many, and the time left: by `show`, or without it as a line every now and then.
+
+    The time left is that of the numbers since the first one, which compiles.
+    """
+    begun, told_s, first = 0.0, time.process_time(), 0
 
     def observe(number: int, count: int) -> None:
+        nonlocal begun, told_s, first
+        if begun == 0.0:
+            begun, first = time.monotonic(), number
+        done = number - first
+        left = "" if done == 0 else f"  {_clock((time.monotonic() - begun) / done * (count - number))} left"
+        line = f"{what}{number} of {count}{left}"
         if show is not None:
-            show(f"{number} of {count}")
+            show(line)
+        elif time.process_time() > told_s + TOLD_EVERY_s:
+            told_s = time.process_time()
+            terminal.remark(line)
+
+    return observe
+
+
+def of_runs(
+    terminal: Terminal, show: Callable[[str], None] | None
+) -> Callable[[str, int, int, Progress], None]:
+    """What shows the progress of one of several runs, as `counting` does: name, number, how many, progress."""
+    told_s = time.process_time()
+
+    def observe(name: str, number: int, count: int, progress: Progress) -> None:
+        nonlocal told_s
+        lines = f"{number} of {count}: {name}\n{progress_line(progress)}"
+        if show is not None:
+            show(lines)
+        elif time.process_time() > told_s + TOLD_EVERY_s:
+            told_s = time.process_time()
+            terminal.remark(lines.replace("\n", ": "))
 
     return observe
 

@@ -39,11 +39,14 @@ def draw(terminal: Terminal, picture: Callable[[], Picture], target: Path, what:
 
 def draw_wanted(terminal: Terminal, picture: Callable[[], Picture], target: Path, what: str = "picture") -> Path:
     """Draw the picture that a command is for. Raises InputError if it cannot be written."""
+    from frbcli.plot.look import fit
     from frbcli.plot.style import save_figure
 
+    look = terminal.look
     with warnings.catch_warnings(record=True) as caught:
         warnings.filterwarnings("always", message="Glyph")
-        save_figure(picture(), target)
+        figure = fit(picture(), look.size_in, look.x_limits, look.y_limits, look.rpm)
+        save_figure(figure, target, look.dpi)
     terminal.result(f"{what}: {target}")
     texts = [str(warning.message) for warning in caught]
     letters = dict.fromkeys(chr(int(found[1])) for found in map(MISSING.match, texts) if found)

@@ -1,5 +1,5 @@
-"""`frb plot`: eccentricities, ring speeds, oil content, heat, orbits, displacements, or the summary of a run; the
-cavitation laws of a case."""
+"""`frb plot`: eccentricities, ring speeds, oil content, heat, what a run records of its films, orbits, displacements,
+or the summary of a run; the cavitation laws of a case."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.quantities import TIME_OPTION
 from frbcli.cli.runs import OUTPUT, RUN, beside, here
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
 
 LAW = "law"  # of a case, the others of runs
-CURVES = ("eccentricity", "ring-speed", "oil-content", "heat")
+FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow")  # of output.signals
+CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", *FILM_SIGNALS)
 PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 
 
@@ -32,7 +34,9 @@ PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 @click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
 @click.option("--signal", help="Of a displacement: disk or journal; journal_NAME of a bearing.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Of a law: set a key of CASE. Repeatable.")
+@click.option("--animate", is_flag=True, help="Of an orbit: a moving picture, GIF, or MP4 where ffmpeg is installed.")
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-WHAT.png]")
+@picture_options
 @output_options
 def command(
     run_files: tuple[Path, ...],
@@ -42,6 +46,7 @@ def command(
     over: Over,
     signal: str | None,
     settings: tuple[str, ...],
+    animate: bool,
     output: Path | None,
     terminal: Terminal,
 ) -> None:
@@ -49,6 +54,8 @@ def command(
     from frbcli.plot.style import check_picture
     from frbcli.results.store import read_run
 
+    if animate and (what != "orbit" or len(run_files) > 1):
+        raise click.UsageError("--animate belongs to --what orbit, of one run.")
     if what == LAW:
         if len(run_files) > 1:
             raise click.UsageError("A law is of one case.")
@@ -66,12 +73,27 @@ def command(
         raise click.UsageError("--signal belongs to --what displacement.")
     if over != "time" and what not in CURVES:
         raise click.UsageError(f"--over belongs to --what {', '.join(CURVES)}.")
-    target = output or beside(run_files[0], f"-{what}.png")
+    target = output or beside(run_files[0], f"-{what}.gif" if animate else f"-{what}.png")
+    if animate:
+        _animate(run_files[0], target, (from_time, to_time), terminal)
+        return
     check_picture(target)
     runs = [read_run(path) for path in run_files]
     draw_wanted(terminal, lambda: _figure(what, runs, (from_time, to_time), over, signal), target, what)
     first = run_files[0] if len(run_files) == 1 else list(run_files)
     terminal.emit({"command": "plot", "run": first, "output": target, "what": what})
+
+
+def _animate(
+    run_file: Path, target: Path, span: tuple[float | None, float | None], terminal: Terminal
+) -> None:
+    from frbcli.plot.animation import animate_orbits, check_animation
+    from frbcli.results.store import read_run
+
+    check_animation(target)
+    animate_orbits(read_run(run_file), target, *span)
+    terminal.result(f"orbit: {target}")
+    terminal.emit({"command": "plot", "run": run_file, "output": target, "what": "orbit"})
 
 
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
@@ -91,6 +113,7 @@ def _figure(
 ) -> Picture:
     from frbcli.plot.displacement import displacement_figure
     from frbcli.plot.eccentricity import eccentricity_figure
+    from frbcli.plot.film_signals import film_signal_figure
     from frbcli.plot.heat import heat_figure
     from frbcli.plot.oil_content import oil_content_figure
     from frbcli.plot.orbit import orbit_figure
@@ -103,5 +126,7 @@ def _figure(
         return orbit_figure(runs, *span)
     if what == "displacement":
         return displacement_figure(runs, signal, *span)
+    if what in FILM_SIGNALS:
+        return film_signal_figure(runs, what, *span, over)
     known = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure, "heat": heat_figure}
     return known.get(what, eccentricity_figure)(runs, *span, over)

@@ -11,6 +11,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import counting, live_lines
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, RUN, here
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from frbcli.analysis.order_tracking import OrderTrack
     from frbcli.case.schema import Case
     from frbcli.linear.response import Response
+    from frbcli.plot.style import Picture
 
 MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
 EXPLANATION = (
@@ -35,14 +37,18 @@ EXPLANATION = (
 @click.option("--run", "run_file", type=RUN, metavar="RUN.h5",
               help="Draw the synchronous motion of a run of the case over the response.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-response.png, here]")
+@click.option("--map", "as_map", is_flag=True,
+              help="Draw the undamped critical speed map, over the stiffness of the bearings.")  # fmt: skip
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all amplitudes and phases as a table, too.")
+@picture_options
 @output_options
 def command(
     case: Case,
     speeds: tuple[float, ...],
     run_file: Path | None,
     output: Path | None,
+    as_map: bool,
     no_picture: bool,
     csv: Path | None,
     terminal: Terminal,
@@ -53,20 +59,18 @@ def command(
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    picture = None if no_picture else output or here(case.name, "-response.png")
+    picture = None if no_picture else output or here(case.name, "-critical-map.png" if as_map else "-response.png")
     check_place(picture)
     require_place(csv)
     tracks = () if run_file is None else _tracks(run_file)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = response(case, speeds or None, counting(show))
+        found = response(case, speeds or None, counting(terminal, show))
     _tell(terminal, found, bool(speeds))
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)
         terminal.result(f"table: {csv}")
     if picture is not None:
-        from frbcli.plot.response import response_figure
-
-        picture = draw(terminal, lambda: response_figure(found, tracks), picture)
+        picture = draw(terminal, lambda: _figure(found, tracks, as_map), picture)
     terminal.emit(
         {
             "command": "response",
@@ -78,6 +82,17 @@ def command(
             "csv": csv,
         }
     )
+
+
+def _figure(found: Response, tracks: tuple[OrderTrack, ...], as_map: bool) -> Picture:
+    """The critical speed map, or the response with the synchronous motion of a run."""
+    from frbcli.linear.critical_map import critical_map
+    from frbcli.plot.critical_map import critical_map_figure
+    from frbcli.plot.response import response_figure
+
+    if as_map:
+        return critical_map_figure(critical_map(found.case, None, found.resting))
+    return response_figure(found, tracks)
 
 
 def _tracks(run_file: Path) -> tuple[OrderTrack, ...]:

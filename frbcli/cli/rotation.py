@@ -9,6 +9,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.kinematic import kinematic_options, run_test
+from frbcli.cli.picture_options import picture_options
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 @click.command()
 @case_argument
 @kinematic_options
+@picture_options
 @output_options
 def command(
     case: Case, cavitation: tuple[str, ...], output: Path | None, picture: bool, terminal: Terminal

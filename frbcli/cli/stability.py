@@ -13,14 +13,18 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.heat import heat_document, tell_heat
+from frbcli.cli.live import counting, live_lines
 from frbcli.cli.modes import emit_modes, modes_document, tell_modes
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
 from frbcli.cli.runs import OUTPUT
+from frbcli.cli.shapes import emit_shapes
 from frbcli.cli.stability_table import tell_points
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
+    from frbcli.cycles.threshold import ThresholdKind
     from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
 
 
@@ -30,13 +34,17 @@ if TYPE_CHECKING:
               help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [60 over the range of the case]')  # fmt: skip
 @click.option("--stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
+@click.option("--shapes", type=SPEED_OPTION, metavar="SPEED",
+              help='Only the damped modes at this rotor speed, with their shapes, e.g. "200 Hz".')  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
 @click.option("--no-picture", is_flag=True, help="No Campbell diagram.")
+@picture_options
 @output_options
 def command(
     case: Case,
     speeds: tuple[float, ...],
     stiffness: float | None,
+    shapes: float | None,
     output: Path | None,
     no_picture: bool,
     terminal: Terminal,
@@ -45,21 +53,29 @@ def command(
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
+    from frbcli.cycles.threshold import threshold_kind
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes
     from frbcli.linear.stability import stability
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    drawn = "campbell" if stiffness is None else "modes"
+    if shapes is not None and (stiffness is not None or speeds):
+        raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")
+    drawn = "shapes" if shapes is not None else "campbell" if stiffness is None else "modes"
     picture = None if no_picture else output or Path(f"{_file_name(case.name)}-{drawn}.png")
     check_place(picture)
+    if shapes is not None:
+        with compilation_shown(terminal, case):
+            emit_shapes(terminal, case, shapes, picture)
+        return None
     if stiffness is not None:
         emit_modes(terminal, case, stiffness, speeds, picture)
         return None
-    with compilation_shown(terminal, case):
-        found = stability(case, speeds or None)
-    _tell(terminal, found, bool(speeds))
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = stability(case, speeds or None, counting(terminal, show))
+        kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
+    _tell(terminal, found, kind, bool(speeds))
     if picture is not None:
         from frbcli.plot.campbell import campbell_figure
 
@@ -76,6 +92,7 @@ def command(
             "case": case.name,
             "points": [_point(point) for point in found.points],
             "threshold": _threshold(found),
+            "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
             "note": found.note,
             "picture": picture,
         }
@@ -84,7 +101,7 @@ def command(
     return None if any(point.films for point in found.points) else NotConverged.exit_code
 
 
-def _tell(terminal: Terminal, found: Stability, every_speed: bool) -> None:
+def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, every_speed: bool) -> None:
     from frbcli.scene.clearance_steps import step_times
     from frbcli.scene.supply import unfed_films
 
@@ -93,6 +110,8 @@ def _tell(terminal: Terminal, found: Stability, every_speed: bool) -> None:
     warmest = found.points[-1]
     if warmest.warm is not None:
         tell_heat(terminal, warmest.warm, f"heat at {warmest.speed_Hz:.4g} Hz")
+    if kind is not None:
+        terminal.result(_character(kind))
     for film in unfed_films(found.case):
         terminal.result(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
     if step_times(found.case):
@@ -120,6 +139,18 @@ def _sentence(found: Stability) -> str:
     return (
         f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, initially with "
         f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed.{found.note}"
+    )
+
+
+def _character(kind: ThresholdKind) -> str:
+    """Whether a threshold is soft or hard."""
+    if kind.criticality == "supercritical":
+        return "The threshold is soft (supercritical): the whirl grows with the speed from nothing."
+    if kind.fold_Hz is None:
+        return "The threshold is hard (subcritical): the whirl jumps to a large one."
+    return (
+        "The threshold is hard (subcritical): the whirl jumps to a large one, which a\n"
+        f"disturbance leads to from {kind.fold_Hz:.1f} Hz on."
     )
 
 

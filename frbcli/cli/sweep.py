@@ -10,6 +10,7 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.live import live_lines
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
 from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES
@@ -37,6 +38,7 @@ LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
 @click.option("--jobs", type=int, default=-1, metavar="N", help="Processes. [one for each core]")
 @click.option("--backend", default="loky", show_default=True, metavar="NAME", help="loky (this machine) or dask.")
 @click.option("--scheduler", default="", metavar="ADDRESS", help="Of the dask cluster, e.g. tcp://10.0.0.1:8786.")
+@picture_options
 @output_options
 def command(
     source: str,

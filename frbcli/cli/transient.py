@@ -13,10 +13,11 @@ import click
 from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.events import EVENT_COLUMNS, event_row
-from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, live_lines, progress_line
+from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, TOLD_EVERY_s, live_lines, progress_line
 from frbcli.cli.onset_spread import spread_shown
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
+from frbcli.errors import FrbError
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -32,7 +33,6 @@ EXIT_CODES = {"finished": 0, "input-error": 2, "interrupted": 130}
 ENDED_EARLY = 3  # for any other reason, which is named
 SUMMARY = "-summary.png"
 TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
-TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
 SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
 
@@ -61,6 +61,7 @@ def transient(
     verify: bool,
     terminal: Terminal,
     spread: bool = False,
+    explain: bool = False,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.runs.run import run_cost
@@ -77,6 +78,7 @@ def transient(
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
     onset = spread_shown(case, run, terminal) if spread and run.status != "interrupted" else None
+    explained = _explained(case, run, terminal) if explain and run.status != "interrupted" else None
     terminal.emit(
         {
             "command": command,
@@ -87,6 +89,7 @@ def transient(
             "cost": run.cost,
             "error": run.error if verified is None else {**run.error, "verified": verified},
             **({} if onset is None else {"onset_spread": onset}),
+            **({} if explained is None else {"explanations": explained}),
         }
     )
     if picture and len(run) > 1:
@@ -171,6 +174,20 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     }
 
 
+def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
+    """What causes the whirls of a run, as text and for the JSON document."""
+    from frbcli.cycles.explain import explanations
+    from frbcli.cycles.limit_cycles import limit_cycles
+
+    try:
+        told = explanations(limit_cycles(case), run.events)
+    except FrbError as error:
+        told = (f"Not explained: {error}",)
+    for sentence in told:
+        terminal.result(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
+    return told
+
+
 def exit_code(status: str) -> int:
     """The exit code for a run that ended so."""
     return EXIT_CODES.get(status, ENDED_EARLY)
@@ -178,6 +195,7 @@ def exit_code(status: str) -> int:
 
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
+    from frbcli.runs.account import account
     from frbcli.runs.advice import run_advice, run_end
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
@@ -185,67 +203,4 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
         terminal.remark(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
     if run.events:
         terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
-    terminal.table("cost and error", ("", "", ""), _cost_rows(run))
-
-
-def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
-    """Oil that passed mass-conserving films."""
-    if "oil_in_m3" not in run.cost:
-        return []
-    came, left = (1e9 * run.cost[name] for name in ("oil_in_m3", "oil_out_m3"))
-    off = run.error.get("oil_balance_relative")
-    defect = "" if off is None else f", unaccounted for {off:.0e}"
-    if "oil_created_m3" in run.cost:
-        made = 1e9 * run.cost["oil_created_m3"]
-        defect = f", {made:.3g} mm^3 created" if made >= 0.0 else f", {-made:.3g} mm^3 destroyed"
-    return [("oil", f"{came:.3g} mm^3 in", f"{left:.3g} mm^3 out{defect}")]
-
-
-def _heat_rows(run: Run) -> list[tuple[str, str, str]]:
-    """Where the heat of the films went, of one bearing each."""
-    if "heat_dissipated_J" not in run.cost:
-        return []
-    whole, oil, walls, kept = (
-        run.cost[f"heat_{name}_J"] for name in ("dissipated", "carried", "into_walls", "kept")
-    )
-    off = run.error.get("heat_balance_relative")
-    defect = "" if off is None else f", unaccounted for {off:.0e}"
-    parts = f"{oil:.4g} J with the oil, {walls:.4g} J into walls, {kept:.4g} J kept"
-    return [("heat", f"{whole:.4g} J", f"{parts}{defect}")]
-
-
-def _cost_rows(run: Run) -> list[tuple[str, str, str]]:
-    cost, error = run.cost, run.error
-    film = error.get("film_force_relative")
-    against = "against a finer mesh" if error.get("model_relative") is None else "of the short-bearing theory"
-    return [
-        ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.3g} ms per hour"),
-        (
-            "steps",
-            f"{cost['steps']}",
-            f"{cost['steps_per_revolution']:.3g} per revolution, {cost['rejected_steps']} rejected",
-        ),
-        ("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each"),
-        *_oil_rows(run),
-        *_heat_rows(run),
-        ("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes"),
-        ("error, time integration", f"{error['time_integration']:.1e}", "of the eccentricity"),
-        ("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}"),
-        *_error_rows(error),
-    ]
-
-
-def _predicted(cost: dict[str, Any]) -> str:
-    """The prediction of the plan, which runs of earlier versions lack."""
-    return f"predicted {cost['predicted_cpu_s']:.2g} s, " if "predicted_cpu_s" in cost else ""
-
-
-def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
-    """The parts of the error that not every run has."""
-    rows = []
-    if error.get("modal_reduction") is not None:
-        rows.append(("error, modal reduction", f"{error['modal_reduction']:.1e}", "of the natural frequencies"))
-    if error.get("eccentricity") is not None:
-        until = f"total, until {error['quiet_until_s']:.3g} s"
-        rows.append(("error of the eccentricity", f"{error['eccentricity']:.1e}", until))
-    return rows
+    terminal.table("cost and error", ("", "", ""), account(run))

@@ -10,6 +10,7 @@ import click
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.events import EVENT_COLUMNS, event_row
 from frbcli.cli.measured import measured_options, run_of
+from frbcli.cli.picture_options import Span, picture_options
 from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.quantities import TIME_OPTION
 from frbcli.cli.runs import OUTPUT, RUN, beside
@@ -59,7 +60,11 @@ class Orders(click.ParamType[tuple[float, ...]]):
     help="One coordinate, or the motion that turns with the rotor.",
 )
 @click.option("--log", is_flag=True, help="Logarithmic frequency; with --order amplitude.")
+@click.option("--levels", type=Span(), metavar="A,B", help="Range of the colours in dB, with --linear in um. [-60,0]")
+@click.option("--linear", is_flag=True, help="Amplitudes in um in place of levels in dB.")
+@click.option("--lines", type=Orders(), metavar="1,0.5", help="Orders whose lines are drawn in. [those of free whirls]")
 @measured_options
+@picture_options
 @output_options
 def command(
     run_file: Path,
@@ -71,6 +76,9 @@ def command(
     window: float | None,
     direction: Direction,
     log: bool,
+    levels: tuple[float, float] | None,
+    linear: bool,
+    lines: tuple[float, ...] | None,
     measurement: Measurement | None,
     terminal: Terminal,
 ) -> None:
@@ -83,18 +91,20 @@ def command(
 
     if orders is not None and (cascade or window is not None):
         raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
+    if orders is not None and (levels is not None or linear or lines is not None):
+        raise click.UsageError("--levels, --linear and --lines belong to spectra, not to --order.")
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_picture(target)
     run = run_of(run_file, measurement)
     told: dict[str, Any]
     if orders is None:
-        from frbcli.plot.waterfall import reading, run_spectra, waterfall_figure
+        from frbcli.plot.waterfall import LevelScale, reading, run_spectra, waterfall_figure
 
         axis: Over = over or "time"
-        found = run_spectra(run, signal, window, direction)
+        found, scale = run_spectra(run, signal, window, direction), LevelScale(linear, levels, lines)
         draw_wanted(
             terminal,
-            lambda: waterfall_figure(run, axis, signal, cascade, window, direction, log, found),
+            lambda: waterfall_figure(run, axis, signal, cascade, window, direction, log, found, scale),
             target,
             "waterfall",
         )

@@ -25,6 +25,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import sommerfeld_number
+from frbcli.html import Tabular
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
@@ -91,7 +92,7 @@ class FilmState:
 
 
 @dataclass(frozen=True)
-class BearingSheet:
+class BearingSheet(Tabular):
     """States of the films of a case over "speed" or "eccentricity", film by film within each of them; laws: the
     cavitation model of each film, in the order of the films."""
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.html import Tabular
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, reduction_error, whirl_modes
 from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
 
@@ -56,7 +57,7 @@ class ModesAtSpeed:
 
 
 @dataclass(frozen=True)
-class Modes:
+class Modes(Tabular):
     """Modes over speed.
 
     stiffness_N_m: of each bearing, empty for the free rotor; positions_m: (k,) along the shaft; bearings, disks: names

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.html import Tabular
 from frbcli.linear.stability import StabilityPoint, default_speeds, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
@@ -34,7 +35,7 @@ SPEEDS = 120  # of the default sweep
 
 
 @dataclass(frozen=True)
-class Response:
+class Response(Tabular):
     """The synchronous motion at n speeds.
 
     speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex

@@ -21,6 +21,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.html import Tabular
 from frbcli.linear.heat import Finder, Machine, WarmMachine, machine_finder
 from frbcli.linear.resting import ring_speeds
 from frbcli.rotor.held import held_rotor
@@ -134,7 +135,7 @@ class Threshold:
 
 
 @dataclass(frozen=True)
-class Stability:
+class Stability(Tabular):
     """Linear stability of a case.
 
     points: at the speeds asked for; sweep: at all speeds that were computed, ascending; threshold: None if none lies
@@ -154,11 +155,14 @@ class Stability:
         return pd.DataFrame([_row(point) for point in self.points])
 
 
-def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability:
+def stability(
+    case: Case, speeds_Hz: Sequence[float] | None = None, observe: Callable[[int, int], None] | None = None
+) -> Stability:
     """Resting positions, linear coefficients and eigenvalues at speeds_Hz (> 0), and the threshold of stability.
 
     The threshold is sought in the speed range of the case, whatever speeds_Hz; without speeds_Hz the points are those
-    of this sweep. A speed without a resting position gives a point that says so.
+    of this sweep. A speed without a resting position gives a point that says so. observe: called with each speed's
+    number and their number.
 
     Raises InputError if the case cannot be modelled or a speed is not positive.
     """
@@ -166,7 +170,7 @@ def stability(case: Case, speeds_Hz: Sequence[float] | None = None) -> Stability
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
     _check_machine(case, speeds)
-    _, find, sweep = _sweep(case, speeds)
+    _, find, sweep = _sweep(case, speeds, observe)
     found = {point.speed_Hz: point for point in sweep}
     threshold, note = _threshold(case, find, sweep)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)

@@ -11,7 +11,7 @@ from matplotlib.ticker import LogFormatter
 
 from frbcli.film.cavitation.table import law_named
 from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet, FilmState
-from frbcli.plot.style import COLOURS, new_figure, styled
+from frbcli.plot.style import COLOURS, legend_beside, new_figure, styled
 
 Reading = Callable[[FilmState], float]
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1, 1, 1)))  # of the films of a machine
@@ -23,15 +23,13 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
     case, chart = sheet.case, sheet.over == ECCENTRICITY
     laws = ", ".join(dict.fromkeys(law_named(law).label for law in sheet.laws))
     with styled():
-        figure = new_figure(case.title or case.name, f"bearing sheet, {laws}", width=8.6, height=7.4)
+        figure = new_figure(case.title or case.name, f"bearing sheet, {laws}", width=9.6, height=7.4)
         panels = figure.subplots(3, 2, sharex=True)
         first: Reading = (lambda s: s.sommerfeld_number) if chart else (lambda s: s.eccentricity)
         _curves(panels[0, 0], sheet, "Sommerfeld number" if chart else "eccentricity", [("", first)])
         _curves(panels[0, 1], sheet, "attitude angle in °", [("", lambda s: s.attitude_deg)])
-        _curves(panels[1, 0], sheet, "stiffness in N/µm", [(f"k{name}", _entry("stiffness", i, 1e-6))
-                                                           for i, name in enumerate(AXES)])  # fmt: skip
-        _curves(panels[1, 1], sheet, "damping in N s/mm", [(f"c{name}", _entry("damping", i, 1e-3))
-                                                           for i, name in enumerate(AXES)])  # fmt: skip
+        draw_coefficient(panels[1, 0], sheet, "stiffness")
+        draw_coefficient(panels[1, 1], sheet, "damping")
         loss: tuple[str, Reading] = ("power loss in W", lambda s: s.power)
         _curves(panels[2, 0], sheet, "loss and flow", [loss, ("side flow in mm³/s", lambda s: 1e9 * s.side_flow)])
         film: tuple[str, Reading] = ("smallest film in µm", lambda s: 1e6 * s.film_thickness_min)
@@ -51,6 +49,13 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
     return figure
 
 
+def draw_coefficient(axes: Axes, sheet: BearingSheet, quantity: str) -> None:
+    """The four entries of "stiffness" or "damping" on axes of a figure."""
+    unit, scale, letter = {"stiffness": ("N/µm", 1e-6, "k"), "damping": ("N s/mm", 1e-3, "c")}[quantity]
+    entries = [(f"{letter}{name}", _entry(quantity, i, scale)) for i, name in enumerate(AXES)]
+    _curves(axes, sheet, f"{quantity} in {unit}", entries)
+
+
 def _dashes(sheet: BearingSheet) -> list[object]:
     return [DASHES[number % len(DASHES)] for number in range(len(sheet.films))]
 
@@ -64,7 +69,7 @@ def _curves(axes: Axes, sheet: BearingSheet, label: str, readings: list[tuple[st
             axes.plot(x, [reading(state) for state in states], color=colour, linestyle=dash, label=shown)
     axes.set_ylabel(label)
     if len(readings) > 1:
-        axes.legend(fontsize="small", ncols=2)
+        legend_beside(axes)
 
 
 def _entry(name: str, index: int, scale: float) -> Reading:

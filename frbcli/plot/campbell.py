@@ -26,7 +26,7 @@ def campbell_figure(stability: Stability) -> Figure:
     with styled():
         figure = new_figure(case.title or case.name, "eigenvalues about the resting position", height=5.8)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
-        _draw_frequencies(above, points)
+        draw_frequencies(above, points)
         _draw_growth(below, points)
         if stability.threshold is not None:
             _mark_threshold((above, below), stability.threshold)
@@ -34,7 +34,8 @@ def campbell_figure(stability: Stability) -> Figure:
     return figure
 
 
-def _draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
+def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
+    """Damped eigenfrequencies of the points with films."""
     pairs = [(point.speed_Hz, value) for point in points for value in point.modes]
     speeds, values = np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs], dtype=complex)
     frequencies, grows = values.imag / (2 * np.pi), values.real > 0.0

@@ -25,21 +25,24 @@ def draw_cascade(
     axes: Axes,
     found: Spectrogram,
     over: Literal["time", "speed"],
-    levels_dB: tuple[float, float],
+    values: Values,
+    limits: tuple[float, float],
+    unit: str,
     lines: list[tuple[str, Values]],
 ) -> None:
     """Curves over frequency, shifted up and to the right with time or speed; those in front hide those behind.
 
-    lines: label and frequency (m,) in Hz of each line to draw on the floor, e.g. the rotor speed.
+    values (k, m) and their limits in a unit: heights of the curves; lines: label and frequency (m,) in Hz of each line
+    to draw on the floor, e.g. the rotor speed.
     """
     depth = found.time_s if over == "time" else found.speed_Hz
     span = float(np.ptp(depth)) or 1.0
     width = float(found.frequency_Hz[-1])
     shift = SHEAR * width * (depth - depth[0]) / span
-    height = HEIGHT * span / (levels_dB[1] - levels_dB[0])
+    height = HEIGHT * span / (limits[1] - limits[0])
     chosen = np.unique(np.linspace(0, len(depth) - 1, min(CURVES, len(depth))).round().astype(int))
     for layer, place in enumerate(chosen[::-1], start=10):
-        curve = depth[place] + height * (np.clip(found.level_dB[:, place], *levels_dB) - levels_dB[0])
+        curve = depth[place] + height * (np.clip(values[:, place], *limits) - limits[0])
         frequency = found.frequency_Hz + shift[place]
         axes.fill_between(frequency, depth[place], curve, facecolor="white", edgecolor="none", zorder=layer)
         axes.plot(frequency, curve, color=BLUE, linewidth=0.7, zorder=layer)
@@ -56,7 +59,7 @@ def draw_cascade(
     _draw_frame(axes, depth, shift, width, span)
     right = width + shift[-1]
     axes.plot([right] * 2, [depth[-1], depth[-1] + HEIGHT * span], color="black", linewidth=1.5)
-    axes.annotate(f"{levels_dB[1] - levels_dB[0]:g} dB", (right, depth[-1] + HEIGHT * span / 2), (-4, 0),
+    axes.annotate(f"{limits[1] - limits[0]:.3g} {unit}", (right, depth[-1] + HEIGHT * span / 2), (-4, 0),
                   textcoords="offset points", ha="right", va="center")  # fmt: skip
     axes.set_xlabel("frequency in Hz")
     axes.set_ylabel("time in s" if over == "time" else "rotor speed in Hz")

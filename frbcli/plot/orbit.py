@@ -38,12 +38,13 @@ def orbit_figure(runs: Sequence[Run], from_time: float | None = None, to_time: f
         figure = new_figure(title, ", ".join(text for text in (subtitle, span) if text), 4.8 * len(bearings), 5.2)
         for axes, bearing in zip(figure.subplots(1, len(bearings), squeeze=False)[0], bearings, strict=True):
             axes.set_title(bearing)
-            _draw(axes, runs, bearing, (begin, end))
+            draw_orbits(axes, runs, bearing, (begin, end))
         legend_below(figure, axes)
     return figure
 
 
-def _draw(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[float, float]) -> None:
+def draw_orbits(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[float, float]) -> None:
+    """The orbits of the journal of a bearing within a span of time in s, with its clearance."""
     widest = 0.0
     circles: set[float] = set()
     for number, (run, label) in enumerate(zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True)):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from frbcli.analysis.order_tracking import OrderTrack
 from frbcli.linear.response import Response, larger_semi_axis
-from frbcli.plot.style import BLACK, COLOURS, GREY, new_figure, styled
+from frbcli.plot.style import BLACK, COLOURS, GREY, legend_beside, new_figure, styled
 
 Array = NDArray[np.float64]
 MICRO = 1e6
@@ -27,38 +27,56 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
     """
     case = found.case
     with styled():
-        figure = new_figure(case.title or case.name, "linear unbalance response about the resting position", 8.6, 7.4)
+        figure = new_figure(case.title or case.name, "linear unbalance response about the resting position", 9.6, 7.4)
         panels = figure.subplots(2, 2)
         amplitude, phase, polar, force = panels.ravel()
-        for number, name in enumerate(found.points):
-            colour, dash = COLOURS[number % len(COLOURS)], DASHES[number // len(COLOURS) % len(DASHES)]
-            label = name.replace("_", " ")
-            _line(amplitude, found, MICRO * found.amplitude[:, number], colour, dash, label)
+        draw_amplitude(amplitude, found)
+        for number in range(len(found.points)):
+            colour, dash = _line_of(number)
             _line(phase, found, found.phase_deg[:, number], colour, dash, None)
             _polar(polar, found, number, colour, dash)
         sizes = larger_semi_axis(found.forces)
         for number, film in enumerate(found.films):
-            dash = DASHES[number // len(COLOURS) % len(DASHES)]
-            _line(force, found, sizes[:, number], COLOURS[number % len(COLOURS)], dash, film or "bearing")
+            _line(force, found, sizes[:, number], *_line_of(number), film or "bearing")
         for track in tracks:
             size = np.abs(track.forward) + np.abs(track.backward)
             amplitude.plot(track.speed_Hz, MICRO * size, color=BLACK, linewidth=0.6, label=f"{track.signal} in the run")
-        for critical in found.critical_speeds_Hz:
-            amplitude.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)))
-        amplitude.set_ylabel("amplitude in µm (larger semi-axis)")
         phase.set_ylabel("phase of the forward motion in °")
         force.set_ylabel("force amplitude of a bearing in N")
-        for panel in (amplitude, phase, force):
-            panel.set_xlabel("rotor speed in Hz")
-            panel.set_xlim(0.0, float(found.speeds_Hz[-1]))
+        for panel in (phase, force):
+            _speed_axis(panel, found)
         for panel in (amplitude, force):
             panel.set_ylim(bottom=0.0)
         polar.set_aspect("equal", adjustable="datalim")
         polar.set_xlabel("forward motion along the mark, µm")
         polar.set_ylabel("across it, µm")
-        amplitude.legend(fontsize="small")
-        force.legend(fontsize="small")
+        names = ("Bode diagram: amplitude", "Bode diagram: phase", "polar diagram", "bearing forces")
+        for panel, name in zip((amplitude, phase, polar, force), names, strict=True):
+            panel.set_title(name)
+        legend_beside(amplitude)
+        legend_beside(force)
     return figure
+
+
+def draw_amplitude(axes: Axes, found: Response) -> None:
+    """The larger semi-axes of all points over the rotor speed on axes of a figure, with the critical speeds."""
+    for number, name in enumerate(found.points):
+        _line(axes, found, MICRO * found.amplitude[:, number], *_line_of(number), name.replace("_", " "))
+    for critical in found.critical_speeds_Hz:
+        axes.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)))
+    axes.set_ylabel("amplitude in µm (larger semi-axis)")
+    _speed_axis(axes, found)
+    axes.set_ylim(bottom=0.0)
+
+
+def _speed_axis(axes: Axes, found: Response) -> None:
+    axes.set_xlabel("rotor speed in Hz")
+    axes.set_xlim(0.0, float(found.speeds_Hz[-1]))
+
+
+def _line_of(number: int) -> tuple[str, object]:
+    """Colour and dashes."""
+    return COLOURS[number % len(COLOURS)], DASHES[number // len(COLOURS) % len(DASHES)]
 
 
 def _line(axes: Axes, found: Response, values: Array, colour: str, dash: object, label: str | None) -> None:

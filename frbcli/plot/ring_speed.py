@@ -55,10 +55,11 @@ def ring_speed_figure(
             for run, ratio in zip(runs, each, strict=True)
         )
         for value in sorted(set(concentric.values())):
+            alike = [name for name, own in concentric.items() if own == value]
+            told = alike[0] if len(alike) < len(concentric) else ""
             axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
-        for name, value in concentric.items():
             axes.annotate(
-                " ".join(word for word in ("concentric", name) if word) + f" {value:.3f}",
+                " ".join(word for word in ("concentric", told) if word) + f" {value:.3f}",
                 (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
                 ha="right", va="bottom", color=GREY, bbox=PAPER,
             )  # fmt: skip

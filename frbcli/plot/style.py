@@ -111,6 +111,13 @@ def legend_below(figure: Figure, axes: Axes) -> None:
         figure.legend(handles, labels, loc="outside lower center", ncols=min(len(handles), 3))
 
 
+def legend_beside(axes: Axes) -> None:
+    """A legend to the right of a panel, where it hides no curve; none for one curve, or for more than there is room
+    for."""
+    if 1 < len(axes.get_legend_handles_labels()[0]) <= MOST_NAMED:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
+
+
 def check_picture(path: Path) -> None:
     """Raises InputError if a picture cannot have this name or this place; called before the work."""
     if path.suffix.lower() not in FORMATS:
@@ -126,19 +133,24 @@ def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
     """
     path = Path(path)
     check_picture(path)
-    content = io.BytesIO()
-    suffix = path.suffix.lower()
     try:
-        with styled():
-            figure.savefig(content, dpi=dpi, format=suffix[1:], metadata=FORMATS[suffix])
+        content = picture(figure, path.suffix.lower(), dpi)
     except (OSError, ValueError) as error:
         raise _refuse(path, f"cannot be drawn: {error}.", "") from error
     try:
-        path.write_bytes(content.getbuffer())
+        path.write_bytes(content)
     except OSError as error:
         remove_part(path)
         raise _refuse(path, f"cannot be written: {error.strerror}.", "Choose another place with -o.") from error
     return path
+
+
+def picture(figure: Figure, suffix: str, dpi: int = 150, own_letters: bool = False) -> bytes:
+    """A figure as one of FORMATS. own_letters: of an SVG, as outlines, so that it looks the same everywhere."""
+    content = io.BytesIO()
+    with styled(), mpl.rc_context({"svg.fonttype": "path"} if own_letters else {}):
+        figure.savefig(content, dpi=dpi, format=suffix[1:], metadata=FORMATS[suffix])
+    return content.getvalue()
 
 
 def _refuse(path: Path, problem: str, remedy: str) -> InputError:

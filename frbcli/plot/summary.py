@@ -14,7 +14,7 @@ from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.plot.eccentricity import draw_eccentricity
 from frbcli.plot.envelope import curve
 from frbcli.plot.signals import ends, events, heading, is_searchable
-from frbcli.plot.style import BLACK, GREY, MOST_MARKED, MOST_NAMED, SKY, mark_times, new_figure, styled
+from frbcli.plot.style import BLACK, GREY, MOST_MARKED, SKY, legend_beside, mark_times, new_figure, styled
 from frbcli.plot.waterfall import draw_levels, level_label, reading, run_spectra
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
@@ -51,8 +51,7 @@ def summary_figure(run: Run) -> Figure:
         above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
         draw_eccentricity(above, [run])
         above.set_xlim(begin, end)
-        if 1 < len(above.get_lines()) <= MOST_NAMED:
-            above.legend(loc="upper right", ncols=2, frameon=True, framealpha=0.85, edgecolor="none")
+        legend_beside(above)
         if len(run) >= FEWEST_SAMPLES:
             found = run_spectra(run, SIGNAL, None, "x")
             mesh = draw_levels(middle, run, SIGNAL, found, "time")
@@ -75,8 +74,7 @@ def _draw_speed(axes: Axes, run: Run) -> None:
     for name, colour in zip(rings, itertools.cycle((GREY, SKY)), strict=False):
         label = ", ".join(word for word in ("ring", name) if word)
         axes.plot(*curve(run, run.signal(joined("ring_speed", name, "Hz"))), color=colour, label=label)
-    if 0 < len(rings) < MOST_NAMED:
-        axes.legend(loc="upper left")
+    legend_beside(axes)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("time in s")
     axes.yaxis.set_major_locator(MaxNLocator(3))

@@ -75,7 +75,7 @@ def _draw_curve(axes: Axes, sweep: Sweep, over: _Scale) -> None:
     if missing.any():
         bottom = np.full(np.count_nonzero(missing), np.nanmin(speed))
         axes.plot(at[missing], bottom, "x", color=VERMILION, label="none found")
-        axes.legend()
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     axes.set_xlabel(over.label)
     axes.set_ylabel(f"{KINDS[sweep.method][0]} in Hz")
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -18,7 +19,7 @@ from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram
 from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.plot.cascade import draw_cascade
 from frbcli.plot.envelope import at_times, extremes
-from frbcli.plot.signals import bearing_of, clearance, ends, heading, motion
+from frbcli.plot.signals import MICRO, bearing_of, clearance, ends, heading, motion
 from frbcli.plot.style import LEVEL_MAP, new_figure, styled
 from frbcli.results.container import refuse
 from frbcli.results.records import SPEED, TIME
@@ -39,6 +40,29 @@ SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be pa
 TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
 
 
+@dataclass(frozen=True)
+class LevelScale:
+    """What the colours of a waterfall, or the heights of its cascade, stand for.
+
+    linear: amplitudes in µm in place of levels in dB; limits: in that unit, None for LEVELS_dB or up to the largest;
+    orders: of the lines that are drawn in, None for those of free whirls.
+    """
+
+    linear: bool = False
+    limits: tuple[float, float] | None = None
+    orders: tuple[float, ...] | None = None
+
+    def of(self, found: Spectrogram) -> tuple[Values, tuple[float, float], str]:
+        """Values (k, m), their limits and unit."""
+        if not self.linear:
+            return found.level_dB, self.limits or LEVELS_dB, "dB"
+        values = MICRO * found.amplitude
+        return values, self.limits or (0.0, float(np.max(values)) or 1.0), "µm"
+
+
+DECIBELS = LevelScale()
+
+
 def waterfall_figure(
     run: Run,
     over: Over = "time",
@@ -48,6 +72,7 @@ def waterfall_figure(
     direction: Direction = "x",
     log: bool = False,
     found: Spectrogram | None = None,
+    scale: LevelScale = DECIBELS,
 ) -> Figure:
     """Levels in dB relative to the clearance, of a floating ring to C_i + C_o, with the rotor speed and the frequencies
     of free whirls drawn in: half of it, or (omega_R + omega_F)/2 and omega_F/2.
@@ -55,7 +80,7 @@ def waterfall_figure(
     over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
     "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum, behind each other; window_s
     (None: as the ramp asks for) and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency;
-    found: the spectra of `run_spectra`, where they are known already.
+    found: the spectra of `run_spectra`, where they are known already; scale: what the colours or heights are.
 
     Raises InputError if the run does not have the signal or is shorter than a window.
     """
@@ -71,12 +96,13 @@ def waterfall_figure(
         for axes, (name, part) in zip(panels, parts, strict=True):
             axes.set_title(name)
             if cascade:
-                draw_cascade(axes, part, over, LEVELS_dB, _orders(run, signal, part))
+                values, limits, unit = scale.of(part)
+                draw_cascade(axes, part, over, values, limits, unit, orders(run, signal, part, scale.orders))
             else:
-                mesh = draw_levels(axes, run, signal, part, over, log)
+                mesh = draw_levels(axes, run, signal, part, over, log, scale)
         if not cascade:
             bar = figure.colorbar(mesh, ax=list(panels), pad=0.02, extend="both")
-            bar.set_label(level_label(run, signal))
+            bar.set_label("amplitude in µm" if scale.linear else level_label(run, signal))
             bar.outline.set_visible(False)
     return figure
 
@@ -124,16 +150,19 @@ def level_label(run: Run, signal: str) -> str:
     return f"amplitude relative to {'C$_i$ + C$_o$' if ringed else 'the clearance'} in dB"
 
 
-def draw_levels(axes: Axes, run: Run, signal: str, found: Spectrogram, over: Over, log: bool = False) -> QuadMesh:
+def draw_levels(
+    axes: Axes, run: Run, signal: str, found: Spectrogram, over: Over, log: bool = False, scale: LevelScale = DECIBELS
+) -> QuadMesh:
     """The map of levels with its lines, on axes of a figure."""
     across = found.time_s if over == "time" else found.speed_Hz
+    values, limits, _ = scale.of(found)
     mesh = axes.pcolormesh(
         across,
         found.frequency_Hz,
-        found.level_dB,
+        values,
         cmap=LEVEL_MAP,
-        vmin=LEVELS_dB[0],
-        vmax=LEVELS_dB[1],
+        vmin=limits[0],
+        vmax=limits[1],
         shading="nearest" if len(across) > 1 else "auto",
         rasterized=True,
     )
@@ -143,7 +172,7 @@ def draw_levels(axes: Axes, run: Run, signal: str, found: Spectrogram, over: Ove
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(ScalarFormatter())
-    for label, frequency in _orders(run, signal, found):
+    for label, frequency in orders(run, signal, found, scale.orders):
         axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
         _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
     axes.grid(False)
@@ -152,8 +181,12 @@ def draw_levels(axes: Axes, run: Run, signal: str, found: Spectrogram, over: Ove
     return mesh
 
 
-def _orders(run: Run, signal: str, found: Spectrogram) -> list[tuple[str, Values]]:
-    """The synchronous line, and the frequencies of free whirls."""
+def orders(
+    run: Run, signal: str, found: Spectrogram, chosen: Sequence[float] | None = None
+) -> list[tuple[str, Values]]:
+    """The synchronous line, and the frequencies of free whirls; or lines of chosen orders."""
+    if chosen is not None:
+        return [("ω" if order == 1.0 else f"{order:g} ω", order * found.speed_Hz) for order in chosen]
     lines = [("ω", found.speed_Hz)]
     bearing = bearing_of(run, signal)
     if bearing not in points(run.signals, "ring"):

@@ -46,8 +46,12 @@ _UNITS = {
     re.compile(f"temperature{_NAME}_K"): "K",
     re.compile(f"viscosity{_NAME}_Pa_s"): "Pa*s",
     re.compile(f"clearance{_NAME}_m"): "m",
-    re.compile(f"power{_NAME}_W"): "W",
     re.compile(f"flow{_NAME}_m3_s"): "m^3/s",
+    re.compile(f"film_force{_NAME}_[xy]_N"): "N",
+    re.compile(f"film_thickness{_NAME}_m"): "m",
+    re.compile(f"power{_NAME}_W"): "W",
+    re.compile(f"torque{_NAME}_N_m"): "N m",
+    re.compile(f"oil_flow{_NAME}_m3_s"): "m^3/s",
 }
 _KIND = re.compile("[a-z]{1,30}(-[a-z]{1,30}){0,3}")
 _KEY = re.compile("[A-Za-z][A-Za-z0-9_-]{0,99}")

@@ -17,6 +17,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.html import html_table
 from frbcli.results import parts
 from frbcli.results.container import USER_BLOCK, check_output, open_whole, part_file, refuse, write_whole
 from frbcli.results.records import (
@@ -110,6 +111,15 @@ class Run:
     def __len__(self) -> int:
         """The number of samples."""
         return min((len(signal) for signal in self.signals.values()), default=0)
+
+    def _repr_html_(self) -> str:
+        """In a notebook: how it ended, its events."""
+        columns = ("event", "film", "time in s", "rotor speed in Hz", "frequency in Hz", "ratio")
+        keys = ("kind", "film", "t_s", "speed_Hz", "frequency_Hz", "frequency_ratio")
+        rows = [["-" if event[key] is None else event[key] for key in keys] for event in self.events]
+        ended = f"{self.status} at {self.t_end_s:.4g} s"
+        title = f"{self.title}: {ended}, {len(self)} samples of {len(self.signals)} signals"
+        return html_table(title, columns, rows, len(rows))
 
     def to_pandas(self) -> pd.DataFrame:
         """The signals as a table with one column each, named as the signals are."""

@@ -15,6 +15,15 @@ from frbcli.scene.system import System
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"
+# Of a film, by choice: its quantity and unit as they stand in the name, and the unit.
+THICKNESS, FORCE, POWER, TORQUE, FLOW = "film-thickness", "force", "power", "torque", "oil-flow"
+FILM_SIGNALS = {
+    FORCE: ("film_force", "N", "N"),
+    THICKNESS: ("film_thickness", "m", "m"),
+    POWER: ("power", "W", "W"),
+    TORQUE: ("torque", "N_m", "N m"),
+    FLOW: ("oil_flow", "m3_s", "m^3/s"),
+}
 
 
 def named(quantity: str, film: str) -> str:
@@ -26,6 +35,17 @@ def ring_names(system: System) -> list[str]:
     """The signals of the rings' speeds."""
     outer = [name for name, (inside, _) in zip(system.names, system.bodies, strict=True) if inside >= 0]
     return [f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name in outer]
+
+
+def signal_names(kind: str, film: str) -> list[str]:
+    """The signals of a film that a kind of FILM_SIGNALS stands for: x and y of a force."""
+    quantity, unit, _ = FILM_SIGNALS[kind]
+    return [f"{named(quantity, film)}_{end}" for end in ((f"x_{unit}", f"y_{unit}") if kind == FORCE else (unit,))]
+
+
+def signal_units(system: System, kinds: Sequence[str]) -> dict[str, str]:
+    """Names and units of the signals of all films that are recorded by choice."""
+    return {name: FILM_SIGNALS[kind][2] for film in system.names for kind in kinds for name in signal_names(kind, film)}
 
 
 def header(
@@ -41,6 +61,7 @@ def header(
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
     units |= heat_units(case, system)
+    units |= signal_units(system, case.output.signals)
     return Header(
         title=case.title or case.name,
         command=command,

@@ -19,6 +19,7 @@ from frbcli.runs.control import control_of
 from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.error_budget import budget_of_segments, quick_budget, summed
 from frbcli.runs.film_error import sample_count
+from frbcli.runs.film_signals import OF_THE_STEPS, Samples, film_signals
 from frbcli.runs.header import named, ring_names
 from frbcli.runs.heat import RunHeat
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
@@ -46,6 +47,7 @@ from frbcli.solve.state import (
 )
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
+from frbcli.solve.watched import NOTES, advance_watched
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
@@ -100,6 +102,10 @@ class March:
         self._oil = np.zeros((rows, len(system.remembering)))
         # what the loop takes beside the rest, nothing without heat
         self._extra = self._heat.buffers(rows)
+        # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
+        self._watches = any(kind in OF_THE_STEPS for kind in case.output.signals)
+        notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
+        self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
         self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
@@ -121,6 +127,7 @@ class March:
         if largest_eccentricity(self._system, self._state) >= self._control.contact_eccentricity:
             return CONTACT  # the new clearance is below the displacement
         self._state = with_clearances(before, self._system, self._profile, self._state, self._apart)
+        self._noted[:] = np.nan
         return RUNNING
 
     @property
@@ -164,13 +171,14 @@ class March:
         self._go(0)
 
     def _go(self, budget: int) -> tuple[int, int]:
-        """Advance by some steps: (status, rows written)."""
+        """At most `budget` steps. Returns (status, rows of the output written)."""
         films = self._heat.films or self._system.films
-        buffers = (self._q, self._v, self._oil, *self._extra)
-        found: tuple[int, int] = self._advance(
-            self._rotor, films, self._tableau, self._control, self._state, budget, *buffers
-        )
-        return found
+        given = self._rotor, films, self._tableau, self._control, self._state, budget
+        outputs = self._q, self._v, self._oil
+        if self._watches:
+            return advance_watched(*given, *outputs, self._noted, self._out_noted)
+        status, rows = self._advance(*given, *outputs, *self._extra)
+        return status, rows
 
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
@@ -181,7 +189,7 @@ class March:
         self._wall_s += spent
         self._budget = max(1, min(BUDGET, int(self._budget * min(GROWTH, CHUNK_s / max(spent, 1e-9)))))
         first = int(self._state.numbers[OUTPUTS]) - rows
-        times: Array = (first + np.arange(rows, dtype=np.float64)) * self._control.output_step
+        times: Array = self._control.output_step * (first + np.arange(rows, dtype=np.float64))
         speeds = self._profile.speed(times)
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept]])
@@ -208,12 +216,15 @@ class March:
                 signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
-        return signals
+        samples = Samples(times, q, v, self._out_noted[: len(times)])
+        return signals | film_signals(system, self._control, self._profile, samples, self._case.output.signals)
 
     def snapshot(self) -> dict[str, Array]:
         """The checkpoint, from which the run continues with the same result."""
         clock = np.array([self._cpu_s, self._wall_s])
-        return {**self._state._asdict(), **self._heat.snapshot(), "film_samples": self._samples, "clock": clock}
+        noted = {"noted": self._noted} if self._watches and not np.isnan(self._noted).any() else {}
+        beside = {**noted, **self._heat.snapshot()}
+        return {**self._state._asdict(), **beside, "film_samples": self._samples, "clock": clock}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
         """Take up the state of a checkpoint. Raises WrongCheckpoint if it is not one of this run."""
@@ -222,6 +233,8 @@ class March:
         samples = array(checkpoint, "film_samples", (rows, self._samples.shape[1]))
         clock = array(checkpoint, "clock", (2,))
         self._heat.restore(checkpoint)
+        if self._watches and "noted" in checkpoint:
+            self._noted = array(checkpoint, "noted", self._noted.shape)
         self._state, self._samples = state, samples
         self._take_up(sum(segment.start <= self.time for segment in self._segments[1:]))
         self._cpu_s, self._wall_s = (float(value) for value in clock)

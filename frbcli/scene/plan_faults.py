@@ -13,7 +13,7 @@ from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import section_faults
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.clearance_steps import clearance_faults
-from frbcli.scene.coupling import coupling_fault
+from frbcli.scene.coupling import APART, chosen_coupling, coupling_fault
 from frbcli.scene.film_choice import MIDDLE, all_clipped, needs_cells
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.heat_faults import heat_faults
@@ -47,6 +47,7 @@ def plan_faults(case: Case) -> list[Fault]:
     told = solution_fault(case, all_clipped(case), not (chained or needs_cells(case)))
     faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
     faults += published_faults(case)
+    faults += signal_faults(case, needs_cells(case))
     may_turn = needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
         missing("film.grid", "half-speed", ("auto; it is for films on cells without openings and lobes",))
@@ -61,6 +62,20 @@ def plan_faults(case: Case) -> list[Fault]:
         for found in section_faults(section):
             faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
     return faults or _bearing_faults(case)
+
+
+def signal_faults(case: Case, with_cells: bool) -> list[Fault]:
+    """Signals of the films that a run of the case cannot record."""
+    told, apart = case.output.signals, chosen_coupling(case.film.coupling, case.film.cavitation) == APART
+    faults = []
+    if apart and any(kind != "film-thickness" for kind in told):
+        problem = "are not known in a co-simulation, but for film-thickness."
+        faults.append(Fault("output.signals", ", ".join(told), None, problem, "Choose another film.coupling."))
+    if "oil-flow" in told and not with_cells:
+        problem = "is not told by tabulated films."
+        remedy = "Choose a mass-conserving film.cavitation, or ask `frb bearing` for the flow at rest."
+        faults.append(Fault("output.signals", "oil-flow", None, problem, remedy))
+    return faults
 
 
 def _bearing_faults(case: Case) -> list[Fault]:

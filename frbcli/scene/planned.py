@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from frbcli.film.grid import Mesh
+from frbcli.html import html_table
 
 
 @dataclass(frozen=True)
@@ -38,3 +39,8 @@ class Plan:
     coupling: str
     macro_step: float | None
     decisions: tuple[Decision, ...]
+
+    def _repr_html_(self) -> str:
+        """In a notebook: its decisions."""
+        rows = [(each.choice, each.value, each.reason) for each in self.decisions]
+        return html_table("plan", ("choice", "value", "reason"), rows, len(rows))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -34,7 +35,7 @@ COARSER_MESH, LOOSER = 1.5, 2.0  # second reference: factors of the plan's eleme
 INTERRUPTED = "interrupted"
 
 
-Observer = Callable[[Rung, Progress], None]
+Observer = Callable[[Rung, int, int, Progress], None]
 
 
 def accuracy(
@@ -47,7 +48,8 @@ def accuracy(
     """Run a case up on a ladder and compare cost and error of each rung with a fine reference.
 
     until: in s, shortens the run; the rotor speeds up as before. theories, couplings: to be tried, () for all theories
-    that can be had and for the coupling of the plan. observe: called some times a second. Ctrl-C ends it with the rungs
+    that can be had and for the coupling of the plan. observe: called some times a second with the
+    rung, its number from 1 on, how many there are with both references, and its progress. Ctrl-C ends it with the rungs
     done so far; before the reference is there it is raised on. A rung that does not begin is left out and named, the
     reference raises NotConverged. Raises InputError for names that there are not, and for
     a case that cannot be modelled.
@@ -64,10 +66,13 @@ def accuracy(
     fine = replace(own, theory="finite", mesh=_mesh(own, REFERENCE_MESH), tolerance=REFERENCE_TOLERANCE * own.tolerance)
     coarser = replace(fine, mesh=_mesh(own, COARSER_MESH), tolerance=LOOSER * fine.tolerance)
     rungs = list(ladder(short, own, theories, couplings))
+    begun = 0
     with TemporaryDirectory(prefix="frb-accuracy-") as folder:
 
         def run(rung: Rung) -> Run:
-            watch = None if observe is None else lambda progress: observe(rung, progress)
+            nonlocal begun
+            begun += 1
+            watch = None if observe is None else functools.partial(observe, rung, begun, len(rungs) + 2)
             one = runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch, force=True)
             if one.status == INTERRUPTED:
                 raise KeyboardInterrupt

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
+from frbcli.html import Tabular
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.run import earlier_run, is_interrupted, runup
@@ -101,7 +103,7 @@ class VariantResult:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Tabular):
     """Results in the order of the variants; the first is what the others are compared with.
 
     status: "finished", or why not all variants have a result: "interrupted", "not-converged", "input-error"; message
@@ -121,7 +123,7 @@ class Comparison:
         return pd.DataFrame([_row(result) for result in self.results])
 
 
-Observer = Callable[[Variant, Progress], None]
+Observer = Callable[[Variant, int, int, Progress], None]
 
 
 def compare(
@@ -138,7 +140,8 @@ def compare(
     stands for that of the case.
 
     With none given, that of the case is compared with all that have no state and cost little. keep: a directory for
-    the run files, made if need be; interrupted runs there go on. observe: called some times a second. Ctrl-C, or a
+    the run files, made if need be; interrupted runs there go on. observe: called some times a second with
+    the variant, its number from 1 on, how many there are, and its progress. Ctrl-C, or a
     variant that does not begin, ends the comparison with the runs that there are by then.
     Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
     allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
@@ -155,8 +158,10 @@ def compare(
         paths = [folder / f"{variant.name.replace(' ', '-')}.h5" for variant in variants]
         begun = [_is_begun(its_case, path) for its_case, path in zip(cases, paths, strict=True)]
         try:
-            for variant, its_case, path, resume in zip(variants, cases, paths, begun, strict=True):
-                tell = None if observe is None else _telling(observe, variant)
+            for number, (variant, its_case, path, resume) in enumerate(
+                zip(variants, cases, paths, begun, strict=True), start=1
+            ):
+                tell = None if observe is None else functools.partial(observe, variant, number, len(variants))
                 runs.append(runup(its_case, path, resume, tell))
                 if runs[-1].status == INTERRUPTED:
                     raise KeyboardInterrupt
@@ -294,10 +299,6 @@ def _directory(keep: str | Path | None) -> Iterator[Path]:
         problem = f"cannot be made: {error.strerror}."
         raise InputError("comparison", (Fault("--keep", str(keep), None, problem, "Choose another place."),)) from error
     yield Path(keep)
-
-
-def _telling(observe: Observer, variant: Variant) -> Callable[[Progress], None]:
-    return lambda progress: observe(variant, progress)
 
 
 def _row(result: VariantResult) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from frbcli.case.schema import Case
+from frbcli.html import Tabular
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -63,7 +64,7 @@ class RungResult:
 
 
 @dataclass(frozen=True)
-class AccuracyLadder:
+class AccuracyLadder(Tabular):
     """until_s: how long the runs are; reference: its error is how far a run on the rung `coarser` is from it; ladder:
     in the order of their cost; complete: not interrupted; failed: rungs whose run did not begin, and why."""
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.html import Tabular
 from frbcli.results.place import remove_part
 from frbcli.scene.plan import make_plan
 from frbcli.studies.sweep.log import append, open_log
@@ -44,7 +45,7 @@ Observer = Callable[[SweepPoint, int, int], None]  # a point, how many are done,
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Sweep(Tabular):
     """points: in the order of their numbers, those that failed included."""
 
     case: Case

@@ -1,0 +1,39 @@
+"""Tables for notebooks: what cases, plans, runs and results show of themselves there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import Any
+
+from frbcli.errors import printable
+
+MOST_ROWS = 60  # of a table; the rest is told by their number
+
+
+class Tabular:
+    """A result that a notebook shows as its table: one with `to_pandas`, and a case that it is of."""
+
+    def _repr_html_(self) -> str:
+        result: Any = self
+        frame, case = result.to_pandas(), getattr(self, "case", None)
+        title = "" if case is None else case.title or case.name
+        words = ": ".join(word for word in (title, type(self).__name__) if word)
+        return html_table(words, list(frame.columns), frame.itertuples(index=False), len(frame))
+
+
+def html_table(title: str, columns: Sequence[str], rows: Iterable[Iterable[object]], count: int | None = None) -> str:
+    """A table under its title, with at most MOST_ROWS rows; count: how many there are, where rows are not told at
+    once."""
+    told = [[_cell(cell) for cell in row] for _, row in zip(range(MOST_ROWS), rows, strict=False)]
+    head = "".join(f"<th style='text-align:left'>{escape(printable(str(name)))}</th>" for name in columns)
+    body = "".join(f"<tr>{''.join(cells)}</tr>" for cells in told)
+    left = 0 if count is None else count - len(told)
+    more = f"<p>and {left} more rows</p>" if left > 0 else ""
+    caption = f"<p><b>{escape(printable(title))}</b></p>" if title else ""
+    return f"{caption}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
+
+
+def _cell(value: object) -> str:
+    text = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"<td style='text-align:left'>{escape(printable(text))}</td>"

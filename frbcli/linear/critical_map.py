@@ -1,0 +1,118 @@
+"""The undamped critical speed map: critical speeds of a rotor over the stiffness of its bearings.
+
+With equal stiffness in all directions a whirl has one complex coordinate, and at a rotor speed that equals its
+frequency the equation of the rotor becomes
+
+    k u = omega^2 (m - g) u forward,      k u = omega^2 (m + g) u backward,
+
+m, g and k being mass, gyroscopic term and stiffness of one plane. Rings are left out: a bearing is one spring.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.rotor import JeffcottRotor, RigidRotor
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.html import Tabular
+from frbcli.linear.modes import film_springs
+from frbcli.linear.stability import StabilityPoint
+from frbcli.rotor.jeffcott import jeffcott_rotor
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.rigid import rigid_rotor
+from frbcli.rotor.turbocharger import turbocharger_rotor
+from frbcli.scene.findings import findings
+from frbcli.scene.turbocharger import all_modes, journals, wheels
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+STIFFNESSES = 61
+DECADES = (-3.0, 2.0)  # about the stiffness on which the rotor as a rigid mass has its highest speed as frequency
+SHOWN = 4  # slowest critical speeds of each direction
+
+
+@dataclass(frozen=True)
+class CriticalMap(Tabular):
+    """stiffness: (k,) N/m of every bearing; forward, backward: (k, SHOWN) Hz, ascending, NaN where there are fewer;
+    films: (speeds in Hz, stiffness in N/m of each bearing (n, b)) of the films of the case at rest, empty if they are
+    not known: where a curve of a film crosses one of the map, the rotor has a critical speed."""
+
+    case: Case
+    stiffness: Array
+    forward: Array
+    backward: Array
+    film_speeds_Hz: Array
+    film_stiffness: Array
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per stiffness."""
+        import pandas as pd
+
+        columns = {"stiffness_N_m": self.stiffness}
+        for name, values in (("forward", self.forward), ("backward", self.backward)):
+            columns |= {f"{name}_{number + 1}_Hz": values[:, number] for number in range(values.shape[1])}
+        return pd.DataFrame(columns)
+
+
+def critical_map(
+    case: Case, stiffness: Sequence[float] | None = None, resting: Sequence[StabilityPoint] = ()
+) -> CriticalMap:
+    """The map of the rotor of a case over a stiffness in N/m of each of its bearings, by default STIFFNESSES over
+    DECADES; resting: of the case, for the stiffness of its films. Raises InputError if a stiffness is not positive."""
+    given = _default(case) if stiffness is None else np.array(sorted(stiffness), dtype=np.float64)
+    if not len(given) or not (np.isfinite(given).all() and given[0] > 0.0):
+        fault = Fault("stiffness", "", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".')
+        raise InputError(case.name or "case", (fault,))
+    plane = _plane(_alone(case))
+    forward, backward = (np.array([_criticals(plane, k, sign) for k in given]) for sign in (-1.0, 1.0))
+    known = [(point.speed_Hz, film_springs(case, point.films)) for point in resting if point.films]
+    films = [(speed, springs) for speed, springs in known if springs]
+    speeds, springs = np.array([speed for speed, _ in films]), np.array([found for _, found in films])
+    return CriticalMap(case, given, forward, backward, speeds, springs.reshape(len(speeds), len(case.bearings)))
+
+
+def _default(case: Case) -> Array:
+    top = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)
+    usual = (findings(case).mass or 1.0) * top**2 / 2.0
+    return np.asarray(usual * np.logspace(*DECADES, STIFFNESSES), dtype=np.float64)
+
+
+def _alone(case: Case) -> LinearRotor:
+    """The rotor without rings and damping, with all its modes."""
+    rotor = case.rotor
+    if isinstance(rotor, RigidRotor):
+        return rigid_rotor(rotor.mass, 0.0, 0.0, 0.0)
+    if isinstance(rotor, JeffcottRotor):
+        return jeffcott_rotor(rotor.mass, rotor.journal_mass, rotor.shaft_stiffness, 0.0, 0.0, 0.0, 0.0)
+    return turbocharger_rotor(all_modes(case), wheels(case), journals(case), 0.0, 0.0, 0.0)
+
+
+def _plane(rotor: LinearRotor) -> tuple[Array, Array, Array, Array]:
+    """Mass, gyroscopic term, stiffness and that of springs of 1 N/m in all bearings, (n, n) of one plane."""
+    n = rotor.size // 2
+    bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
+    springs = (bearings @ rotor.journals).sum(axis=0)
+    return rotor.mass[:n, :n], rotor.gyroscopic[:n, n:], rotor.stiffness[:n, :n], springs[:n, :n]
+
+
+def _criticals(plane: tuple[Array, Array, Array, Array], stiffness: float, sign: float) -> Array:
+    """(SHOWN,) Hz; sign: of g in the equation above."""
+    from scipy.linalg import eigh
+
+    mass, gyroscopic, own, springs = plane
+    n = len(mass)
+    largest = (max(n - SHOWN, 0), n - 1)  # of 1 / omega^2: the slowest
+    k = own + stiffness * springs
+    inverse = eigh(mass + sign * gyroscopic, k, eigvals_only=True, subset_by_index=largest)[::-1]
+    found = 1.0 / (2.0 * math.pi * np.sqrt(inverse[inverse > 0.0]))
+    return np.asarray(np.append(found, np.full(SHOWN, np.nan))[:SHOWN], dtype=np.float64)

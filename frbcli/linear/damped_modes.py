@@ -1,0 +1,165 @@
+"""Damped modes of a rotor in its films at one speed: frequency, growth, sense of whirl, and shape."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.html import Tabular
+from frbcli.linear.stability import OSCILLATING, stability_points
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.ring import without_spins
+from frbcli.scene.turbocharger import all_modes, kept_modes
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+Amplitudes = NDArray[np.complex128]
+
+FORWARD, BACKWARD, MIXED = "forward", "backward", "mixed"
+STILL = 1e-3  # of the largest motion: a point that moves less has no sense of whirl
+
+
+@dataclass(frozen=True)
+class DampedMode:
+    """One oscillating mode.
+
+    eigenvalue: 1/s, imaginary part positive; direction: "forward" | "backward", or "mixed" where some points whirl
+    forward and others backward; motion: (p, 2) complex amplitudes of x and y of the points of a run, the largest
+    semi-axis of all being 1; shape: (s, 2) the same along the shaft.
+    """
+
+    eigenvalue: complex
+    direction: str
+    motion: Amplitudes
+    shape: Amplitudes
+
+    @property
+    def frequency_Hz(self) -> float:
+        """Damped frequency."""
+        return self.eigenvalue.imag / (2.0 * math.pi)
+
+    @property
+    def damping_ratio(self) -> float:
+        """-Re / |.|, negative where the mode grows."""
+        return -self.eigenvalue.real / abs(self.eigenvalue)
+
+    @property
+    def logarithmic_decrement(self) -> float:
+        """Logarithm of the ratio of two amplitudes a period apart."""
+        return -2.0 * math.pi * self.eigenvalue.real / self.eigenvalue.imag
+
+
+@dataclass(frozen=True)
+class DampedModes(Tabular):
+    """The oscillating modes at a rotor speed, those that grow first, then the least damped ones.
+
+    points: the names of the p points; positions: (s,) along the shaft in m, or over its length where a case tells no
+    length (`to_scale` is False); marks: names and positions of bearings and disks.
+    """
+
+    case: Case
+    speed_Hz: float
+    points: tuple[str, ...]
+    positions: Array
+    to_scale: bool
+    marks: tuple[tuple[str, float], ...]
+    modes: tuple[DampedMode, ...]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per mode."""
+        import pandas as pd
+
+        rows = [
+            {
+                "frequency_Hz": mode.frequency_Hz,
+                "direction": mode.direction,
+                "growth_1_s": mode.eigenvalue.real,
+                "damping_ratio": mode.damping_ratio,
+                "logarithmic_decrement": mode.logarithmic_decrement,
+            }
+            for mode in self.modes
+        ]
+        return pd.DataFrame(rows)
+
+
+def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
+    """The modes of a case about its resting position at a rotor speed (> 0).
+
+    Raises InputError as stability does, and where there is no resting position.
+    """
+    system, (point,) = stability_points(case, [speed_Hz])
+    if not point.films:
+        raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, point.problem, ""),))
+    rotor = without_spins(system.rotor, system.ring_count)
+    stiffness = np.stack([film.stiffness for film in point.films])
+    damping = np.stack([film.damping for film in point.films])
+    positions, along, to_scale, marks = _stations(case, rotor)
+    modes = []
+    for value, vector in _eigenvectors(rotor, 2.0 * math.pi * speed_Hz, stiffness, damping):
+        motion: Amplitudes = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
+        shape = np.einsum("sij,j->si", along, vector)
+        size = float(np.max(_larger(np.concatenate([motion, shape]))))
+        if size > 0.0:
+            modes.append(DampedMode(value, _direction(motion / size), motion / size, shape / size))
+    modes.sort(key=lambda mode: mode.damping_ratio)
+    names = tuple(name for name, _ in rotor.points)
+    return DampedModes(case, speed_Hz, names, positions, to_scale, marks, tuple(modes))
+
+
+def _eigenvectors(
+    rotor: LinearRotor, omega: float, stiffness: Array, damping: Array
+) -> list[tuple[complex, Amplitudes]]:
+    """Eigenvalues with positive imaginary part in 1/s, and displacements (n,), as eigenvalues of stability.py."""
+    bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
+    k = rotor.stiffness + (bearings @ stiffness @ rotor.journals).sum(axis=0)
+    d = rotor.damping + omega * rotor.gyroscopic + (bearings @ damping @ rotor.journals).sum(axis=0)
+    n = rotor.size
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(rotor.mass, np.hstack([k, d]))]])
+    values, vectors = np.linalg.eig(state)
+    chosen = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
+    return [(complex(values[i]), vectors[:n, i]) for i in chosen]
+
+
+def _direction(motion: Amplitudes) -> str:
+    """Of points with complex amplitudes (p, 2)."""
+    forward, backward = np.abs(motion[:, 0] + 1j * motion[:, 1]), np.abs(motion[:, 0] - 1j * motion[:, 1])
+    moving = forward + backward > STILL * np.max(forward + backward)
+    senses = set((forward > backward)[moving].tolist())
+    return MIXED if len(senses) > 1 else FORWARD if True in senses else BACKWARD
+
+
+def _larger(motion: Amplitudes) -> Array:
+    """(...) larger semi-axes of amplitudes (..., 2)."""
+    x, y = motion[..., 0], motion[..., 1]
+    return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
+
+
+def _stations(case: Case, rotor: LinearRotor) -> tuple[Array, Array, bool, tuple[tuple[str, float], ...]]:
+    """Positions (s,), maps (s, 2, n) of the displacements there, whether these are in m, and what lies where."""
+    kind, named = case.rotor, dict(rotor.points)
+    if isinstance(kind, TurbochargerRotor):
+        modes = all_modes(case)
+        kept = kept_modes(kind, modes)
+        along = np.zeros((len(modes.positions), 2, rotor.size))
+        along[:, 0, :kept] = along[:, 1, kept : 2 * kept] = modes.shapes[:, :kept]
+        marks = [(bearing.name, bearing.position or 0.0) for bearing in case.bearings]
+        marks += [(disk.name, disk.position) for disk in case.disks]
+        return modes.positions, along, True, tuple(marks)
+    journal = named["journal"]
+    if isinstance(kind, JeffcottRotor):
+        # The massless shaft bends to both sides of its disk as a beam that is loaded there.
+        positions = np.linspace(0.0, 1.0, 21)
+        half = np.minimum(positions, 1.0 - positions)
+        share = (3.0 * half - 4.0 * half**3)[:, None, None]
+        along = (1.0 - share) * journal + share * named["disk"]
+        return positions, along, False, (("bearing", 0.0), ("disk", 0.5), ("bearing", 1.0))
+    return np.array([0.0, 1.0]), np.stack([journal, journal]), False, (("bearing", 0.0), ("bearing", 1.0))

@@ -1,0 +1,78 @@
+"""What a run records of its films by choice: forces, film thickness, power, torque, oil flow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from frbcli.analysis.signals import films
+from frbcli.plot.curves import Over, Span, draw_curves, finish
+from frbcli.plot.signals import heading
+from frbcli.plot.style import legend_below, new_figure, styled
+from frbcli.results.container import refuse
+from frbcli.results.signals import Signal, Values
+from frbcli.results.store import Run
+from frbcli.runs.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
+
+PANEL_HEIGHT = 2.4  # inches
+# The name of an axis, and its unit in SI units.
+AXES = {
+    FORCE: ("force {} in N", 1.0),
+    THICKNESS: ("film thickness in µm", 1e6),
+    POWER: ("power in W", 1.0),
+    TORQUE: ("torque on the journal in N mm", 1e3),
+    FLOW: ("oil flow in cm³/s", 1e6),
+}
+
+
+@dataclass(frozen=True)
+class _Scaled:
+    """A signal in another unit, read slice by slice."""
+
+    signal: Signal
+    factor: float
+
+    def __len__(self) -> int:
+        return len(self.signal)
+
+    def __getitem__(self, where: slice, /) -> Values:
+        return self.factor * self.signal[where]
+
+
+def film_signal_figure(
+    runs: Sequence[Run], kind: str, from_time: float | None = None, to_time: float | None = None, over: Over = "time"
+) -> Figure:
+    """One of FILM_SIGNALS of each film, the runs overlaid, from from_time to to_time in s; x and y of a force have a
+    panel each. Raises RunFileError if a run has not recorded it."""
+    count = len(signal_names(kind, ""))
+    with styled():
+        figure = new_figure(*heading(runs), height=max(4.4, 0.8 + PANEL_HEIGHT * count))
+        panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        for part, axes in enumerate(panels):
+            draw_film_signal(axes, runs, kind, part, over, (from_time, to_time))
+        finish(panels[-1], over)
+        legend_below(figure, panels[0])
+    return figure
+
+
+def draw_film_signal(
+    axes: Axes, runs: Sequence[Run], kind: str, part: int = 0, over: Over = "time", span: Span = (None, None)
+) -> None:
+    """The curves on axes of a figure; part: 0 and 1 are x and y of a force. Raises as film_signal_figure."""
+    names = list(films(runs[0].signals)) or [""]
+    for run in runs:
+        if any(signal not in run.signals for name in names for signal in signal_names(kind, name)):
+            remedy = f"Run the case with --set 'output.signals=[\"{kind}\"]'."
+            raise refuse(run.path, f"has not recorded {FILM_SIGNALS[kind][0].replace('_', ' ')}.", remedy)
+    words, factor = AXES[kind]
+    curves = [
+        (name.replace("_", " "), [_Scaled(run.signal(signal_names(kind, name)[part]), factor) for run in runs])
+        for name in names
+    ]
+    draw_curves(axes, runs, curves, over, span)
+    axes.set_ylabel(words.format("xy"[part]))
+    if kind == THICKNESS:
+        axes.set_ylim(bottom=0.0)

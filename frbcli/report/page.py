@@ -1,0 +1,232 @@
+"""The report of a run: one page that needs nothing else, neither files nor a network."""
+
+from __future__ import annotations
+
+import base64
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from frbcli.case.listing import values
+from frbcli.case.load import load_case_text
+from frbcli.errors import Fault, FrbError, InputError, printable
+from frbcli.plot.eccentricity import eccentricity_figure
+from frbcli.plot.film_signals import film_signal_figure
+from frbcli.plot.levels import levels
+from frbcli.plot.oil_content import SIGNAL as OIL_CONTENT
+from frbcli.plot.oil_content import oil_content_figure
+from frbcli.plot.ring_speed import ring_speed_figure
+from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
+from frbcli.plot.speeds import speeds_figure, times_of_speeds
+from frbcli.plot.style import Picture, picture
+from frbcli.plot.summary import FEWEST_SAMPLES
+from frbcli.plot.waterfall import level_label, reading, run_spectra
+from frbcli.report.sketch import film_sketches, rotor_sketch
+from frbcli.report.waterfall import Waterfall, page_waterfall
+from frbcli.results.place import wrong_place
+from frbcli.results.records import SPEED
+from frbcli.results.store import Run
+from frbcli.runs.account import account
+from frbcli.runs.header import FILM_SIGNALS
+from frbcli.scene.findings import Findings, findings
+from frbcli.scene.plan import make_plan
+
+MOST_EVENTS = 60  # of the table and the picture
+CHOSEN = 4  # moments of orbits and spectra, where none are asked for
+SPEEDS_NOTE = "Orbits of the last revolutions before a moment, and the spectrum about it."
+NARROW = 4.9  # inches: the width of one of two pictures beside each other
+TEXTS = ("page.html", "style.css", "waterfall.js")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A picture as a data URI, and what it shows."""
+
+    data: str
+    caption: str
+
+
+def write_report(
+    run: Run, path: str | Path, speeds_Hz: Sequence[float] = (), signal: str = "journal"
+) -> Path:
+    """Write the report of a run to `path`. Raises as report, and InputError if the file cannot be written."""
+    path = Path(path)
+    if wrong := wrong_place(path):
+        raise _refuse(f"{path} {wrong[0]}", wrong[1])
+    page = report(run, speeds_Hz, signal)
+    try:
+        path.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise _refuse(f"{path} cannot be written: {error.strerror}.", "Choose another place with -o.") from error
+    return path
+
+
+def report(run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal") -> str:
+    """The page as HTML. speeds_Hz: of the orbits and spectra, by default those of the events and the last one; signal:
+    of waterfall, orbits and spectra, as in `frb waterfall`.
+
+    Raises RunFileError for a run without samples, InputError for a speed that the run does not reach.
+    """
+    end = ends(run)[1]
+    found = events(run)[:MOST_EVENTS]
+    spectra = run_spectra(run, signal, None, "x") if len(run) >= FEWEST_SAMPLES else None
+    waterfall: Waterfall | None = None
+    if spectra is not None:
+        waterfall = page_waterfall(levels(run, signal, spectra), clearance(run, bearing_of(run, signal)), found)
+    times = _moments(run, speeds_Hz, found, end)
+    title, words = heading([run])
+    environment = Environment(
+        loader=PackageLoader("frbcli.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    style, script = (Markup(_text(environment, name)) for name in TEXTS[1:])
+    return environment.get_template(TEXTS[0]).render(
+        title=printable(title),
+        subtitle=printable(", ".join(word for word in (run.command.replace("run", "run-"), words, run.status) if word)),
+        style=style,
+        script=script,
+        cards=_cards(run, found),
+        events=[_event(number, event) for number, event in enumerate(found, start=1)],
+        waterfall=None if waterfall is None else Waterfall(Markup(waterfall.svg), Markup(waterfall.data)),
+        waterfall_note="" if spectra is None else _note(run, signal, reading(spectra)),
+        courses=_courses(run),
+        speeds=None if spectra is None else _shown(speeds_figure(run, times, spectra, signal), SPEEDS_NOTE),
+        account=account(run) if run.cost and run.error else [],
+        file=f"{run.case_name or 'case'}.toml",
+        commands=_commands(run),
+        versions=printable(", ".join(f"{name} {version}" for name, version in run.versions.items())),
+        case_text=run.case_text,
+        **_machine(run),
+    )
+
+
+def _machine(run: Run) -> dict[str, Any]:
+    """What the page tells of the case, as far as its text is one of this version."""
+    nothing: dict[str, Any] = {
+        "sketch": "", "sketch_note": "", "films": (), "mass": "", "loads": (), "values": (), "plan": (), "problem": "",
+    }  # fmt: skip
+    try:
+        case = load_case_text(run.case_text, name=run.case_name)
+        told, plan, (sketch, note) = findings(case), make_plan(case), rotor_sketch(case)
+    except FrbError as error:
+        return nothing | {"problem": f"The case of this run is not read by this version: {printable(str(error))}"}
+    return nothing | {
+        "sketch": Markup(sketch),
+        "sketch_note": note,
+        "films": [(name.replace("_", " "), Markup(drawing)) for name, drawing in film_sketches(case)],
+        "mass": _mass(told),
+        "loads": [_load(each) for each in told.films],
+        "values": [_value(each) for each in values(case)],
+        "plan": [(each.choice, each.value, each.reason) for each in plan.decisions],
+    }
+
+
+def _mass(found: Findings) -> str:
+    if found.mass is None:
+        return ""
+    natural = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
+    told = f"; natural frequencies {found.supported}: {natural} Hz" if natural else ""
+    return f"Rotor of {found.mass:.4g} kg{told}."
+
+
+def _load(film: Any) -> tuple[str, ...]:
+    number = "-" if np.isnan(film.sommerfeld_number) else f"{film.sommerfeld_number:.3g}"
+    return (film.film or "film", f"{film.load:.4g}", f"{1e-5 * film.mean_pressure:.3g}", number, film.supply)
+
+
+def _value(value: Any) -> tuple[str, str, str]:
+    number = f"{value.value:.6g}" if isinstance(value.value, float) else printable(str(value.value))
+    return value.key, f"{number} {value.unit}".rstrip(), value.shown if value.unit else ""
+
+
+def _cards(run: Run, found: Sequence[dict[str, Any]]) -> list[tuple[str, str]]:
+    """The figures that are asked for first."""
+    fastest = max(float(np.max(np.abs(run[SPEED]))), 0.0)
+    cards = [(f"{fastest:.4g} Hz", f"highest speed, {60.0 * fastest:.0f} rpm")]
+    for kind, words in (("critical-speed", "critical speed"), ("onset", "onset of whirl")):
+        first = next((event for event in found if event["kind"] == kind), None)
+        if first is None:
+            cards.append(("none", words))
+            continue
+        ratio = first["frequency_ratio"]
+        share = "" if ratio in (None, 1.0) else f", {ratio:.3f} ω"
+        cards.append((f"{first['speed_Hz']:.1f} Hz", words + share))
+    largest = max((float(np.max(run[name])) for name in run.signals if name.startswith("eccentricity")), default=0.0)
+    cards.append((f"{largest:.3f}", "largest eccentricity"))
+    if run.error.get("eccentricity") is not None:
+        cards.append((f"{run.error['eccentricity']:.1e}", "stated error of the eccentricity"))
+    if "cpu_s" in run.cost:
+        cards.append((f"{run.cost['cpu_s']:.3g} s", "CPU time"))
+    return cards
+
+
+def _event(number: int, event: dict[str, Any]) -> tuple[str, ...]:
+    def told(key: str, form: str) -> str:
+        return "-" if event[key] is None else format(event[key], form)
+
+    name = event["kind"].replace("-", " ") + (f", {event['film']}" if event["film"] else "")
+    return (str(number), name.replace("_", " "), told("t_s", ".3f"), told("speed_Hz", ".1f"),
+            told("frequency_Hz", ".1f"), told("frequency_ratio", ".3f"))  # fmt: skip
+
+
+def _note(run: Run, signal: str, words: str) -> str:
+    label = level_label(run, signal).replace("C$_i$ + C$_o$", "Cᵢ + Cₒ")
+    point = signal.replace("_", " ")
+    return f"{label[:1].upper()}{label[1:]}, x of the {point}; {words}. Numbers are those of the events."
+
+
+def _courses(run: Run) -> list[Shown]:
+    """Pictures over time of all that the run holds."""
+    figures = [(eccentricity_figure([run]), "Eccentricity.")]
+    if any(name.startswith("ring_speed") for name in run.signals):
+        figures.append((ring_speed_figure([run]), "Speed of the rings over that of the rotor."))
+    if any(name.startswith(OIL_CONTENT) for name in run.signals):
+        figures.append((oil_content_figure([run]), "Oil fraction of the films."))
+    for kind, (quantity, _, _) in FILM_SIGNALS.items():
+        if any(name.startswith(quantity) for name in run.signals):
+            words = quantity.replace("_", " ")
+            figures.append((film_signal_figure([run], kind), f"{words[:1].upper()}{words[1:]}."))
+    for figure, _ in figures:
+        width, height = figure.get_size_inches()
+        figure.set_size_inches(NARROW, height * NARROW / width)
+    return [_shown(*figure) for figure in figures]
+
+
+def _shown(figure: Picture, caption: str) -> Shown:
+    figure.suptitle("")
+    data = base64.b64encode(picture(figure, ".svg", own_letters=True)).decode()
+    return Shown(f"data:image/svg+xml;base64,{data}", caption)
+
+
+def _moments(run: Run, speeds_Hz: Sequence[float], found: Sequence[dict[str, Any]], end: float) -> list[float]:
+    """Times in s of orbits and spectra."""
+    if speeds_Hz:
+        times = times_of_speeds(run, speeds_Hz)
+        if len(times) < len(speeds_Hz):
+            fastest = float(np.max(np.abs(run[SPEED])))
+            raise _refuse("a speed is asked for that the run does not reach.", f"It turns with up to {fastest:.4g} Hz.")
+        return times
+    kinds = dict[str, float]()
+    for event in found:
+        kinds.setdefault(event["kind"], event["t_s"])
+    return sorted({*list(kinds.values())[: CHOSEN - 1], end})
+
+
+def _commands(run: Run) -> str:
+    name = shlex.quote(f"{run.case_name or 'case'}.toml")
+    target = shlex.quote(run.path.name)
+    return f"frb {run.command} {name} -o {target}\nfrb report {target}"
+
+
+def _text(environment: Environment, name: str) -> str:
+    assert environment.loader is not None
+    return environment.loader.get_source(environment, name)[0]
+
+
+def _refuse(problem: str, remedy: str) -> InputError:
+    return InputError("report", (Fault("output", "", None, problem, remedy),))

@@ -1,0 +1,238 @@
+"""Sketches of a machine as SVG: the rotor in its bearings along the axis, and every film around it.
+
+Along the axis everything that the case tells is to scale. A disk has no dimensions in a case: it is drawn as the solid
+cylinder of its mass and inertias. Around the axis clearances are magnified; angles are to scale.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from frbcli.case.bearing import AxialGrooves, Bores, CircumferentialGroove, FilmGeometry, Pocket, SingleFilmBearing
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.report.svg import box, curve, drawing, element, line, text
+from frbcli.scene.films import film_places
+
+WIDTH, MARGIN = 720.0, 46.0  # of the drawing along the axis
+HIGHEST = 135.0  # half of it, at most
+HOUSING = 0.45  # thickness of a shell over the radius of its film
+SPAN, DISK = 5.0, 2.2  # of a rotor without a shaft: distance of its bearings over their width, disk over their journal
+ROUND, SHOWN = 200.0, 0.16  # size of a film around the axis; clearance there over the radius
+AROUND = 181  # points of a circle
+DENSITY = 7850.0  # kg/m^3 of steel, for the thickness of a disk without inertias
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """From m along and across the axis to the drawing."""
+
+    per_m: float
+    left: float
+    middle: float
+
+    def box(self, start: float, end: float, inner: float, outer: float, kind: str) -> str:
+        """A body of revolution between two radii, cut along the axis: above and below it."""
+        x, width, height = self.left + self.per_m * start, self.per_m * (end - start), self.per_m * (outer - inner)
+        above = box(x, self.middle - self.per_m * outer, width, height, kind)
+        if inner == 0.0:
+            return box(x, self.middle - self.per_m * outer, width, 2.0 * height, kind)
+        return above + box(x, self.middle + self.per_m * inner, width, height, kind)
+
+
+def rotor_sketch(case: Case) -> tuple[str, str]:
+    """(drawing along the axis, a sentence about what is not to scale)."""
+    if isinstance(case.rotor, TurbochargerRotor) and case.shaft:
+        return _turbocharger(case), "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
+    if isinstance(case.rotor, TurbochargerRotor):
+        return "", "The shaft of this rotor is in a file of its own and is not drawn."
+    return _symmetric(case), "Bearings to scale; shaft and disk have no dimensions in this model."
+
+
+def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
+    """(name, drawing around the axis) of every film; clearances are magnified."""
+    films = film_places(case)
+    return tuple((place.name or "the film", _around(place.geometry, place.name or "film")) for place in films)
+
+
+def _bearing_parts(case: Case, number: int, at: float, scale: _Scale) -> Iterator[str]:
+    """A bearing with its middle at z = at, in m; shells are as thick as they look."""
+    bearing = case.bearings[number]
+    if isinstance(bearing, SingleFilmBearing):
+        yield from _shell(bearing, at, scale, "shell")
+        return
+    inner, outer = bearing.inner, bearing.outer
+    half = 0.5 * max(inner.width, outer.width)
+    yield scale.box(at - half, at + half, 0.5 * inner.diameter, 0.5 * outer.diameter, "ring")
+    yield from _supply(inner, at, 0.5 * outer.diameter, scale)
+    yield from _shell(outer, at, scale, "shell")
+
+
+def _shell(film: FilmGeometry, at: float, scale: _Scale, kind: str) -> Iterator[str]:
+    inner, half = 0.5 * film.diameter + film.clearance, 0.5 * film.width
+    outer = (1.0 + HOUSING) * inner
+    yield scale.box(at - half, at + half, inner, outer, kind)
+    yield from _supply(film, at, outer, scale)
+
+
+def _supply(film: FilmGeometry, at: float, outer: float, scale: _Scale) -> Iterator[str]:
+    """Where oil enters: a groove or bores through the body outside of the film, a groove along it."""
+    supply, start, inner = film.supply, at - 0.5 * film.width, 0.5 * film.diameter
+    if isinstance(supply, CircumferentialGroove):
+        middle, half = start + supply.axial_position * film.width, 0.06 * film.width
+        yield scale.box(max(middle - half, start), min(middle + half, start + film.width), inner, outer, "oil")
+    elif isinstance(supply, Bores):
+        middle, half = start + supply.axial_position * film.width, 0.5 * supply.diameter
+        yield scale.box(middle - half, middle + half, inner, outer, "oil")
+    elif isinstance(supply, AxialGrooves | Pocket):
+        width = film.width if isinstance(supply, AxialGrooves) else supply.width
+        yield scale.box(at - 0.5 * width, at + 0.5 * width, inner, inner + 0.25 * (outer - inner), "oil")
+
+
+def _largest_radius(case: Case) -> float:
+    films = [b if isinstance(b, SingleFilmBearing) else b.outer for b in case.bearings]
+    return max((1.0 + HOUSING) * 0.5 * film.diameter for film in films)
+
+
+def _turbocharger(case: Case) -> str:
+    length = sum(section.length for section in case.shaft)
+    disks = [(disk, *_cylinder(disk.mass, disk.polar_inertia, disk.diametral_inertia)) for disk in case.disks]
+    reach = max([_largest_radius(case), *(radius for _, radius, _ in disks), *(0.5 * s.diameter for s in case.shaft)])
+    left = min([0.0, *(disk.position - 0.5 * width for disk, _, width in disks)])
+    right = max([length, *(disk.position + 0.5 * width for disk, _, width in disks)])
+    per_m = min((WIDTH - 2.0 * MARGIN) / (right - left), HIGHEST / reach)
+    half = per_m * reach
+    scale = _Scale(per_m, 0.5 * (WIDTH - per_m * (right + left)), half + 30.0)
+    parts, z = [], 0.0
+    for disk, radius, width in disks:
+        parts.append(scale.box(disk.position - 0.5 * width, disk.position + 0.5 * width, 0.0, radius, "disk"))
+    for section in case.shaft:
+        inner = 0.5 * section.inner_diameter
+        parts.append(scale.box(z, z + section.length, inner, 0.5 * section.diameter, "shaft"))
+        z += section.length
+    for number, bearing in enumerate(case.bearings):
+        if bearing.position is not None:
+            parts += _bearing_parts(case, number, bearing.position, scale)
+            parts.append(_named(bearing.name, bearing.position, scale, half + 16.0))
+    for disk, radius, _ in disks:
+        parts.append(_named(f"{disk.name} {1e3 * disk.mass:.3g} g", disk.position, scale, -per_m * radius - 6.0))
+    return _finish(parts, scale, half, length)
+
+
+def _symmetric(case: Case) -> str:
+    assert not isinstance(case.rotor, TurbochargerRotor)
+    bearing = case.bearings[0]
+    film = bearing if isinstance(bearing, SingleFilmBearing) else bearing.inner
+    span, journal = SPAN * film.width, 0.5 * film.diameter
+    disk = max(DISK * journal, 1.1 * _largest_radius(case))
+    half_width = 0.5 * max(film.width, _outer_width(case))
+    per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
+    half = per_m * disk
+    scale = _Scale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
+    thin = 0.45 * journal if case.rotor.kind == "jeffcott" else journal
+    parts = [scale.box(0.0, span, 0.0, thin, "vague")]
+    parts.append(scale.box(0.5 * span - 0.3 * film.width, 0.5 * span + 0.3 * film.width, 0.0, disk, "vague"))
+    for at in (0.0, span):
+        parts.append(scale.box(at - half_width, at + half_width, 0.0, journal, "shaft"))
+        parts += _bearing_parts(case, 0, at, scale)
+        parts.append(_named("bearing", at, scale, half + 16.0))
+    parts.append(_named(f"{case.rotor.mass:.4g} kg", 0.5 * span, scale, -half - 6.0))
+    return _finish(parts, scale, half, None)
+
+
+def _outer_width(case: Case) -> float:
+    bearing = case.bearings[0]
+    return bearing.width if isinstance(bearing, SingleFilmBearing) else bearing.outer.width
+
+
+def _named(words: str, at: float, scale: _Scale, y: float) -> str:
+    return text(scale.left + scale.per_m * at, scale.middle + y, words)
+
+
+def _finish(parts: list[str], scale: _Scale, half: float, length: float | None) -> str:
+    """With the axis and a bar for the scale."""
+    height = 2.0 * half + 86.0
+    bar = _round_length((WIDTH - 2.0 * MARGIN) / scale.per_m / 6.0)
+    y, x = height - 14.0, MARGIN
+    parts.append(line(8.0, scale.middle, WIDTH - 8.0, scale.middle, "axis"))
+    parts.append(line(x, y, x + scale.per_m * bar, y, "bar"))
+    parts.append(text(x + scale.per_m * bar + 8.0, y + 4.0, f"{1e3 * bar:g} mm", anchor="start"))
+    if length is not None:
+        parts.append(text(WIDTH - MARGIN, y + 4.0, f"shaft of {1e3 * length:g} mm", anchor="end"))
+    return drawing(WIDTH, height, parts, "rotor and bearings, cut along the axis")
+
+
+def _round_length(about: float) -> float:
+    """1, 2 or 5 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(about))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= about)
+
+
+def _cylinder(mass: float, polar: float, diametral: float) -> tuple[float, float]:
+    """(radius, width) in m of the solid cylinder with these inertias; of steel where they are not given."""
+    if polar <= 0.0:
+        radius = (mass / (DENSITY * math.pi)) ** (1.0 / 3.0)
+        return radius, radius
+    radius = math.sqrt(2.0 * polar / mass)
+    square = 12.0 * diametral / mass - 3.0 * radius**2
+    return radius, max(math.sqrt(max(square, 0.0)), 0.08 * radius)
+
+
+def _around(film: FilmGeometry, name: str) -> str:
+    """Shell, journal in the middle, openings; phi = 0 at the top, counter-clockwise."""
+    middle, radius = 0.5 * ROUND + 8.0, 0.34 * ROUND
+    size = 2.0 * middle
+
+    def place(phi: float, r: float) -> tuple[float, float]:
+        return middle - r * math.sin(phi), middle - r * math.cos(phi)
+
+    turn = [2.0 * math.pi * i / (AROUND - 1) for i in range(AROUND)]
+    outer = [place(phi, 1.4 * radius) for phi in turn]
+    inner = [place(phi, radius * (1.0 + SHOWN * _gap(film, phi))) for phi in turn]
+    parts = [curve(outer, "shell", closed=True), curve(inner, "film", closed=True)]
+    for start, end in _openings(film):
+        arc = [start + (end - start) * i / 40.0 for i in range(41)]
+        rim = [place(phi, radius * (1.0 + SHOWN * _gap(film, phi))) for phi in arc]
+        back = [place(phi, 1.27 * radius) for phi in reversed(arc)]
+        parts.append(curve(rim + back, "oil", closed=True))
+    journal = radius
+    parts.append(element("circle", cx=middle, cy=middle, r=journal, kind="shaft"))
+    parts += _arrow([place(-0.5 + 1.0 * i / 20.0, 0.55 * radius) for i in range(21)])
+    parts.append(text(middle, middle + 6.0, f"⌀ {1e3 * film.diameter:g} mm"))
+    parts.append(text(middle, middle + 22.0, f"C {1e6 * film.clearance:.3g} µm"))
+    return drawing(size, size, parts, f"{name}, cut across the axis")
+
+
+def _arrow(shaft: list[tuple[float, float]]) -> list[str]:
+    """An arrow along points."""
+    (x_1, y_1), (x_2, y_2) = shaft[-2:]
+    ahead = math.atan2(y_2 - y_1, x_2 - x_1)
+    left, right = ((x_2 - 8.0 * math.cos(ahead + side), y_2 - 8.0 * math.sin(ahead + side)) for side in (-0.45, 0.45))
+    return [curve(shaft, "arrow"), curve([left, shaft[-1], right], "arrow")]
+
+
+def _gap(film: FilmGeometry, phi: float) -> float:
+    """Of the centred journal over the clearance, see frbcli/film/gap.py."""
+    lobes = film.lobes
+    if lobes is None:
+        return 1.0
+    arc = 2.0 * math.pi / lobes.count
+    along = (phi - lobes.position + 0.5 * arc) % arc - lobes.offset * arc
+    return min(1.0 + lobes.preload / (1.0 - lobes.preload) * (1.0 - math.cos(along)), 2.4)
+
+
+def _openings(film: FilmGeometry) -> Iterator[tuple[float, float]]:
+    """From and to phi in rad."""
+    supply = film.supply
+    if isinstance(supply, AxialGrooves):
+        middles, half = [2.0 * math.pi * i / supply.count for i in range(supply.count)], 0.5 * supply.opening_angle
+    elif isinstance(supply, Bores):
+        middles = [2.0 * math.pi * i / supply.count for i in range(supply.count)]
+        half = supply.diameter / film.diameter
+    elif isinstance(supply, Pocket):
+        middles, half = [0.0], 0.5 * supply.opening_angle
+    else:
+        return
+    yield from ((supply.position + middle - half, supply.position + middle + half) for middle in middles)

@@ -1,0 +1,69 @@
+"""What a run cost and how exact it is, in words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from frbcli.results.store import Run
+
+
+def account(run: Run) -> list[tuple[str, str, str]]:
+    """Rows of a table, what and how much and a remark: cost, oil that passed, stated errors."""
+    cost, error = run.cost, run.error
+    film = error.get("film_force_relative")
+    against = "against a finer mesh" if error.get("model_relative") is None else "of the short-bearing theory"
+    return [
+        ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.3g} ms per hour"),
+        (
+            "steps",
+            f"{cost['steps']}",
+            f"{cost['steps_per_revolution']:.3g} per revolution, {cost['rejected_steps']} rejected",
+        ),
+        ("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each"),
+        *_oil_rows(run),
+        *_heat_rows(run),
+        ("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes"),
+        ("error, time integration", f"{error['time_integration']:.1e}", "of the eccentricity"),
+        ("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}"),
+        *_error_rows(error),
+    ]
+
+
+def _oil_rows(run: Run) -> list[tuple[str, str, str]]:
+    """Oil that passed mass-conserving films."""
+    if "oil_in_m3" not in run.cost:
+        return []
+    came, left = (1e9 * run.cost[name] for name in ("oil_in_m3", "oil_out_m3"))
+    off = run.error.get("oil_balance_relative")
+    defect = "" if off is None else f", unaccounted for {off:.0e}"
+    if "oil_created_m3" in run.cost:
+        made = 1e9 * run.cost["oil_created_m3"]
+        defect = f", {made:.3g} mm^3 created" if made >= 0.0 else f", {-made:.3g} mm^3 destroyed"
+    return [("oil", f"{came:.3g} mm^3 in", f"{left:.3g} mm^3 out{defect}")]
+
+
+def _heat_rows(run: Run) -> list[tuple[str, str, str]]:
+    """Where the heat of the films went, of one bearing each."""
+    if "heat_dissipated_J" not in run.cost:
+        return []
+    whole, oil, walls, kept = (run.cost[f"heat_{name}_J"] for name in ("dissipated", "carried", "into_walls", "kept"))
+    off = run.error.get("heat_balance_relative")
+    defect = "" if off is None else f", unaccounted for {off:.0e}"
+    parts = f"{oil:.4g} J with the oil, {walls:.4g} J into walls, {kept:.4g} J kept"
+    return [("heat", f"{whole:.4g} J", f"{parts}{defect}")]
+
+
+def _predicted(cost: dict[str, Any]) -> str:
+    """The prediction of the plan, which runs of earlier versions lack."""
+    return f"predicted {cost['predicted_cpu_s']:.2g} s, " if "predicted_cpu_s" in cost else ""
+
+
+def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
+    """The parts of the error that not every run has."""
+    rows = []
+    if error.get("modal_reduction") is not None:
+        rows.append(("error, modal reduction", f"{error['modal_reduction']:.1e}", "of the natural frequencies"))
+    if error.get("eccentricity") is not None:
+        until = f"total, until {error['quiet_until_s']:.3g} s"
+        rows.append(("error of the eccentricity", f"{error['eccentricity']:.1e}", until))
+    return rows

@@ -1,0 +1,123 @@
+"""What a run records of its films by choice (`output.signals`), at the samples of its file.
+
+The force of a film is what the equation of the rotor leaves for it: with the accelerations at the ends of the steps it
+is that of the time loop, whatever the film, and in contact the force of the surfaces is part of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.film.cells.data import VolumeFilms
+from frbcli.film.gap import Section, gap_height
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.runs.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
+from frbcli.scene.system import System
+from frbcli.solve.contact import felt_motion, touches
+from frbcli.solve.state import SLIP, SUM, Array, Control
+from frbcli.solve.watched import DRAG, LEAVES, NOTES
+
+OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW)  # they ask for what is known at the ends of the steps alone
+AROUND = 360  # angles at which the gap of lobes is looked at
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Of a run at k output times, SI: times (k,); displacements q, velocities v (k, n); noted (k, n + NOTES films), see
+    advance_watched of solve/watched.py, without columns if nothing is asked for that needs it."""
+
+    times: Array
+    q: Array
+    v: Array
+    noted: Array
+
+
+def film_signals(
+    system: System, control: Control, profile: SpeedProfile, samples: Samples, kinds: Sequence[str]
+) -> dict[str, Array]:
+    """The signals (k,) of all films by their names.
+
+    force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
+    by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
+    the film, m^3/s.
+    """
+    found = dict[str, Array]()
+    if any(kind in OF_THE_STEPS for kind in kinds):
+        forces = film_forces(system.rotor, profile, samples)
+        torques, powers = _torques(system, profile, samples, forces)
+        flows = _flows(system, samples)
+    for i, name in enumerate(system.names):
+        for kind in kinds:
+            if kind == FORCE:
+                found |= dict(zip(signal_names(kind, name), forces[:, i].T, strict=True))
+            elif kind == THICKNESS:
+                found[signal_names(kind, name)[0]] = _thickness(system, control, i, samples.q)
+            else:
+                found[signal_names(kind, name)[0]] = {POWER: powers, TORQUE: torques, FLOW: flows}[kind][:, i]
+    return found
+
+
+def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> Array:
+    """(k, films, 2) N, on the journal by one bearing: what the equation of the rotor leaves for the films."""
+    alpha, omega, angle = np.array([profile.rotation(float(t)) for t in samples.times]).reshape(-1, 3).T
+    sine, cosine = np.sin(angle), np.cos(angle)
+    a = samples.noted[:, : rotor.size]
+    left = a @ rotor.mass.T + samples.v @ rotor.damping.T + samples.q @ rotor.stiffness.T - rotor.static_load
+    left = left + omega[:, None] * (samples.v @ rotor.gyroscopic.T)
+    left = left - (alpha * cosine - omega**2 * sine)[:, None] * rotor.unbalance_cos
+    left = left - (alpha * sine + omega**2 * cosine)[:, None] * rotor.unbalance_sin
+    rows = rotor.journals.reshape(-1, rotor.size) * np.repeat(rotor.multiplicity, 2)[:, None]
+    return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
+
+
+def _torques(system: System, profile: SpeedProfile, samples: Samples, forces: Array) -> tuple[Array, Array]:
+    """(k, films) torque on the journals in N m, as spin_up of solve/ring_spin.py has it, and power in W."""
+    n, count = system.rotor.size, len(system.names)
+    bodies = np.column_stack([profile.speed(samples.times), samples.v[:, list(system.spins)]])
+    total, slip = (bodies @ system.turning[:, row].T for row in (SUM, SLIP))
+    drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]
+    place, rate = (np.einsum("fij,kj->kfi", system.rotor.journals, each) for each in (samples.q, samples.v))
+    couette = -np.array(system.drags) * drag * slip
+    poiseuille = np.zeros_like(couette)
+    if system.torque == "all":
+        poiseuille = -0.5 * (place[..., 0] * forces[..., 1] - place[..., 1] * forces[..., 0])
+    power = -couette * slip - poiseuille * total - (forces * rate).sum(axis=2)
+    return couette + poiseuille, power
+
+
+def _flows(system: System, samples: Samples) -> Array:
+    """(k, films) m^3/s of oil that leaves."""
+    n, count = system.rotor.size, len(system.names)
+    leaves: Array = samples.noted[:, n + LEAVES * count : n + NOTES * count]
+    if not isinstance(system.films, VolumeFilms):
+        return leaves
+    sections = [film.section for film in system.volumes]
+    scales = np.array([each.copies * each.radius * each.width * each.clearance for each in sections])
+    return np.asarray(leaves * scales, dtype=np.float64)
+
+
+def _thickness(system: System, control: Control, i: int, q: Array) -> Array:
+    """(k,) m: the smallest gap of film i; in contact that which surfaces keep."""
+    clearance = system.clearances[i]
+    d = q @ system.rotor.journals[i].T / clearance
+    eccentricity = np.hypot(d[:, 0], d[:, 1])
+    limits = control.contact_eccentricity, control.contact_stiffness
+    for sample in np.flatnonzero([touches(float(each), *limits) for each in eccentricity]):
+        d[sample] = felt_motion(control, d[sample], np.zeros(2))[0]
+    section = system.volumes[i].section if system.volumes else None
+    if section is None or section.lobes is None:
+        return np.asarray(clearance * (1.0 - np.hypot(d[:, 0], d[:, 1])))
+    return _lobed(section, d)
+
+
+def _lobed(section: Section, d: Array) -> Array:
+    """(k,) m of displacements d (k, 2) over the clearance."""
+    phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
+    still = gap_height(section, (0.0, 0.0), phi)
+    height = still + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)
+    return np.asarray(section.clearance * height.min(axis=1))

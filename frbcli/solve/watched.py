@@ -1,0 +1,102 @@
+"""The time loop step by step, for runs that record more than the motion of the rotor. Compiled.
+
+It takes the same steps as `advance`, looks at rotor and films after each of them, and interpolates between the ends of
+a step as they are seen: what a run records beside is not known inside of one.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba.extending import overload
+
+from frbcli.compiled import compiled
+from frbcli.film.cells.balances import OUTFLOW
+from frbcli.solve.element_films import LEFT
+from frbcli.solve.film_forces import drag_integral
+from frbcli.solve.films import have_cells, have_elements, make_work
+from frbcli.solve.heat import NO_HEAT
+from frbcli.solve.scratch import Scratch, make_scratch
+from frbcli.solve.state import HISTORY, NOW, OUTPUTS, RUNNING, TIME, Array, Control, RotorData, State
+from frbcli.solve.tableau import Tableau
+from frbcli.solve.time_loop import Own, _advance
+
+DRAG, LEAVES, NOTES = range(3)  # rows that are noted of each film: drag_integral, and the oil that leaves it
+
+
+def advance_watched(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
+    out_v: Array, out_oil: Array, noted: Array, out_noted: Array,
+) -> tuple[int, int]:  # fmt: skip
+    """As advance of time_loop.py. noted (n + NOTES films,) the rotor's accelerations and what is noted of its films, at
+    the end of the last step, not a number before the first one; out_noted (rows, the same): at the output times."""
+    stages, m, bodies = tableau.times.shape[0], 2 * rotor.clearances.shape[0], 1 + rotor.spins.shape[0]
+    own = Own(
+        np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros_like(state.q), np.zeros(bodies),
+        np.zeros(bodies), np.zeros(bodies - 1),
+    )  # fmt: skip
+    scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
+    status, rows = _advance_watched(
+        rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil, noted, out_noted,
+        NO_HEAT, np.zeros((len(out_q), 0)),
+    )  # fmt: skip
+    return int(status), int(rows)
+
+
+def oil_leaving(films: Any, work: Any, flows: Array, f: int) -> float:
+    """Oil that leaves film f now: of cells over its scale, of the published form in m^3/s; 0 of a film that
+    does not tell it."""
+    raise NotImplementedError
+
+
+@overload(oil_leaving)
+def _oil_leaving(films, work, flows, f):  # type: ignore[no-untyped-def]
+    if have_elements(films):
+        return lambda films, work, flows, f: flows[NOW, f, LEFT]
+    if have_cells(films):
+        return lambda films, work, flows, f: work.stage_flows[work.stage_flows.shape[0] - 1, f, OUTFLOW]
+    return lambda films, work, flows, f: 0.0
+
+
+@compiled()
+def _note(rotor: RotorData, films: Any, work: Any, q: Array, a: Array, flows: Array, noted: Array) -> None:
+    n, count = q.shape[0], rotor.clearances.shape[0]
+    for i in range(n):
+        noted[i] = a[i]
+    for f in range(count):
+        d_x, d_y = 0.0, 0.0
+        for i in range(n):
+            d_x += rotor.journals[f, 0, i] * q[i] / rotor.clearances[f]
+            d_y += rotor.journals[f, 1, i] * q[i] / rotor.clearances[f]
+        noted[n + DRAG * count + f] = drag_integral(films, work, f, d_x, d_y, rotor.torque_terms[1])
+        noted[n + LEAVES * count + f] = oil_leaving(films, work, flows, f)
+
+
+@compiled()
+def _advance_watched(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
+    own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array, noted: Array, out_noted: Array, heat: Any,
+    out_heat: Array,
+) -> tuple[int, int]:  # fmt: skip
+    numbers, q, a, flows = state.numbers, state.q, state.a, state.flows
+    status, written, now = RUNNING, 0, np.empty_like(noted)
+    for _ in range(budget):
+        t, first = numbers[TIME], numbers[OUTPUTS] - written
+        status, rows = _advance(
+            rotor, films, tableau, control, state, scratch, work, own, 1, out_q[written:], out_v[written:],
+            out_oil[written:], heat, out_heat,
+        )  # fmt: skip
+        step = numbers[TIME] - t
+        if step > 0.0:
+            _note(rotor, films, work, q, a, flows, now)
+            for row in range(written, written + rows):
+                share = min(max(((first + row) * control.output_step - t) / step, 0.0), 1.0)
+                for i in range(now.shape[0]):
+                    before = noted[i] if noted[i] == noted[i] else now[i]
+                    out_noted[row, i] = before + share * (now[i] - before)
+            noted[:] = now
+        written += rows
+        if status != RUNNING or step == 0.0:
+            break
+    return status, written

@@ -1,0 +1,86 @@
+"""A computed run beside a measured one: their events and their ridges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
+from frbcli.analysis.signals import Values, bearing_clearance
+from frbcli.errors import Fault, InputError
+from frbcli.html import Tabular
+from frbcli.results.records import SPEED
+from frbcli.results.store import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FEWEST = 4  # speeds that both runs have
+
+
+@dataclass(frozen=True)
+class AgainstMeasured(Tabular):
+    """computed, measured: the runs and their ridges at the same speeds; clearance: m, that of the computed run."""
+
+    run: Run
+    measurement: Run
+    computed: Ridges
+    measured: Ridges
+    clearance: float
+
+    def deviations(self) -> tuple[tuple[str, float, float], ...]:
+        """(what, root mean square of computed less measured, that of the measured ridge), m or Hz; of a whirl where
+        both runs whirl."""
+        both = self.computed.whirls & self.measured.whirls
+        rows = []
+        for number, axis in enumerate("xy"):
+            mine, other = self.computed.synchronous[:, number], self.measured.synchronous[:, number]
+            if np.nanmax(other, initial=0.0) > 0.0:
+                rows.append((f"synchronous amplitude in {axis}", _rms(mine - other), _rms(other)))
+        rows.append(("frequency of the whirl", _rms((self.computed.whirl_Hz - self.measured.whirl_Hz)[both]),
+                     _rms(self.measured.whirl_Hz[both])))  # fmt: skip
+        rows.append(("amplitude of the whirl", _rms((self.computed.whirl - self.measured.whirl)[both]),
+                     _rms(self.measured.whirl[both])))  # fmt: skip
+        return tuple(rows)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per speed."""
+        import pandas as pd
+
+        columns: dict[str, Values] = {"speed_Hz": self.computed.speed_Hz}
+        for name, found in (("computed", self.computed), ("measured", self.measured)):
+            columns |= {f"synchronous_x_m_{name}": found.synchronous[:, 0]}
+            columns |= {f"synchronous_y_m_{name}": found.synchronous[:, 1]}
+            columns |= {f"whirl_Hz_{name}": np.where(found.whirls, found.whirl_Hz, np.nan)}
+            columns |= {f"whirl_m_{name}": np.where(found.whirls, found.whirl, np.nan)}
+        return pd.DataFrame(columns)
+
+
+def against_measured(run: Run, measurement: Run, signal: str = "journal") -> AgainstMeasured:
+    """The ridges of a run and of a measurement at the speeds that both have; signal: of the run, "journal" or
+    "journal_NAME".
+
+    Raises InputError if they have too few speeds in common, or one of them is too short for its spectra.
+    """
+    clearance = bearing_clearance(run, signal.partition("_")[2]) or next(iter(measurement.references.values()))
+    speeds = ridge_speeds(measurement)
+    mine = np.abs(run[SPEED])
+    speeds = speeds[(speeds >= mine.min()) & (speeds <= mine.max())]
+    if len(speeds) < FEWEST:
+        own, other = (_range(each) for each in (run, measurement))
+        problem = f"goes from {other}, and the run from {own}."
+        raise InputError("comparison", (Fault("--measured", "", None, problem, "Compare runs of the same speeds."),))
+    computed, measured = ridges(run, speeds, clearance, signal), ridges(measurement, speeds, clearance)
+    return AgainstMeasured(run, measurement, computed, measured, clearance)
+
+
+def _range(run: Run) -> str:
+    speed = np.abs(run[SPEED])
+    return f"{speed.min():.4g} to {speed.max():.4g} Hz"
+
+
+def _rms(values: Values) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")

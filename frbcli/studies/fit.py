@@ -1,0 +1,284 @@
+"""Numbers of a case from a measured run: least squares over the ridges and the onset of whirl.
+
+The numbers vary by their logarithms, which makes them of one size and keeps them positive. Every group of residuals
+(synchronous amplitude, frequency and amplitude of the whirl, onset) is divided by its scatter: at first by a share of
+the ridge, so that a start from afar finds the way, then by the scatter of the measured ridge about its own smooth
+course, which its second differences tell. The standard errors follow from the covariance (J^T J)^-1 of these
+residuals; where they scatter more than the measurement does, from that.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
+from frbcli.analysis.signals import Values, bearing_clearance
+from frbcli.analysis.spectrum import window_length
+from frbcli.case.listing import values as listed
+from frbcli.case.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, FrbError, InputError
+from frbcli.html import Tabular
+from frbcli.results.records import SPEED, TIME
+from frbcli.results.store import Run
+from frbcli.runs.run import runup
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SPAN = 3.0  # factor by which a number may move either way, if no bounds are given
+STEP = 0.01  # relative change of a number for its derivatives: above what steps and onsets scatter by
+FIRST_SHARE = 0.05  # of the largest of a ridge: its scatter for the first way
+LEAST_SHARE = 1e-3  # of the same: no ridge is known better
+BESIDE = 1.5  # distances of the speeds: so near to the onset a ridge grows too fast to be compared
+SECOND = 6.0  # variance of a second difference of independent numbers over theirs
+SETTLED = 1e-3  # relative change of the numbers that ends a fit
+LARGE = 1e3  # residuals of a case that cannot be run
+
+Scatter = float | Values
+Observer = Callable[[int, Mapping[str, float]], None]
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """One number. key: of the case; unit: SI; start, value, error: at first, found, its standard error; low, high: its
+    bounds."""
+
+    key: str
+    unit: str
+    start: float
+    value: float
+    error: float
+    low: float
+    high: float
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether it ended at one of its bounds, so that its error means nothing."""
+        return min(self.value / self.low, self.high / self.value) < 1.0 + 10.0 * SETTLED
+
+
+@dataclass(frozen=True)
+class Fit(Tabular):
+    """case: with the numbers found; numbers: them; correlation: (k, k) of their errors; before, after: ridges of the
+    run with the numbers at first and in the end, measured: those of the measurement; runs: how many were made; chi:
+    root mean square of the residuals over their scatter."""
+
+    case: Case
+    numbers: tuple[Fitted, ...]
+    correlation: Values
+    before: Ridges
+    after: Ridges
+    measured: Ridges
+    runs: int
+    chi: float
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per number."""
+        import pandas as pd
+
+        rows = [
+            {"key": n.key, "unit": n.unit, "start": n.start, "value": n.value, "error": n.error, "low": n.low,
+             "high": n.high}
+            for n in self.numbers
+        ]  # fmt: skip
+        return pd.DataFrame(rows)
+
+
+def fit(
+    case: Case, measurement: Run, keys: Sequence[str], bounds: Mapping[str, tuple[float, float]] | None = None,
+    signal: str = "journal", observe: Observer | None = None,
+) -> Fit:  # fmt: skip
+    """The numbers `keys` of a case with which its run-up agrees best with a measurement.
+
+    bounds: SI, by key, default a factor of SPAN both ways; signal: of the run, "journal" or "journal_NAME"; observe:
+    called with the number of each run and the numbers that it is made with. Raises InputError for a key that is no
+    positive number of the case, bounds that do not hold it, or a case that cannot be run.
+    """
+    from scipy.optimize import least_squares  # scipy.optimize takes longer to import than a plan to make
+
+    numbers = [_number(case, key, (bounds or {}).get(key)) for key in keys]
+    if not numbers:
+        raise InputError(case.name, (Fault("--vary", "", None, "names no number.", "Write e.g. oil.viscosity."),))
+    with TemporaryDirectory(prefix="frb-fit-") as folder:
+        trial = _Trial(case, measurement, numbers, signal, Path(folder) / "run.h5", observe)
+        start = np.zeros(len(numbers))  # logarithms of the numbers over those at first
+        limits = np.log([[n.low / n.start for n in numbers], [n.high / n.start for n in numbers]])
+        before = trial.ridges(start)
+        at = start
+        for scatter in (_shares(trial.measured, measurement), _scatter(trial.measured, measurement)):
+            at = least_squares(
+                trial.residuals, at, trial.slopes, limits, x_scale=0.1, xtol=0.1 * SETTLED, ftol=1e-6,
+                args=(scatter, limits),
+            ).x  # fmt: skip
+        after = trial.ridges(at)
+        left = trial.residuals(at, scatter, limits)
+        slopes = trial.slopes(at, scatter, limits)
+    freedom = max(1, len(left) - len(keys))
+    chi = math.sqrt(float(left @ left) / freedom)
+    covariance = np.linalg.pinv(slopes.T @ slopes) * max(1.0, chi) ** 2
+    errors = np.sqrt(np.diag(covariance))
+    told = tuple(
+        replace(n, value=n.start * math.exp(x), error=n.start * math.exp(x) * float(error))
+        for n, x, error in zip(numbers, at, errors, strict=True)
+    )
+    correlation = covariance / np.outer(errors, errors)
+    return Fit(trial.case_at(at), told, correlation, before, after, trial.measured, trial.count, chi)
+
+
+class _Trial:
+    """Runs of the case with other numbers, and how far their ridges are from the measured ones."""
+
+    def __init__(
+        self, case: Case, measurement: Run, numbers: Sequence[Fitted], signal: str, path: Path,
+        observe: Observer | None,
+    ) -> None:  # fmt: skip
+        self._case, self._numbers, self._signal, self._path, self._observe = case, numbers, signal, path, observe
+        speeds = ridge_speeds(measurement)
+        low, high = sorted((abs(case.speed.start), abs(case.speed.end)))
+        self._speeds = speeds[(speeds >= low) & (speeds <= high)]
+        if len(self._speeds) < 2 * len(numbers):
+            problem = f"has {len(self._speeds)} speeds in common with the case, which are too few."
+            remedy = "Run the case up as it was measured."
+            raise InputError(case.name, (Fault("--measured", "", None, problem, remedy),))
+        length = next(iter(measurement.references.values()))
+        self.measured = ridges(measurement, self._speeds, length)
+        self.count = 0
+        self._known: dict[tuple[float, ...], Ridges] = {}
+
+    def case_at(self, x: Values) -> Case:
+        """The case with the numbers that are exp(x) times those at first."""
+        settings = [f"{key}={value!r}" for key, value in self._values(x).items()]
+        return load_case_text(self._case.source_text, settings, name=self._case.name)
+
+    def _values(self, x: Values) -> dict[str, float]:
+        return {n.key: n.start * math.exp(change) for n, change in zip(self._numbers, x.tolist(), strict=True)}
+
+    def ridges(self, x: Values) -> Ridges:
+        """Of the run with these numbers. Raises FrbError if there is none."""
+        key = tuple(x.tolist())
+        if key not in self._known:
+            case = self.case_at(x)
+            self.count += 1
+            if self._observe is not None:
+                self._observe(self.count, self._values(x))
+            run = runup(case, self._path, force=True)
+            if run.status == "interrupted":
+                raise KeyboardInterrupt
+            length = bearing_clearance(run, self._signal.partition("_")[2]) or next(iter(run.references.values()))
+            self._known[key] = ridges(run, self._speeds, length, self._signal)
+        return self._known[key]
+
+    def residuals(self, x: Values, scatter: Sequence[Scatter], _: Values) -> Values:
+        """Computed less measured ridges over their scatter; the limits matter to the slopes only."""
+        try:
+            found = self.ridges(x)
+        except FrbError:
+            if not self._known:
+                raise
+            return np.full(sum(len(group) for group in _differences(self.measured, self.measured)), LARGE)
+        groups = _differences(found, self.measured)
+        return np.concatenate([group / size for group, size in zip(groups, scatter, strict=True)])
+
+    def slopes(self, x: Values, scatter: Sequence[Scatter], limits: Values) -> Values:
+        """(r, k) derivatives of the residuals by x, central where the bounds leave room."""
+        columns = []
+        for number in range(len(x)):
+            ahead, behind = x.copy(), x.copy()
+            ahead[number] = min(x[number] + STEP, limits[1, number])
+            behind[number] = max(x[number] - STEP, limits[0, number])
+            change = self.residuals(ahead, scatter, limits) - self.residuals(behind, scatter, limits)
+            columns.append(change / (ahead[number] - behind[number]))
+        return np.stack(columns, axis=1)
+
+
+def _compared(measured: Ridges) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """(n,) at which speeds synchronous amplitudes and whirls are compared: below and above the measured onset, not
+    beside it."""
+    known = np.isfinite(measured.synchronous).all(axis=1)
+    still, whirls = ~measured.whirls & known, measured.whirls & np.isfinite(measured.whirl_Hz)
+    if not np.isfinite(measured.onset_Hz):
+        return still, whirls
+    apart = BESIDE * float(np.median(np.diff(measured.speed_Hz)))
+    after = measured.speed_Hz - measured.onset_Hz
+    return still & (after < -apart), whirls & (after > apart)
+
+
+def _differences(found: Ridges, measured: Ridges) -> list[Values]:
+    """Computed less measured, by groups: synchronous amplitudes in m, frequencies in Hz and amplitudes in m of the
+    whirl, the onset in Hz. A ridge that the computed run does not have there counts as nothing."""
+    still, whirls = _compared(measured)
+    pairs = [
+        (found.synchronous[still].ravel(), measured.synchronous[still].ravel()),
+        (found.whirl_Hz[whirls], measured.whirl_Hz[whirls]),
+        (found.whirl[whirls], measured.whirl[whirls]),
+        (_onset(found), _onset(measured)) if np.isfinite(measured.onset_Hz) else (np.zeros(0), np.zeros(0)),
+    ]
+    return [np.nan_to_num(mine) - other for mine, other in pairs]
+
+
+def _onset(found: Ridges) -> Values:
+    """(1,) Hz; of a run that does not whirl, its last speed."""
+    return np.array([found.onset_Hz if np.isfinite(found.onset_Hz) else found.speed_Hz[-1]])
+
+
+def _reach(run: Run) -> float:
+    """By how much the rotor speed changes within half a window, Hz: an onset is not known better."""
+    time, speed = run[TIME], np.abs(run[SPEED])
+    ramp = float(np.ptp(speed) / np.ptp(time))
+    return max(0.5 * window_length(run.signal(TIME), run.signal(SPEED)) * ramp, LEAST_SHARE * float(speed.max()))
+
+
+def _groups(measured: Ridges) -> list[Values]:
+    """The measured ridges of the groups of _differences without the onset, in the order of the speeds along axis 0."""
+    still, whirls = _compared(measured)
+    return [measured.synchronous[still], measured.whirl_Hz[whirls], measured.whirl[whirls]]
+
+
+def _shares(measured: Ridges, run: Run) -> list[Scatter]:
+    """A share of the largest of each ridge."""
+    return [*(FIRST_SHARE * _largest(group) for group in _groups(measured)), _reach(run)]
+
+
+def _scatter(measured: Ridges, run: Run) -> list[Scatter]:
+    """The scatter of each measured ridge about its smooth course. When a whirl begins is not known better than _reach,
+    so that its amplitude, where it still grows, is not either."""
+    found, reach = list[Scatter](), _reach(run)
+    for group in _groups(measured):
+        second = np.diff(group, 2, axis=0)
+        rough = float(np.sqrt(np.mean(second**2) / SECOND)) if second.size else FIRST_SHARE * _largest(group)
+        found.append(max(rough, LEAST_SHARE * _largest(group)))
+    grown = _groups(measured)[-1]
+    if len(grown) > 1:
+        speed = measured.speed_Hz[_compared(measured)[1]]
+        found[-1] = np.hypot(found[-1], reach * np.gradient(grown, speed))
+    return [*found, reach]
+
+
+def _largest(group: Values) -> float:
+    return float(np.nanmax(np.abs(group), initial=1e-12))
+
+
+def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
+    known = {value.key: value for value in listed(case)}
+    if key not in known:
+        near = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
+        remedy = f"Did you mean {', '.join(near[:4])}?" if near else "`frb check CASE --all` lists the keys."
+        raise InputError(case.name, (Fault("--vary", key, None, "is no number of the case.", remedy),))
+    value = known[key].value
+    if not isinstance(value, float) or not value > 0.0:
+        raise InputError(case.name, (Fault("--vary", key, None, "is not a number above zero.", "Vary others."),))
+    low, high = bounds or (value / SPAN, value * SPAN)
+    if not 0.0 < low <= value <= high or low == high:
+        problem = f"starts at {value:.6g} {known[key].unit}, which is not between its bounds."
+        remedy = "Widen them, or change the case by --set."
+        raise InputError(case.name, (Fault("--bounds", key, None, problem, remedy),))
+    return Fitted(key, known[key].unit, value, value, math.nan, low, high)

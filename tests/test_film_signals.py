@@ -1,0 +1,149 @@
+"""What a run records of its films by choice, held to balances, closed forms and the sheet of the bearing."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.errors import InputError, RunFileError
+from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.plot.film_signals import film_signal_figure
+from frbcli.results.store import Run, read_run
+from frbcli.runs import march
+from frbcli.runs import run as module
+from frbcli.runs.march import March
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_system
+
+PLAIN = ["force", "film-thickness", "power", "torque"]
+STEADY = ["speed.from=60 Hz", "speed.to=60 Hz", "rotor.unbalance=0 g*mm"]
+SHORT = ["film.theory=short", "speed.from=20 Hz", "speed.to=60 Hz", "speed.duration=0.1 s"]
+ELROD = [
+    "film.cavitation=elrod", "accuracy.mesh=[4, 24]", "speed.duration=0.6 s", "rotor.external_damping=3000 N*s/m",
+]  # fmt: skip
+
+
+def run_of(case: str, folder: Path, settings: list[str], kinds: list[str]) -> Run:
+    told = "[" + ", ".join(f'"{kind}"' for kind in kinds) + "]"
+    return frbcli.runup(frbcli.load_case(case, [*settings, f"output.signals={told}"]), folder / "run.h5", force=True)
+
+
+def test_nothing_changes_where_nothing_is_asked_for(tmp_path: Path) -> None:
+    plain, more = (run_of("jeffcott", tmp_path, SHORT, kinds) for kinds in ([], PLAIN))
+    assert set(more.signals) - set(plain.signals) == {
+        "film_force_x_N", "film_force_y_N", "film_thickness_m", "power_W", "torque_N_m",
+    }  # fmt: skip
+    for name in plain.signals:
+        np.testing.assert_array_equal(plain[name], more[name])
+    assert plain.cost["steps"] == more.cost["steps"]
+
+
+def test_the_short_bearing_in_closed_form(tmp_path: Path) -> None:
+    """Without cavitation: forces are those of the recorded motion; what goes into the film is sheared (Couette) and
+    squeezed away (Poiseuille), h^3 / (12 eta) times the square of the pressure gradient."""
+    settings = [*SHORT, "film.cavitation=sommerfeld", "rotor.unbalance=30 g*mm", "rotor.external_damping=1000 N*s/m"]
+    run = run_of("rigid", tmp_path, settings, PLAIN)
+    case = frbcli.load_case("rigid", settings)
+    system = make_system(case, make_plan(case))
+    t, omega = run["time_s"], 2.0 * math.pi * run["speed_Hz"]
+    place = np.column_stack([run["journal_x_m"], run["journal_y_m"]])
+    rate = np.gradient(place, t, axis=0)
+    force = np.column_stack([run["film_force_x_N"], run["film_force_y_N"]])
+    later = range(60, len(t) - 1, 37)
+    for k in later:
+        told = system.film_force(0, place[k], rate[k], omega[k]).force
+        np.testing.assert_allclose(force[k], told, atol=2e-3 * np.abs(force).max())
+
+    film, eta = system.bearings[0], system.bearings[0].viscosity
+    c, radius, b = film.clearance, 0.5 * film.diameter, film.section_width
+    phi = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
+    for k in later:
+        d, v = place[k] / c, rate[k] / c
+        gap = 1.0 + d[0] * np.sin(phi) - d[1] * np.cos(phi)
+        w = v - 0.5 * omega[k] * np.array([-d[1], d[0]])
+        parabola = -((b / radius) ** 2) * (w[0] * np.sin(phi) - w[1] * np.cos(phi)) / (2.0 * gap**3)
+        slope = 12.0 * eta * (radius / c) ** 2 * parabola / b  # times 1 - 2 z, whose square has the mean 1/3
+        squeezed = film.sections * radius * b * 2 * math.pi * np.mean((c * gap) ** 3 * slope**2) / (36.0 * eta)
+        sheared = eta * (radius * omega[k]) ** 2 * radius * film.width * 2 * math.pi * np.mean(1.0 / gap) / c
+        assert run["power_W"][k] == pytest.approx(sheared + squeezed, rel=1e-3)
+        push = -0.5 * (place[k, 0] * force[k, 1] - place[k, 1] * force[k, 0])
+        assert run["torque_N_m"][k] == pytest.approx(push - sheared / omega[k], rel=1e-4)
+        assert run["film_thickness_m"][k] == pytest.approx(c * gap.min(), rel=1e-4)
+
+
+@pytest.mark.parametrize("case", ["rigid", "jeffcott"])
+def test_at_rest_films_carry_the_weight_and_lose_what_the_sheet_says(case: str, tmp_path: Path) -> None:
+    run = run_of(case, tmp_path, [*STEADY, "speed.duration=50 ms", "start.position=resting"], PLAIN)
+    found = frbcli.load_case(case, STEADY)
+    sheet = bearing_sheet(found, [60.0]).points[0]
+    assert run["film_force_y_N"][-1] == pytest.approx(-sheet.load[1], rel=1e-8)
+    assert abs(run["film_force_x_N"][-1]) < 1e-6 * -sheet.load[1]
+    assert run["torque_N_m"][-1] == pytest.approx(sheet.torque, rel=2e-4)
+    assert run["power_W"][-1] == pytest.approx(sheet.power, rel=2e-4)
+    assert run["film_thickness_m"][-1] == pytest.approx(sheet.film_thickness_min, rel=3e-4)
+
+
+def test_films_on_cells_settle_to_the_sheet(tmp_path: Path) -> None:
+    run = run_of("jeffcott-supply-2bar", tmp_path, [*STEADY, *ELROD], [*PLAIN, "oil-flow"])
+    sheet = bearing_sheet(frbcli.load_case("jeffcott-supply-2bar", [*STEADY, *ELROD]), [60.0]).points[0]
+    assert run["film_force_y_N"][-1] == pytest.approx(-sheet.load[1], rel=3e-4)  # cells that turn leave a ripple
+    assert run["torque_N_m"][-1] == pytest.approx(sheet.torque, rel=2e-3)
+    assert run["power_W"][-1] == pytest.approx(sheet.power, rel=2e-3)
+    assert np.mean(run["oil_flow_m3_s"][-200:]) == pytest.approx(sheet.side_flow, rel=2e-2)  # it ripples, too
+
+
+def test_over_whole_turns_films_carry_the_weight(tmp_path: Path) -> None:
+    settings = ["film.theory=short", "speed.from=20 Hz", "speed.to=20 Hz", "speed.duration=2 s"]
+    run = run_of("rigid", tmp_path, settings, ["force"])
+    turn = round(1.0 / 20.0 / 5e-5)
+    last = slice(len(run) - 4 * turn, len(run))
+    weight = 9.80665 * frbcli.load_case("rigid").rotor.mass / 2.0
+    assert run["film_force_y_N"][last].mean() == pytest.approx(weight, rel=1e-3)
+    assert abs(run["film_force_x_N"][last].mean()) < 1e-3 * weight
+
+
+def test_a_resumed_run_records_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = frbcli.load_case("jeffcott", [*SHORT, 'output.signals=["force", "power"]'])
+    whole = frbcli.runup(case, tmp_path / "whole.h5")
+    chunk, count = March.chunk, 0
+
+    def interrupted(self: March) -> object:
+        nonlocal count
+        count += 1
+        if count == 4:
+            raise KeyboardInterrupt
+        return chunk(self)
+
+    monkeypatch.setattr(module, "CHECKPOINT_EVERY_s", 0.0)
+    monkeypatch.setattr(module, "CHECKPOINT_SHARE", 1e9)
+    monkeypatch.setattr(march, "CHUNK_s", 1e-5)  # some steps each
+    monkeypatch.setattr(March, "chunk", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        frbcli.runup(case, tmp_path / "part.h5")
+    monkeypatch.setattr(March, "chunk", chunk)
+    part = read_run(tmp_path / "part.h5")
+    assert 0 < part.checkpoint_samples < len(whole)
+    again = frbcli.runup(case, tmp_path / "part.h5", resume=True)
+    for name in whole.signals:
+        np.testing.assert_array_equal(whole[name], again[name])
+
+
+def test_what_a_run_cannot_record_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="tabulated"):
+        run_of("jeffcott", tmp_path, SHORT, ["oil-flow"])
+    with pytest.raises(InputError, match="co-simulation"):
+        run_of("jeffcott", tmp_path, [*SHORT, "film.coupling=co-simulation"], ["force"])
+    with pytest.raises(InputError, match=r"output\.signals"):
+        run_of("jeffcott", tmp_path, SHORT, ["colour"])
+
+
+def test_what_was_not_recorded_is_not_drawn(tmp_path: Path) -> None:
+    run = run_of("jeffcott", tmp_path, SHORT, ["force"])
+    figure = film_signal_figure([run], "force")
+    assert [axes.get_ylabel() for axes in figure.axes] == [f"force {a} in N" for a in "xy"]
+    with pytest.raises(RunFileError, match=r"output\.signals"):
+        film_signal_figure([run], "power")

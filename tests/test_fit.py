@@ -1,0 +1,165 @@
+"""Ridges, a measurement beside a run, and numbers of a case found from a measurement that another case has made."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from click.testing import CliRunner
+from synthetic_run import CLEARANCE, Rotor, make_run
+
+import frbcli
+from frbcli.analysis.measured import Measurement, measured_run
+from frbcli.analysis.ridges import ridge_speeds, ridges
+from frbcli.cli.main import frb
+from frbcli.errors import InputError
+from frbcli.plot.ridges import against_figure, fit_figure
+from frbcli.results.store import Run
+from frbcli.studies.against import against_measured
+from frbcli.studies.fit import Fit, fit
+
+BASE = ["film.theory=short", "speed.duration=4 s", "accuracy.target=0.01", "rotor.unbalance=10 g*mm"]
+TRUE = {"bearing.clearance": 38.3e-6, "oil.viscosity": 10.4e-3}
+NOISE_um = 0.3
+COLUMNS = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n", "--clearance", "35 um"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A measurement of a machine that nobody knows: in um, off the centre, noisy, every second sample of its run."""
+    folder = tmp_path_factory.mktemp("measured")
+    case = frbcli.load_case("jeffcott", [*BASE, *(f"{key}={value}" for key, value in TRUE.items())])
+    table = frbcli.runup(case, folder / "true.h5").to_pandas()[::2]
+    chance = np.random.default_rng(7)
+    x, y = (1e6 * table[f"journal_{axis}_m"] + chance.normal(0.0, NOISE_um, len(table)) for axis in "xy")
+    told = pd.DataFrame({"t": table.time_s, "n": table.speed_Hz, "x": x + 4.0, "y": y - 9.0})
+    told.to_csv(folder / "measured.csv", index=False)
+    frbcli.runup(frbcli.load_case("jeffcott", BASE), folder / "run.h5")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def measurement(folder: Path) -> Run:
+    return measured_run(folder / "measured.csv", Measurement("x", 35e-6, "y", time="t", speed="n", unit_m=1e-6))
+
+
+@pytest.fixture(scope="module")
+def found(measurement: Run) -> Fit:
+    return fit(frbcli.load_case("jeffcott", BASE), measurement, list(TRUE))
+
+
+def test_ridges_of_a_known_motion() -> None:
+    """A whirl with a known frequency and amplitude, and a resonance of known height."""
+    rotor = Rotor(whirl_s=6.0, whirl_amplitude=0.5)
+    run = make_run(rotor)
+    events = [{"kind": "onset", "speed_Hz": 180.0}]
+    found = ridges(replace(run, events=events), ridge_speeds(run), CLEARANCE)
+    late = found.speed_Hz > 210.0
+    frequency = ((0.47 * found.speed_Hz) ** -8 + 125.0**-8) ** (-1 / 8)
+    np.testing.assert_allclose(found.whirl_Hz[late], frequency[late], atol=0.3)
+    np.testing.assert_allclose(found.whirl[late], 0.5 * CLEARANCE, rtol=0.02)
+    assert found.whirls[late].all()
+    assert not found.whirls[found.speed_Hz < 150.0].any()
+    assert found.onset_Hz == 180.0
+    early = (found.speed_Hz > 40.0) & (found.speed_Hz < 120.0)
+    ratio = found.speed_Hz / 145.0
+    height = 0.15 * 0.5e-6 * ratio**2 / np.abs(1 - ratio**2 + 0.1j * ratio)
+    np.testing.assert_allclose(found.synchronous[early, 0], height[early], rtol=0.05)
+
+
+def test_numbers_are_recovered_within_their_errors(found: Fit) -> None:
+    """From 9 and 15 % away; the errors are of the size of the scatter, neither nothing nor everything."""
+    for number in found.numbers:
+        assert abs(number.value - TRUE[number.key]) < 2.5 * number.error
+        assert 1e-4 < number.error / number.value < 0.02
+        assert not number.at_bound
+        assert abs(number.value / number.start - 1.0) > 0.05
+    assert found.chi < 1.5
+    assert found.correlation[0, 0] == pytest.approx(1.0)
+
+
+def test_a_fit_ends_nearer_than_it_began(found: Fit) -> None:
+    whirls = found.measured.whirls & found.after.whirls & found.before.whirls
+    before, after = (np.abs(each.whirl - found.measured.whirl)[whirls].max() for each in (found.before, found.after))
+    assert after < 0.1 * before
+    assert found.case.bearings[0].clearance == pytest.approx(found.numbers[0].value)  # type: ignore[union-attr]
+
+
+@pytest.mark.nightly
+def test_stated_errors_hold_over_many_measurements(folder: Path) -> None:
+    """Of twelve with noise of their own at least ten lie within two errors, and all within four."""
+    table = frbcli.read_run(folder / "true.h5").to_pandas()[::2]
+    off = []
+    for seed in range(12):
+        chance = np.random.default_rng(100 + seed)
+        told = pd.DataFrame({"t": table.time_s, "n": table.speed_Hz})
+        for axis in "xy":
+            told[axis] = 1e6 * table[f"journal_{axis}_m"] + chance.normal(0.0, NOISE_um, len(table))
+        told.to_csv(folder / "again.csv", index=False)
+        run = measured_run(folder / "again.csv", Measurement("x", 35e-6, "y", time="t", speed="n", unit_m=1e-6))
+        numbers = fit(frbcli.load_case("jeffcott", BASE), run, list(TRUE)).numbers
+        off.append(max(abs(n.value - TRUE[n.key]) / n.error for n in numbers))
+    assert sum(each < 2.0 for each in off) >= 10
+    assert max(off) < 4.0
+
+
+def test_what_cannot_vary_is_refused(measurement: Run) -> None:
+    case = frbcli.load_case("jeffcott", BASE)
+    for keys, bounds, words in (
+        ([], None, "names no number"),
+        (["oil.viscosty"], None, "is no number of the case"),
+        (["rotor.kind"], None, "not a number above zero"),
+        (["oil.viscosity"], {"oil.viscosity": (0.02, 0.03)}, "not between its bounds"),
+    ):
+        with pytest.raises(InputError, match=words):
+            fit(case, measurement, keys, bounds)  # type: ignore[arg-type]
+
+
+def test_a_number_at_its_bound_says_so(measurement: Run) -> None:
+    case = frbcli.load_case("jeffcott", BASE)
+    (number,) = fit(case, measurement, ["bearing.clearance"], {"bearing.clearance": (34e-6, 36e-6)}).numbers
+    assert number.at_bound
+    assert number.value == pytest.approx(36e-6, rel=1e-2)
+
+
+def test_a_measurement_beside_a_run(folder: Path, measurement: Run) -> None:
+    """That of its own run, without noise, differs by nothing but the samples that were left out."""
+    run = frbcli.read_run(folder / "true.h5")
+    table = run.to_pandas()
+    own = pd.DataFrame({"t": table.time_s, "n": table.speed_Hz})
+    for axis in "xy":
+        own[axis] = 1e6 * table[f"journal_{axis}_m"]
+    own.to_csv(folder / "own.csv", index=False)
+    same = measured_run(folder / "own.csv", Measurement("x", 38.3e-6, "y", time="t", speed="n", unit_m=1e-6))
+    for what, rms, size in against_measured(run, same).deviations():
+        assert rms < 2e-3 * size, what
+    other = against_measured(frbcli.read_run(folder / "run.h5"), measurement)
+    assert all(rms > 2e-3 * size for _, rms, size in other.deviations())
+    assert {axes.get_title(loc="left") for axes in against_figure(other).axes} >= {"computed", "measured"}
+
+
+def test_the_commands(folder: Path, found: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    invoke = CliRunner().invoke
+    done = invoke(frb, ["compare", "run.h5", "--measured", "measured.csv", *COLUMNS])
+    assert done.exit_code == 0, done.output
+    assert "onset" in done.output
+    assert (folder / "run-measured.png").stat().st_size > 20_000
+    settings = [word for setting in BASE for word in ("--set", setting)]
+    words = ["fit", "jeffcott", *settings, "--measured", "measured.csv", *COLUMNS, "--vary", "bearing.clearance"]
+    limits = ["--bounds", "bearing.clearance=30 um,45 um", "--save", "found.toml", "--json"]
+    done = invoke(frb, [*words, *limits], catch_exceptions=False)
+    assert done.exit_code == 0
+    document = json.loads(done.stdout)
+    number = document["numbers"][0]
+    assert (number["low"], number["high"]) == pytest.approx((30e-6, 45e-6))
+    assert frbcli.load_case(folder / "found.toml").bearings[0].clearance == pytest.approx(number["value"])
+    assert (folder / "jeffcott-fit.png").stat().st_size > 20_000
+    for wrong in (["compare", "run.h5"], ["compare", "jeffcott", "--measured", "measured.csv", *COLUMNS],
+                  [*words, "--bounds", "oil.viscosity=3"]):  # fmt: skip
+        assert invoke(frb, wrong).exit_code == 2
+    assert len(fit_figure(found).axes) == 3

@@ -1,0 +1,182 @@
+"""How pictures look by options, pictures on axes of one's own, and what a notebook shows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from PIL import Image
+from synthetic_run import Rotor, make_run
+
+import frbcli
+from frbcli.cli.main import frb
+from frbcli.cli.picture_options import Look, Size
+from frbcli.plot.campbell import campbell_figure
+from frbcli.plot.eccentricity import eccentricity_figure
+from frbcli.plot.look import fit
+from frbcli.plot.style import COLOURS
+from frbcli.plot.waterfall import LevelScale, waterfall_figure
+from frbcli.results.store import Run
+
+DRAWING = ("runup", "rundown", "waterfall", "plot", "compare", "bearing", "stability", "response", "accuracy", "sweep",
+           "rotation", "squeeze", "whirl")  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return make_run(Rotor(duration_s=2.0, whirl_s=1.0))
+
+
+@pytest.mark.parametrize("name", DRAWING)
+def test_every_command_that_draws_takes_them(name: str) -> None:
+    command = frb.get_command(click.Context(frb), name)
+    assert command is not None
+    told = {option for parameter in command.params for option in parameter.opts}
+    assert {"--size", "--dpi", "--xlim", "--ylim", "--rpm"} <= told
+
+
+@pytest.mark.parametrize(
+    ("text", "mm"), [("160 mm x 90 mm", (160, 90)), ("160x90 mm", (160, 90)), ("16 cm x 0.09 m", (160, 90))]
+)
+def test_sizes_have_units(text: str, mm: tuple[float, float]) -> None:
+    np.testing.assert_allclose(Size().convert(text, None, None), np.array(mm) / 25.4)
+
+
+@pytest.mark.parametrize("text", ["160", "160 x 90 kg", "1 mm x 1 mm", "x", "160 mm x 90 mm x 3 mm"])
+def test_other_sizes_are_refused(text: str) -> None:
+    with pytest.raises(click.BadParameter):
+        Size().convert(text, None, None)
+
+
+def test_a_picture_has_its_size_and_resolution(tmp_path: Path) -> None:
+    case = "jeffcott"
+    words = ["stability", case, "--set", "film.theory=short", "-o", str(tmp_path / "c.png"), "--size", "100x80 mm"]
+    done = CliRunner().invoke(frb, [*words, "--dpi", "254", "--speed", "50 Hz"], standalone_mode=False)
+    assert done.exception is None
+    with Image.open(tmp_path / "c.png") as image:
+        assert image.size == (1000, 800)
+
+
+@pytest.mark.parametrize("words", [["--xlim", "5,2"], ["--ylim", "a,b"], ["--dpi", "1"], ["--size", "3"]])
+def test_wrong_looks_are_refused(words: list[str]) -> None:
+    done = CliRunner().invoke(frb, ["stability", "jeffcott", *words])
+    assert done.exit_code == 2
+
+
+def test_limits_are_those_of_the_axes(run: Run) -> None:
+    (axes,) = fit(eccentricity_figure([run], over="speed"), x_limits=(100.0, 200.0), y_limits=(0.2, 0.4)).axes
+    assert axes.get_xlim() == (100.0, 200.0)
+    assert axes.get_ylim() == (0.2, 0.4)
+
+
+def test_speeds_are_told_per_minute(run: Run) -> None:
+    figure = fit(eccentricity_figure([run], over="speed"), x_limits=(6000.0, 12000.0), rpm=True)
+    (axes,) = figure.axes
+    assert axes.get_xlabel() == "rotor speed in rpm"
+    assert axes.get_xlim() == (100.0, 200.0)  # of the data, which stay in Hz
+    figure.canvas.draw()
+    told = [float(label.get_text()) for label in axes.get_xticklabels()]
+    places = axes.get_xticks()
+    np.testing.assert_allclose(told, 60.0 * places)
+    assert all(number % 500.0 == 0.0 for number in told)
+
+
+def test_all_panels_of_a_picture_follow() -> None:
+    found = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]), [50.0, 150.0])
+    figure = fit(campbell_figure(found), rpm=True, x_limits=(0.0, 6000.0), y_limits=(0.0, 100.0))
+    assert [axes.get_xlim() for axes in figure.axes] == [(0.0, 100.0)] * 2
+    assert figure.axes[0].get_ylim() == (0.0, 100.0)
+    assert figure.axes[1].get_ylim() != (0.0, 100.0)  # another quantity
+
+
+def test_linear_amplitudes_are_in_micrometres(run: Run) -> None:
+    figure = waterfall_figure(run, scale=LevelScale(linear=True))
+    mesh = figure.axes[0].collections[0]
+    found = frbcli.waterfall(
+        run["time_s"], run["journal_x_m"], run["journal_y_m"], run["speed_Hz"], 35e-6, max_frequency_Hz=360.0
+    )
+    assert mesh.get_array().max() == pytest.approx(1e6 * found.amplitude.max(), rel=1e-6)
+    assert figure.axes[-1].get_ylabel() == "amplitude in µm"
+    ranged = waterfall_figure(run, scale=LevelScale(limits=(-80.0, -20.0)))
+    assert ranged.axes[0].collections[0].get_clim() == (-80.0, -20.0)
+
+
+def test_chosen_orders_are_drawn(run: Run) -> None:
+    axes = waterfall_figure(run, scale=LevelScale(orders=(1.0, 0.25))).axes[0]
+    assert [text.get_text() for text in axes.texts] == ["ω", "0.25 ω"]
+    first, second = (np.asarray(line.get_ydata()) for line in axes.get_lines())
+    np.testing.assert_allclose(second, 0.25 * first)
+
+
+def linear() -> tuple[object, object, object]:
+    case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    return (
+        frbcli.stability(case, [50.0, 100.0]), frbcli.response(case, [50.0, 100.0]), frbcli.bearing_sheet(case, [50.0]),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        frbcli.draw_eccentricity,
+        frbcli.draw_orbit,
+        frbcli.draw_waterfall,
+        lambda run, ax=None: frbcli.draw_spectrum(run, 1.5, ax),
+    ],
+    ids=["eccentricity", "orbit", "waterfall", "spectrum"],
+)
+def test_runs_are_drawn_on_axes_of_ones_own(run: Run, draw: Callable[..., Axes]) -> None:
+    _, axes = Figure().subplots(1, 2)
+    assert draw(run, ax=axes) is axes
+    assert axes.has_data()
+    assert axes.get_xlabel()
+    assert axes.get_ylabel()
+    alone = draw(run)
+    assert alone is not axes
+    assert alone.has_data()
+
+
+def test_results_are_drawn_on_axes_of_ones_own() -> None:
+    stability, response, sheet = linear()
+    for draw, found in (
+        (frbcli.draw_campbell, stability), (frbcli.draw_response, response), (frbcli.draw_bearing, sheet),
+    ):  # fmt: skip
+        axes = Figure().subplots()
+        assert draw(found, ax=axes) is axes
+        assert axes.has_data()
+        assert axes.get_xlabel()
+        assert axes.get_ylabel()
+
+
+def test_the_style_of_others_stays(run: Run) -> None:
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    frbcli.draw_orbit(run)
+    assert dict(mpl.rcParams) == before
+    assert COLOURS
+
+
+def test_a_notebook_shows_what_there_is(run: Run) -> None:
+    case = frbcli.load_case("jeffcott", ["film.theory=short", 'title="a < b & c"'])
+    stability, response, sheet = linear()
+    for thing, word in (
+        (case, "shaft_stiffness"), (frbcli.make_plan(case), "integrator"), (run, "finished"),
+        (stability, "Stability"), (response, "Response"), (sheet, "BearingSheet"),
+    ):  # fmt: skip
+        text = thing._repr_html_()  # type: ignore[attr-defined]
+        assert word in text
+        assert text.count("<tr>") == text.count("</tr>") > 0 or thing is run
+        assert not re.search(r"<(?!/?(p|b|table|thead|tbody|tr|th|td)\b)", text)
+    assert "a &lt; b &amp; c" in case._repr_html_()
+
+
+def test_a_look_is_plain() -> None:
+    assert Look() == Look(None, 150, None, None, False)

@@ -1,0 +1,68 @@
+"""How commands tell how far they are, with the time left, on a terminal and without one."""
+
+from __future__ import annotations
+
+import re
+import time
+
+import pytest
+
+import frbcli
+from frbcli.cli import live
+from frbcli.cli.common import Terminal
+from frbcli.cli.live import counting, of_runs
+from frbcli.runs.march import Progress
+
+PROGRESS = Progress(0.5, 1.0, 30.0, 0.4, 100, 40.0, 1e6, 3.0)
+
+
+def test_the_time_left_is_that_of_the_pace(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first number, which compiles, does not count: then 2 s each."""
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    lines: list[str] = []
+    observe = counting(Terminal(), lines.append)
+    for number in range(1, 6):
+        observe(number, 10)
+        now[0] += 2.0
+    assert lines[0] == "1 of 10"
+    assert lines[-1] == "5 of 10  0:10 left"
+
+
+def test_without_a_terminal_a_line_comes_now_and_then(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spent = [0.0]
+    monkeypatch.setattr(time, "process_time", lambda: spent[0])
+    observe, tell = counting(Terminal(), None), of_runs(Terminal(), None)
+    for number in range(1, 100):
+        observe(number, 100)
+        tell("a rung", number, 100, PROGRESS)
+        spent[0] += 1.0
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2 * int(99 / (live.TOLD_EVERY_s + 1.0))
+    assert any(re.match(r"\d+ of 100: a rung: .*left$", line) for line in lines)
+
+
+def test_what_takes_long_tells_where_it_is() -> None:
+    case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    seen: list[tuple[int, int]] = []
+    frbcli.stability(case, [50.0], lambda number, count: seen.append((number, count)))
+    assert seen == [(number, len(seen)) for number in range(1, len(seen) + 1)]
+    moments: list[tuple[int, int]] = []
+    squeeze = frbcli.load_case("squeeze", ["motion.periods=0.1", "accuracy.mesh=[4, 16]"])
+    frbcli.squeeze(squeeze, ["half-sommerfeld", "sommerfeld"], lambda *told: moments.append(told))
+    assert moments == [(number, len(moments)) for number in range(1, len(moments) + 1)]
+    turns: list[tuple[int, int]] = []
+    bearing = frbcli.load_case("bearing-axial-groove", ["accuracy.mesh=[4, 16]"])
+    frbcli.rotation(bearing, ["half-sommerfeld", "sommerfeld"], lambda *told: turns.append(told))
+    assert turns == [(1, 2), (2, 2)]
+
+
+def test_rungs_are_counted() -> None:
+    case = frbcli.load_case("jeffcott")
+    seen: list[tuple[int, int]] = []
+    frbcli.accuracy(case, 0.02, ["short"], observe=lambda _, number, count, __: seen.append((number, count)))
+    numbers = list(dict.fromkeys(number for number, _ in seen))
+    assert numbers == list(range(1, len(numbers) + 1))
+    assert {count for _, count in seen} == {len(numbers)}
