@@ -363,6 +363,23 @@ def test_what_has_no_limit_cycles_is_told(settings: list[str], told: str) -> Non
         frbcli.limit_cycles(frbcli.load_case("jeffcott", settings))
 
 
+def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
+    (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
+    low, high = (rigid(gamma, 2.4, 2.9).oil.viscosity for gamma in (1.313, 4.538))
+    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--and", "oil.viscosity", "--points", "2", "--json"]
+    picture = tmp_path / "map.png"
+    assert run([*words, "--from", f"{low!r} Pa*s", "--to", f"{high!r} Pa*s", "-o", str(picture)]) == 0
+    document = json.loads(capsys.readouterr().out)
+    first, last = document["rows"]
+    assert first["special"][0]["criticality"] == "supercritical"
+    assert last["special"][0]["criticality"] == "subcritical"
+    assert last["special"][0]["speed_Hz"] == pytest.approx(diagram(4.538, 2.4, 2.9).of("hopf")[0].speed_Hz, rel=1e-9)
+    assert picture.exists()
+    assert run([*words, "--from", "1 Pa*s", "--to", "2 m"]) == 2
+    assert run(words) == 2
+
+
 def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     assert run(["limit-cycles", "jeffcott", "--set", "film.theory=short", "--json", "--csv", "table.csv"]) == 0

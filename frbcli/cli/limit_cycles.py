@@ -11,7 +11,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines
+from frbcli.cli.live import counting, live_lines
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -29,6 +29,11 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @case_argument
 @click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
+@click.option("--and", "key", metavar="KEY",
+              help="Hopf points and folds over speed and this key, e.g. bearing.clearance.")  # fmt: skip
+@click.option("--from", "low", metavar="VALUE", help="Of --and, with its unit, e.g. '30 um'.")
+@click.option("--to", "high", metavar="VALUE", help="The same.")
+@click.option("--points", type=click.IntRange(2, 500), default=9, help="Values of --and. [9]")
 @click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
@@ -38,6 +43,10 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 def command(
     case: Case,
     speeds: tuple[float, ...],
+    key: str | None,
+    low: str | None,
+    high: str | None,
+    points: int,
     runs: tuple[str, ...],
     output: Path | None,
     no_picture: bool,
@@ -53,9 +62,17 @@ def command(
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    picture = None if no_picture else output or here(case.name, "-limit-cycles.png")
+    if (key is None) != (low is None) or (key is None) != (high is None):
+        raise click.UsageError("--and KEY goes with --from VALUE and --to VALUE.")
+    if key is not None and (speeds or runs):
+        raise click.UsageError("--and draws a map: --speed and --runs are of the diagram of one case.")
+    drawn = "limit-cycles" if key is None else "stability-map"
+    picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
     check_place(picture)
     require_place(csv)
+    if key is not None and low is not None and high is not None:
+        _map(terminal, case, (key, low, high, points), picture, csv)
+        return
     tracks = [track for name in runs for track in _tracks(Path(name))]
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         found = limit_cycles(case, speeds, _showing(show))
@@ -68,6 +85,54 @@ def command(
 
         picture = draw(terminal, lambda: limit_cycles_figure(found, tracks), picture)
     terminal.emit(_document(found) | {"picture": picture, "csv": csv})
+
+
+def _map(
+    terminal: Terminal, case: Case, over: tuple[str, str, str, int], picture: Path | None, csv: Path | None
+) -> None:
+    """The map over the speed and a second number: key, from, to, points."""
+    from frbcli.cycles.stability_map import stability_map
+    from frbcli.scene.films import film_places
+
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = stability_map(case, *over, counting(show))
+    rows = [
+        (f"{row.value:.4g} {found.unit}".strip(), point.kind, f"{point.speed_Hz:.2f}", f"{point.frequency_Hz:.2f}",
+         point.criticality or "")
+        for row in found.rows
+        for point in row.special
+    ]  # fmt: skip
+    terminal.table(case.title or case.name, (found.key, "point", "Hz", "whirl Hz", ""), rows)
+    for row in found.rows:
+        if row.problem:
+            terminal.result(_wrapped(f"{row.value:.4g} {found.unit}: {row.problem}"))
+    if csv is not None:
+        found.to_pandas().to_csv(csv, index=False)
+        terminal.result(f"table: {csv}")
+    if picture is not None:
+        from frbcli.plot.stability_map import stability_map_figure
+
+        picture = draw(terminal, lambda: stability_map_figure(found), picture)
+    names = tuple(place.name for place in film_places(case))
+    terminal.emit(
+        {
+            "command": "limit-cycles",
+            "case": case.name,
+            "over": "speed",
+            "and": found.key,
+            "unit": found.unit,
+            "rows": [
+                {
+                    "value": row.value,
+                    "special": [_special(names, p) for p in row.special],
+                    "problem": row.problem or None,
+                }
+                for row in found.rows
+            ],
+            "picture": picture,
+            "csv": csv,
+        }
+    )
 
 
 def _tracks(path: Path) -> tuple[RunTrack, ...]:
@@ -152,13 +217,13 @@ def _document(found: LimitCycles) -> dict[str, object]:
         ],
         "branches": [
             {
-                "from": None if branch.start is None else _special(found, found.special[branch.start]),
+                "from": None if branch.start is None else _special(found.films, found.special[branch.start]),
                 "points": [_cycle(found, point) for point in branch.points],
                 "note": branch.note,
             }
             for branch in found.branches
         ],
-        "special": [_special(found, point) for point in found.special],
+        "special": [_special(found.films, point) for point in found.special],
         "notes": found.notes,
         "cost": {"cpu_s": found.cost.cpu_s, "cycles": found.cost.cycles},
     }
@@ -181,8 +246,8 @@ def _orbits(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
     return {name: point.orbit(film) for film, name in enumerate(found.films)}
 
 
-def _special(found: LimitCycles, point: SpecialPoint) -> dict[str, object]:
-    largest = dict(zip(found.films, point.eccentricity_max, strict=True))
+def _special(films: tuple[str, ...], point: SpecialPoint) -> dict[str, object]:
+    largest = dict(zip(films, point.eccentricity_max, strict=True))
     return {
         "kind": point.kind,
         "branch": point.branch,
