@@ -64,10 +64,7 @@ def stability_map(
     observe: called with the number of each value and their number. Raises InputError if the values are none, or if the
     case cannot have one of them.
     """
-    (first, unit), (last, other) = _number(key, low), _number(key, high)
-    if unit != other or not first < last:
-        problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'
-        raise InputError(case.name or "case", (Fault(key, f"{low} to {high}", None, problem, remedy),))
+    first, last, unit = value_range(case, key, low, high)
     values = [first + (last - first) * i / (count - 1) for i in range(count)]
     cases = [load_case_text(case.source_text, [f"{key}={value!r} {unit}".strip()], case.name) for value in values]
     rows = []
@@ -79,6 +76,15 @@ def stability_map(
         if observe is not None:
             observe(number + 1, count)
     return StabilityMap(case, key, unit, tuple(rows))
+
+
+def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
+    """The ends of a range, text with one unit, and that unit. Raises InputError."""
+    (first, unit), (last, other) = _number(key, low), _number(key, high)
+    if unit != other or not first < last:
+        problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'
+        raise InputError(case.name or "case", (Fault(key, f"{low} to {high}", None, problem, remedy),))
+    return first, last, unit
 
 
 def _number(key: str, text: str) -> tuple[float, str]:
