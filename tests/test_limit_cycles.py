@@ -394,6 +394,32 @@ def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixtur
     assert run([*words, "--from", "48 um", "--to", "60 um", "--and", "oil.viscosity"]) == 2
 
 
+def test_a_small_synchronous_motion_is_the_linear_response() -> None:
+    """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
+    stability."""
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=1e-3 g*mm", "speed.from=50 Hz"])
+    points = frbcli.limit_cycles(case).synchronous[::4]
+    linear = frbcli.response(case, sorted(point.speed_Hz for point in points))
+    journal = linear.points.index("journal")
+    for number, point in enumerate(reversed(points)):
+        found = 2.0 * np.abs(point.harmonics[1, 0]) * case.bearings[0].clearance
+        np.testing.assert_allclose(found, np.abs(linear.motion[number, journal]), rtol=1e-4)
+        assert point.stable == (linear.growth[number] < 0.0)
+
+
+def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """Jeffcott rotor with 60 g mm at 130 Hz, where the orbit is a quarter of the clearance: a run at constant speed."""
+    settings = ["film.theory=short", "rotor.unbalance=60 g*mm"]
+    constant = ["speed.from=130 Hz", "speed.to=130 Hz", "speed.duration=1.5 s", "output.step=2e-5 s"]
+    constant += ["accuracy.tolerance=1e-8", "accuracy.steps_per_revolution=400"]
+    run_ = frbcli.runup(frbcli.load_case("jeffcott", [*settings, *constant]), tmp_path / "r.h5")
+    seen = run_.signals["eccentricity"][-5000:]
+    response = frbcli.limit_cycles(frbcli.load_case("jeffcott", [*settings, "speed.to=130 Hz"])).synchronous
+    assert response[0].speed_Hz == pytest.approx(130.0)
+    assert response[0].stable
+    assert response[0].eccentricity_max[0] == pytest.approx(seen.max(), abs=2e-4)
+
+
 def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
     """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
     (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)

@@ -204,7 +204,7 @@ def _left_out(found: LimitCycles) -> list[str]:
 
     notes = []
     if getattr(found.case.rotor, "unbalance", 0.0) or any(disk.unbalance for disk in found.case.disks):
-        notes.append("Without the unbalance: with it a whirl is a motion of two frequencies.")
+        notes.append("Branches are those without unbalance: with it a whirl has two frequencies.")
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes
@@ -239,6 +239,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
             }
             for branch in found.branches
         ],
+        "synchronous": [_cycle(found, point) for point in found.synchronous],
         "special": [_special(found.films, point) for point in found.special],
         "notes": found.notes,
         "cost": {"cpu_s": found.cost.cpu_s, "cycles": found.cost.cycles},

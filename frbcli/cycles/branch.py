@@ -77,7 +77,9 @@ AT_REST = "It ends at rest, in another Hopf point."
 
 
 class Follower:
-    """One branch while it is followed; omega: as in Balance."""
+    """One branch while it is followed; omega: as in Balance; free: whether it is a whirl, which may shrink to rest."""
+
+    free = True
 
     def __init__(
         self, machine: Machine, slowest: float, fastest: float, asked: Sequence[float] = (), omega: float | None = None
@@ -203,7 +205,7 @@ def follow_branch(
         if found is None:
             note = _why_not(follower, place)
             break
-        if cycles and passed_rest(machine, place, found):
+        if follower.free and cycles and passed_rest(machine, place, found):
             return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
         beyond = not follower.range[0] <= found.y[-1] <= follower.range[1]
         if beyond:
@@ -224,7 +226,7 @@ def follow_branch(
         if largest(machine, found.y) > LARGEST:
             note = f"The journal comes nearer to its shell than an eccentricity of {LARGEST}."
             break
-        if len(cycles) > 3 and amplitude(machine, found.y) < SMALL:
+        if follower.free and len(cycles) > 3 and amplitude(machine, found.y) < SMALL:
             return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
         length = next_length(length, strides, resized_like(place, found, machine.size), found)
         place = found

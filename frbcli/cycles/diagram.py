@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.case.bearing import Bores
 from frbcli.case.schema import Case
 from frbcli.cycles.balance import loads_along, unpacked
-from frbcli.cycles.branch import FLIP, FOLD, HOPF, TORUS, Branch, Cycle, Follower, first_place, follow_branch
+from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, Follower, first_place, follow_branch
 from frbcli.cycles.continuation import oriented
 from frbcli.cycles.criticality import lyapunov_coefficient
 from frbcli.cycles.equilibria import Course, Equilibrium, HopfPoint, Resting
@@ -97,6 +97,17 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
         notes=tuple(filter(None, notes)),
         cost=Cost(cpu(), cycles),
     )
+
+
+def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s: float) -> LimitCycles:
+    """The diagram with the synchronous response, and the CPU time of both."""
+    if response is None:
+        return replace(found, notes=(*found.notes, "No synchronous response was found at the highest speed."))
+    points = tuple(_cycle(walk, cycle) for cycle in response.cycles)
+    cost = Cost(cpu_s, found.cost.cycles + len(points))
+    if not response.note.startswith(LEFT):
+        found = replace(found, notes=(*found.notes, f"Synchronous response: {response.note}"))
+    return replace(found, synchronous=points, cost=cost)
 
 
 def _notes(case: Case, walk: Walk) -> list[str]:

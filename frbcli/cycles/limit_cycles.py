@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
 from frbcli.cycles.continuation import Unreachable
-from frbcli.cycles.diagram import Observer, Walk, diagram
+from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
 from frbcli.cycles.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.faults import check
 from frbcli.cycles.machine import make_machine
 from frbcli.cycles.result import SPEED, LimitCycles
+from frbcli.cycles.synchronous import synchronous_response
 from frbcli.errors import NotConverged
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
@@ -49,4 +50,8 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
         follower=Follower(machine, slowest, fastest, [2.0 * math.pi * speed for speed in speeds_Hz]),
         branch_scale=machine.pace / (2.0 * math.pi),
     )
-    return diagram(case, walk, observe, lambda: time.process_time() - begun)
+    found = diagram(case, walk, observe, lambda: time.process_time() - begun)
+    if not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
+        return found
+    response = synchronous_response(machine, resting.points[-1], slowest)
+    return with_response(found, walk, response, time.process_time() - begun)

@@ -105,7 +105,7 @@ class Cost:
 @dataclass(frozen=True)
 class LimitCycles:
     """The diagram of a case. over, unit: what it goes over, "speed" in Hz or a key of the case; films: their names;
-    notes: what is to be said of it."""
+    notes: what is to be said of it; synchronous: the nonlinear response to the unbalance, descending in speed."""
 
     case: Case
     over: str
@@ -116,6 +116,7 @@ class LimitCycles:
     special: tuple[SpecialPoint, ...]
     notes: tuple[str, ...]
     cost: Cost
+    synchronous: tuple[CyclePoint, ...] = ()
 
     def of(self, kind: str) -> tuple[SpecialPoint, ...]:
         """The special points of a kind."""

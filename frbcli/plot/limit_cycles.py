@@ -14,7 +14,7 @@ from frbcli.plot.run_track import RunTrack
 from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, plain, styled
 
 Array = NDArray[np.float64]
-COLOURS = (BLUE, VERMILION, PURPLE, SKY, GREY)  # of branches
+COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
@@ -45,6 +45,11 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
     eccentricity = np.array([point.eccentricity[film] for point in found.equilibria])
     stable = np.array([point.stable for point in found.equilibria])
     _line(axes, speeds, eccentricity, stable, BLACK, "at rest")
+    if found.synchronous:
+        speeds = np.array([point.value for point in found.synchronous])
+        values = np.array([point.eccentricity_max[film] for point in found.synchronous])
+        stable = np.array([point.stable for point in found.synchronous])
+        _line(axes, speeds, values, stable, GREY, "with unbalance")
     for number, branch in enumerate(found.branches):
         values = np.array([point.eccentricity_max[film] for point in branch.points])
         label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
