@@ -28,6 +28,7 @@ from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import multipliers
 from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine, film_loads, make_machine, transfer
+from frbcli.cycles.over_key import limit_cycles_over
 from frbcli.cycles.result import LimitCycles
 from frbcli.cycles.threshold import threshold_kind
 from frbcli.film.cells.frame import turned
@@ -361,6 +362,79 @@ def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[
 def test_what_has_no_limit_cycles_is_told(settings: list[str], told: str) -> None:
     with pytest.raises(frbcli.InputError, match=told):
         frbcli.limit_cycles(frbcli.load_case("jeffcott", settings))
+
+
+def test_a_diagram_over_a_number_of_the_case_meets_that_over_the_speed() -> None:
+    """Rigid rotor at w = 2.72: Hopf point and fold over the viscosity lie where the diagrams over the speed of these
+    viscosities have theirs."""
+    case = rigid(4.538, 2.4, 2.9)
+    viscosity, speed = case.oil.viscosity, 2.72 * UNIT_Hz
+    found = limit_cycles_over(case, "oil.viscosity", f"{0.6 * viscosity!r} Pa*s", f"{1.1 * viscosity!r} Pa*s", speed)
+    assert (found.over, found.unit) == ("oil.viscosity", "Pa*s")
+    for kind in ("hopf", "fold"):
+        (point,) = found.of(kind)
+        other = diagram(4.538 * point.value / viscosity, 2.4, 2.9).of(kind)[0]
+        assert other.speed_Hz == pytest.approx(speed, rel=1e-7)
+        assert point.frequency_Hz == pytest.approx(other.frequency_Hz, rel=1e-6)
+        assert point.criticality == other.criticality
+        assert point.eccentricity_max[0] == pytest.approx(other.eccentricity_max[0], abs=1e-4)
+
+
+def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+    (tmp_path / "rigid.toml").write_text(rigid(4.538, 2.4, 2.9).source_text)
+    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance", "--json", "--csv"]
+    words += [str(tmp_path / "over.csv"), "-o", str(tmp_path / "over.png")]
+    assert run([*words, "--from", "48 um", "--to", "60 um", "--speed", f"{2.7 * UNIT_Hz} Hz"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["over"], document["unit"]) == ("bearing.clearance", "um")
+    assert 47.9 < document["equilibria"][0]["value"] < 60.1
+    assert (tmp_path / "over.csv").read_text().startswith("bearing.clearance,branch")
+    assert run(words) == 2
+    assert run([*words, "--from", "-1 um", "--to", "60 um"]) == 2
+    assert run([*words, "--from", "48 um", "--to", "60 um", "--and", "oil.viscosity"]) == 2
+
+
+def test_a_small_synchronous_motion_is_the_linear_response() -> None:
+    """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
+    stability."""
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=1e-3 g*mm", "speed.from=50 Hz"])
+    points = frbcli.limit_cycles(case).synchronous[::4]
+    linear = frbcli.response(case, sorted(point.speed_Hz for point in points))
+    journal = linear.points.index("journal")
+    for number, point in enumerate(reversed(points)):
+        found = 2.0 * np.abs(point.harmonics[1, 0]) * case.bearings[0].clearance
+        np.testing.assert_allclose(found, np.abs(linear.motion[number, journal]), rtol=1e-4)
+        assert point.stable == (linear.growth[number] < 0.0)
+
+
+def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """Jeffcott rotor with 60 g mm at 130 Hz, where the orbit is a quarter of the clearance: a run at constant speed."""
+    settings = ["film.theory=short", "rotor.unbalance=60 g*mm"]
+    constant = ["speed.from=130 Hz", "speed.to=130 Hz", "speed.duration=1.5 s", "output.step=2e-5 s"]
+    constant += ["accuracy.tolerance=1e-8", "accuracy.steps_per_revolution=400"]
+    run_ = frbcli.runup(frbcli.load_case("jeffcott", [*settings, *constant]), tmp_path / "r.h5")
+    seen = run_.signals["eccentricity"][-5000:]
+    response = frbcli.limit_cycles(frbcli.load_case("jeffcott", [*settings, "speed.to=130 Hz"])).synchronous
+    assert response[0].speed_Hz == pytest.approx(130.0)
+    assert response[0].stable
+    assert response[0].eccentricity_max[0] == pytest.approx(seen.max(), abs=2e-4)
+
+
+def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
+    (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
+    low, high = (rigid(gamma, 2.4, 2.9).oil.viscosity for gamma in (1.313, 4.538))
+    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--and", "oil.viscosity", "--points", "2", "--json"]
+    picture = tmp_path / "map.png"
+    assert run([*words, "--from", f"{low!r} Pa*s", "--to", f"{high!r} Pa*s", "-o", str(picture)]) == 0
+    document = json.loads(capsys.readouterr().out)
+    first, last = document["rows"]
+    assert first["special"][0]["criticality"] == "supercritical"
+    assert last["special"][0]["criticality"] == "subcritical"
+    assert last["special"][0]["speed_Hz"] == pytest.approx(diagram(4.538, 2.4, 2.9).of("hopf")[0].speed_Hz, rel=1e-9)
+    assert picture.exists()
+    assert run([*words, "--from", "1 Pa*s", "--to", "2 m"]) == 2
+    assert run(words) == 2
 
 
 def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]

@@ -11,7 +11,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
-from frbcli.cli.live import live_lines
+from frbcli.cli.live import counting, live_lines
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -29,6 +29,13 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @case_argument
 @click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
+@click.option("--over", default="speed", metavar="KEY",
+              help="Speed, or a number of the case, at the one --speed, default speed.to. [speed]")  # fmt: skip
+@click.option("--and", "key", metavar="KEY",
+              help="Hopf points and folds over speed and this key, e.g. bearing.clearance.")  # fmt: skip
+@click.option("--from", "low", metavar="VALUE", help="Of --over or --and, with its unit, e.g. '30 um'.")
+@click.option("--to", "high", metavar="VALUE", help="The same.")
+@click.option("--points", type=click.IntRange(2, 500), default=9, help="Values of --and. [9]")
 @click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
@@ -38,6 +45,11 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 def command(
     case: Case,
     speeds: tuple[float, ...],
+    over: str,
+    key: str | None,
+    low: str | None,
+    high: str | None,
+    points: int,
     runs: tuple[str, ...],
     output: Path | None,
     no_picture: bool,
@@ -49,16 +61,28 @@ def command(
     Branches of cycles, stable or not, are followed through folds; unbalance is left out.
     """
     from frbcli.cycles.limit_cycles import limit_cycles
+    from frbcli.cycles.over_key import limit_cycles_over
     from frbcli.results.place import require_place
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    picture = None if no_picture else output or here(case.name, "-limit-cycles.png")
+    _check_range(over, key, low, high)
+    if (key is not None and (speeds or runs)) or (over != "speed" and (len(speeds) > 1 or runs)):
+        raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
+    drawn = "limit-cycles" if key is None else "stability-map"
+    picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
     check_place(picture)
     require_place(csv)
+    if key is not None and low is not None and high is not None:
+        _map(terminal, case, (key, low, high, points), picture, csv)
+        return
     tracks = [track for name in runs for track in _tracks(Path(name))]
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = limit_cycles(case, speeds, _showing(show))
+        if over != "speed" and low is not None and high is not None:
+            at = speeds[0] if speeds else case.speed.end
+            found = limit_cycles_over(case, over, low, high, at, _showing(show))
+        else:
+            found = limit_cycles(case, speeds, _showing(show))
     _tell(terminal, found)
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)
@@ -70,6 +94,61 @@ def command(
     terminal.emit(_document(found) | {"picture": picture, "csv": csv})
 
 
+def _check_range(over: str, key: str | None, low: str | None, high: str | None) -> None:
+    if over != "speed" and key is not None:
+        raise click.UsageError("--and draws a map over the speed: leave --over out.")
+    if (over != "speed" or key is not None) != (low is not None and high is not None):
+        raise click.UsageError("--over KEY and --and KEY go with --from VALUE and --to VALUE.")
+
+
+def _map(
+    terminal: Terminal, case: Case, over: tuple[str, str, str, int], picture: Path | None, csv: Path | None
+) -> None:
+    """The map over the speed and a second number: key, from, to, points."""
+    from frbcli.cycles.stability_map import stability_map
+    from frbcli.scene.films import film_places
+
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = stability_map(case, *over, counting(show))
+    rows = [
+        (f"{row.value:.4g} {found.unit}".strip(), point.kind, f"{point.speed_Hz:.2f}", f"{point.frequency_Hz:.2f}",
+         point.criticality or "")
+        for row in found.rows
+        for point in row.special
+    ]  # fmt: skip
+    terminal.table(case.title or case.name, (found.key, "point", "Hz", "whirl Hz", ""), rows)
+    for row in found.rows:
+        if row.problem:
+            terminal.result(_wrapped(f"{row.value:.4g} {found.unit}: {row.problem}"))
+    if csv is not None:
+        found.to_pandas().to_csv(csv, index=False)
+        terminal.result(f"table: {csv}")
+    if picture is not None:
+        from frbcli.plot.stability_map import stability_map_figure
+
+        picture = draw(terminal, lambda: stability_map_figure(found), picture)
+    names = tuple(place.name for place in film_places(case))
+    terminal.emit(
+        {
+            "command": "limit-cycles",
+            "case": case.name,
+            "over": "speed",
+            "and": found.key,
+            "unit": found.unit,
+            "rows": [
+                {
+                    "value": row.value,
+                    "special": [_special(names, p) for p in row.special],
+                    "problem": row.problem or None,
+                }
+                for row in found.rows
+            ],
+            "picture": picture,
+            "csv": csv,
+        }
+    )
+
+
 def _tracks(path: Path) -> tuple[RunTrack, ...]:
     """The way up of a run, and the way down if it has one."""
     from frbcli.plot.run_track import run_tracks
@@ -79,9 +158,9 @@ def _tracks(path: Path) -> tuple[RunTrack, ...]:
 
 
 def _showing(show: Callable[[str], None] | None) -> Callable[[int, float, float], None]:
-    def observe(number: int, speed: float, eccentricity: float) -> None:
+    def observe(number: int, value: float, eccentricity: float) -> None:
         if show is not None:
-            show(f"cycle {number}: {speed:.1f} Hz, eccentricity {eccentricity:.4f}")
+            show(f"cycle {number}: at {value:.4g}, eccentricity {eccentricity:.4f}")
 
     return observe
 
@@ -91,7 +170,7 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
         (
             point.kind,
             "-" if point.branch is None else str(point.branch + 1),
-            f"{point.speed_Hz:.2f}",
+            f"{point.value:.2f}" if found.over == "speed" else f"{point.value:.6g}",
             f"{point.frequency_Hz:.2f}",
             f"{point.frequency_Hz / point.speed_Hz:.4f}",
             f"{point.eccentricity_max.max():.4f}",
@@ -99,15 +178,15 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
         )
         for point in found.special
     ]
-    columns = ("point", "branch", "Hz", "whirl Hz", "ratio", "eps max", "")
+    columns = ("point", "branch", found.unit or found.over, "whirl Hz", "ratio", "eps max", "")
     terminal.table(found.case.title or found.case.name, columns, rows)
     for number, branch in enumerate(found.branches):
-        speeds = [point.speed_Hz for point in branch.points]
-        if not speeds:
+        values = [point.value for point in branch.points]
+        if not values:
             terminal.result(_wrapped(f"Branch {number + 1} has no cycles. {branch.note}"))
             continue
         stable = sum(point.stable for point in branch.points)
-        told = f"{len(speeds)} cycles from {min(speeds):.1f} to {max(speeds):.1f} Hz, {stable} stable."
+        told = f"{len(values)} cycles from {min(values):.4g} to {max(values):.4g} {found.unit}, {stable} stable."
         terminal.result(_wrapped(f"Branch {number + 1}: {told} {branch.note}"))
     for number, branch in enumerate(found.branches):
         for point in branch.points:
@@ -125,7 +204,7 @@ def _left_out(found: LimitCycles) -> list[str]:
 
     notes = []
     if getattr(found.case.rotor, "unbalance", 0.0) or any(disk.unbalance for disk in found.case.disks):
-        notes.append("Without the unbalance: with it a whirl is a motion of two frequencies.")
+        notes.append("Branches are those without unbalance: with it a whirl has two frequencies.")
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes
@@ -139,9 +218,11 @@ def _document(found: LimitCycles) -> dict[str, object]:
     return {
         "command": "limit-cycles",
         "case": found.case.name,
-        "over": "speed",
+        "over": found.over,
+        "unit": found.unit,
         "equilibria": [
             {
+                "value": point.value,
                 "speed_Hz": point.speed_Hz,
                 "displacement": point.displacement[0],
                 "stable": point.stable,
@@ -152,13 +233,14 @@ def _document(found: LimitCycles) -> dict[str, object]:
         ],
         "branches": [
             {
-                "from": None if branch.start is None else _special(found, found.special[branch.start]),
+                "from": None if branch.start is None else _special(found.films, found.special[branch.start]),
                 "points": [_cycle(found, point) for point in branch.points],
                 "note": branch.note,
             }
             for branch in found.branches
         ],
-        "special": [_special(found, point) for point in found.special],
+        "synchronous": [_cycle(found, point) for point in found.synchronous],
+        "special": [_special(found.films, point) for point in found.special],
         "notes": found.notes,
         "cost": {"cpu_s": found.cost.cpu_s, "cycles": found.cost.cycles},
     }
@@ -166,6 +248,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
 
 def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
     return {
+        "value": point.value,
         "speed_Hz": point.speed_Hz,
         "frequency_Hz": point.frequency_Hz,
         "eccentricity_max": dict(zip(found.films, point.eccentricity_max, strict=True)),
@@ -181,11 +264,12 @@ def _orbits(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
     return {name: point.orbit(film) for film, name in enumerate(found.films)}
 
 
-def _special(found: LimitCycles, point: SpecialPoint) -> dict[str, object]:
-    largest = dict(zip(found.films, point.eccentricity_max, strict=True))
+def _special(films: tuple[str, ...], point: SpecialPoint) -> dict[str, object]:
+    largest = dict(zip(films, point.eccentricity_max, strict=True))
     return {
         "kind": point.kind,
         "branch": point.branch,
+        "value": point.value,
         "speed_Hz": point.speed_Hz,
         "frequency_Hz": point.frequency_Hz,
         "criticality": point.criticality,

@@ -15,10 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.balance import Balance, left_out, moments, motion_along, packed, unpacked
-from frbcli.cycles.continuation import Place, Strides, corrected, fold_between, next_length, oriented, step_from
+from frbcli.cycles.continuation import (
+    Equations,
+    Place,
+    Strides,
+    corrected,
+    fold_between,
+    next_length,
+    oriented,
+    step_from,
+)
 from frbcli.cycles.equilibria import HopfPoint
 from frbcli.cycles.floquet import TRIVIAL, Multipliers, multipliers
-from frbcli.cycles.linearised import StateSpace, state_space
+from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine
 
 Array = NDArray[np.float64]
@@ -42,18 +51,15 @@ ASKED = "asked"  # a cycle at a speed that was asked for
 
 @dataclass(frozen=True)
 class Cycle:
-    """A limit cycle. y: see balance.py; place: with its tangent; eccentricity_max: (F,); multipliers: None if they were
-    not asked for."""
+    """A limit cycle. place: on its branch, with its tangent; machine: whose cycle it is; y: see balance.py;
+    eccentricity_max: (F,)."""
 
     place: Place
+    machine: Machine
+    y: Array
     eccentricity_max: Array
     multipliers: Multipliers
     kind: str = ""
-
-    @property
-    def y(self) -> Array:
-        """The unknowns."""
-        return self.place.y
 
 
 @dataclass(frozen=True)
@@ -66,36 +72,64 @@ class Branch:
     ends_at_rest: bool = False
 
 
+LEFT = "It leaves the range."
 AT_REST = "It ends at rest, in another Hopf point."
 
 
 class Follower:
-    """One branch while it is followed; omega: as in Balance."""
+    """One branch while it is followed; omega: as in Balance; free: whether it is a whirl, which may shrink to rest."""
+
+    free = True
 
     def __init__(
         self, machine: Machine, slowest: float, fastest: float, asked: Sequence[float] = (), omega: float | None = None
     ) -> None:
         self.machine = machine
         self.omega = omega
-        self.space: StateSpace = state_space(machine)
         self.range = (slowest / machine.pace, fastest / machine.pace)
         self.asked = tuple(speed / machine.pace for speed in asked)
 
     def cycle(self, place: Place, kind: str = "") -> Cycle:
         """A point of the branch with all that is told of it."""
-        found = multipliers(self.machine, self.space, place.y)
+        found = self.multipliers(place)
         while found.defect > TRIVIAL:
             finer = self.with_more(place)
             if finer is None:
                 break
-            place, found = finer, multipliers(self.machine, self.space, finer.y)
-        return Cycle(place, eccentricities(self.machine, place.y), found, kind)
+            place, found = finer, self.multipliers(finer)
+        machine, y = self.machine_at(place.y), self.as_cycle(place.y)
+        return Cycle(place, machine, y, eccentricities(machine, y), found, kind)
 
-    def equations(self, place: Place) -> Balance:
-        moving = amplitude(self.machine, place.y) > NOTHING  # at a Hopf point only the tangent has a phase
+    def multipliers(self, place: Place) -> Multipliers:
+        """Those of the cycle at a place."""
+        machine = self.machine_at(place.y)
+        return multipliers(machine, state_space(machine), self.as_cycle(place.y))
+
+    def machine_at(self, _y: Array) -> Machine:
+        """The machine whose cycle y is."""
+        return self.machine
+
+    def told(self, y: Array) -> str:
+        """Where on the branch y is."""
+        return f"{y[-1] * self.machine.pace / (2.0 * math.pi):.4g} Hz"
+
+    def equations(self, place: Place) -> Equations:
+        """Those of the cycles about a place."""
+        moving = self.moves(place.y)  # at a Hopf point only the tangent has a phase
         return Balance(
             self.machine, unpacked((place.y if moving else place.tangent)[:-2], self.machine.size), self.omega
         )
+
+    def moves(self, y: Array) -> bool:
+        """Whether y is more than rest."""
+        return amplitude(self.machine, y) > NOTHING
+
+    def entered(self, y: Array, last: float) -> Place | None:
+        """The cycle y with the last unknown `last` as a place of the branch, which rises in it; None if it is none."""
+        along = np.zeros(len(y))
+        along[-1] = 1.0
+        there = np.append(y[:-1], last)
+        return corrected(self.equations(Place(there, along)), there, along)
 
     def as_cycle(self, y: Array) -> Array:
         """The unknowns y with the speed of the rotor at their end."""
@@ -115,7 +149,7 @@ class Follower:
         c = self.machine.size
         for _ in range(12):
             harmonics = (len(place.y) - 2) // c // 2
-            tail = left_out(self.machine, self.as_cycle(place.y))
+            tail = left_out(self.machine_at(place.y), self.as_cycle(place.y))
             motion = unpacked(place.y[:-2], c)
             if tail < TAIL[self.machine.film_count > 1]:
                 used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * TAIL[self.machine.film_count > 1])
@@ -151,20 +185,15 @@ class Follower:
 
 
 def follow_branch(
-    machine: Machine,
+    follower: Follower,
     start: Place,
-    slowest: float,
-    fastest: float,
-    asked: Sequence[float] = (),
     observe: Callable[[Cycle], None] | None = None,
     until: Callable[[Cycle], bool] | None = None,
 ) -> Branch:
-    """The cycles from a place on, as that of a Hopf point, between two speeds in rad/s.
-
-    asked: speeds at which cycles are computed exactly; observe: called with each cycle;
+    """The cycles from a place on, as that of a Hopf point. observe: called with each cycle;
     until: called with each cycle, special ones too, the last one being that for which it says so.
     """
-    follower = Follower(machine, slowest, fastest, asked)
+    machine = follower.machine
     place, length, strides = start, STRIDES.first, STRIDES
     cycles: list[Cycle] = []
     note = ""
@@ -176,12 +205,12 @@ def follow_branch(
         if found is None:
             note = _why_not(follower, place)
             break
-        if cycles and passed_rest(machine, place, found):
+        if follower.free and cycles and passed_rest(machine, place, found):
             return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
         beyond = not follower.range[0] <= found.y[-1] <= follower.range[1]
         if beyond:
             limit = follower.range[0] if found.y[-1] < follower.range[0] else follower.range[1]
-            found, note = at_speed(follower, place, found, limit), "It leaves the range of speeds."
+            found, note = at_speed(follower, place, found, limit), LEFT
             if found is None:
                 break
         cycle = follower.cycle(found)
@@ -197,7 +226,7 @@ def follow_branch(
         if largest(machine, found.y) > LARGEST:
             note = f"The journal comes nearer to its shell than an eccentricity of {LARGEST}."
             break
-        if len(cycles) > 3 and amplitude(machine, found.y) < SMALL:
+        if follower.free and len(cycles) > 3 and amplitude(machine, found.y) < SMALL:
             return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
         length = next_length(length, strides, resized_like(place, found, machine.size), found)
         place = found
@@ -206,12 +235,14 @@ def follow_branch(
     return Branch(tuple(cycles), note)
 
 
-def first_place(machine: Machine, hopf: HopfPoint) -> Place:
-    """The Hopf point as a cycle of no size, with the tangent along its mode."""
+def first_place(machine: Machine, hopf: HopfPoint, last: float | None = None) -> Place:
+    """The Hopf point as a cycle of no size, with the tangent along its mode. last: the last unknown, its speed over
+    the pace if not given."""
     motion = np.zeros((FIRST_HARMONICS + 1, machine.size), dtype=complex)
     along = np.zeros_like(motion)
     motion[0], along[1] = hopf.equilibrium.u, hopf.mode
-    y = np.concatenate([packed(motion), [hopf.nu / machine.pace, hopf.equilibrium.omega / machine.pace]])
+    over = hopf.equilibrium.omega / machine.pace if last is None else last
+    y = np.concatenate([packed(motion), [hopf.nu / machine.pace, over]])
     tangent = np.concatenate([packed(along), [0.0, 0.0]])
     return Place(y, tangent / np.linalg.norm(tangent))
 
@@ -309,7 +340,7 @@ def _bisected(follower: Follower, place: Place, unstable: int, length: float) ->
         if there is None:
             return None
         there = oriented(there, place.tangent)
-        if multipliers(follower.machine, follower.space, there.y).unstable == unstable:
+        if follower.multipliers(there).unstable == unstable:
             low = middle
         else:
             high, found = middle, there
@@ -330,9 +361,11 @@ def at_speed(follower: Follower, place: Place, beyond: Place, speed: float) -> P
 def _why_not(follower: Follower, place: Place) -> str:
     """Why no step leads on."""
     machine = follower.machine
-    harmonics, tail = (len(place.y) - 2) // machine.size // 2, left_out(machine, follower.as_cycle(place.y))
-    speed, eccentricity = place.y[-1] * machine.pace / (2.0 * math.pi), largest(machine, place.y)
-    told = f"It could not be followed beyond {speed:.4g} Hz, an eccentricity of {eccentricity:.4f}"
+    harmonics = (len(place.y) - 2) // machine.size // 2
+    tail = left_out(follower.machine_at(place.y), follower.as_cycle(place.y))
+    told = (
+        f"It could not be followed beyond {follower.told(place.y)}, an eccentricity of {largest(machine, place.y):.4f}"
+    )
     if harmonics >= MOST_HARMONICS - 2:
         return f"{told}: {harmonics} harmonics leave {tail:.1g} of the clearance."
     return f"{told}: the steps became too short."

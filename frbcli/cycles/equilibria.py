@@ -8,7 +8,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,11 +32,13 @@ HALVINGS = 30  # of an interval of speeds with several Hopf points
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A resting position. u: (c,) see machine.py; omega: speed of the rotor, rad/s; eigenvalues: (N,) 1/s."""
+    """A resting position. u: (c,) see machine.py; omega: speed of the rotor, rad/s; eigenvalues: (N,) 1/s; value: of
+    the number that the curve goes over, omega itself or another one."""
 
     u: Array
     omega: float
     eigenvalues: Complex
+    value: float
 
     @property
     def unstable(self) -> int:
@@ -68,6 +71,32 @@ class HopfPoint:
     mode: Complex
     rising: bool
     state: Complex
+
+
+class Course(Protocol):
+    """What resting positions are followed over."""
+
+    def machine(self, value: float) -> Machine:
+        """The machine at a value of the number."""
+
+    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
+        """The resting position at a value between two. Raises Unreachable."""
+
+
+@dataclass(frozen=True)
+class OverSpeed:
+    """The course over the speed of the rotor in rad/s."""
+
+    only: Machine
+
+    def machine(self, _value: float) -> Machine:
+        """The same at each speed."""
+        return self.only
+
+    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
+        """As Course says."""
+        share = (value - low.value) / (high.value - low.value)
+        return settled(self.only, low.u + share * (high.u - low.u), value, value)
 
 
 @dataclass(frozen=True)
@@ -111,7 +140,7 @@ def resting_curve(system: System, machine: Machine, slowest: float, fastest: flo
         note = f"The resting positions could not be followed below {lost:.4g} Hz."
     space = state_space(machine)
     points = tuple(_equilibrium(machine, space, place) for place in reversed(places))
-    return Resting(points, tuple(_hopf_points(machine, space, points)), note)
+    return Resting(points, hopf_points(OverSpeed(machine), points), note)
 
 
 def first_place(system: System, machine: Machine, ask: Callable[[Array], tuple[Array, Array]], omega: float) -> Place:
@@ -144,27 +173,27 @@ def at_speed(ask: Callable[[Array], tuple[Array, Array]], near: Place, speed: fl
 def _equilibrium(machine: Machine, space: StateSpace, place: Place) -> Equilibrium:
     u, omega = place.y[:-1], float(place.y[-1] * machine.pace)
     loads = film_loads(machine, u[None], np.zeros((1, len(u))), omega)
-    return Equilibrium(u, omega, np.linalg.eigvals(space.matrix(omega, loads.by_u[0], loads.by_v[0])).astype(complex))
+    values = np.linalg.eigvals(space.matrix(omega, loads.by_u[0], loads.by_v[0])).astype(complex)
+    return Equilibrium(u, omega, values, omega)
 
 
-def _hopf_points(machine: Machine, space: StateSpace, points: Sequence[Equilibrium]) -> list[HopfPoint]:
+def hopf_points(course: Course, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
+    """The Hopf points between resting positions in the order of their course."""
     found = []
     for low, high in itertools.pairwise(points):
-        found += _between(machine, space, low, high, HALVINGS)
-    return found
+        found += _between(course, low, high, HALVINGS)
+    return tuple(found)
 
 
-def _between(
-    machine: Machine, space: StateSpace, low: Equilibrium, high: Equilibrium, halvings: int
-) -> list[HopfPoint]:
+def _between(course: Course, low: Equilibrium, high: Equilibrium, halvings: int) -> list[HopfPoint]:
     """The Hopf points between two equilibria."""
     crossing = _crossing(low, high)
     if crossing == 0 or halvings == 0:
         return []
     if crossing == 1:
-        return [_located(machine, space, low, high)]
-    middle = _solved(machine, space, low, high, 0.5 * (low.omega + high.omega))
-    return _between(machine, space, low, middle, halvings - 1) + _between(machine, space, middle, high, halvings - 1)
+        return [_located(course, low, high)]
+    middle = course.solved(low, high, 0.5 * (low.value + high.value))
+    return _between(course, low, middle, halvings - 1) + _between(course, middle, high, halvings - 1)
 
 
 def _crossing(low: Equilibrium, high: Equilibrium) -> int:
@@ -179,32 +208,32 @@ def _crossing(low: Equilibrium, high: Equilibrium) -> int:
     return max(int(np.count_nonzero(turned & oscillating)), abs(high.unstable - low.unstable))
 
 
-def _solved(machine: Machine, space: StateSpace, low: Equilibrium, high: Equilibrium, omega: float) -> Equilibrium:
-    """The equilibrium at a speed between two."""
-    share = (omega - low.omega) / (high.omega - low.omega)
-    guess = np.append(low.u + share * (high.u - low.u), omega / machine.pace)
+def settled(machine: Machine, near: Array, omega: float, value: float) -> Equilibrium:
+    """The resting position of a machine at a speed in rad/s near to u. Raises Unreachable."""
+    guess = np.append(near, omega / machine.pace)
     along = np.zeros(len(guess))
     along[-1] = 1.0
     found = corrected(equations(machine), guess, along)
     if found is None:
         raise Unreachable
-    return _equilibrium(machine, space, found)
+    return replace(_equilibrium(machine, state_space(machine), found), value=value)
 
 
-def _located(machine: Machine, space: StateSpace, low: Equilibrium, high: Equilibrium) -> HopfPoint:
+def _located(course: Course, low: Equilibrium, high: Equilibrium) -> HopfPoint:
     from scipy.optimize import brentq
 
     number = max(low.unstable, high.unstable) - 1
 
-    def growth(omega: float) -> float:
-        if omega in (low.omega, high.omega):
-            return (low if omega == low.omega else high).growth(number)
-        return _solved(machine, space, low, high, omega).growth(number)
+    def growth(value: float) -> float:
+        if value in (low.value, high.value):
+            return (low if value == low.value else high).growth(number)
+        return course.solved(low, high, value).growth(number)
 
-    omega = float(brentq(growth, low.omega, high.omega, xtol=SHARP * high.omega, rtol=SHARP))
-    here = _solved(machine, space, low, high, omega)
-    loads = film_loads(machine, here.u[None], np.zeros((1, len(here.u))), omega)
-    values, vectors = np.linalg.eig(space.matrix(omega, loads.by_u[0], loads.by_v[0]))
+    value = float(brentq(growth, low.value, high.value, xtol=SHARP * high.value, rtol=SHARP))
+    here, machine = course.solved(low, high, value), course.machine(value)
+    space = state_space(machine)
+    loads = film_loads(machine, here.u[None], np.zeros((1, len(here.u))), here.omega)
+    values, vectors = np.linalg.eig(space.matrix(here.omega, loads.by_u[0], loads.by_v[0]))
     oscillating = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
     own = oscillating[np.argmin(np.abs(values[oscillating].real))]
     state = vectors[:, own].astype(complex)

@@ -18,14 +18,17 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+SPEED = "speed"  # what diagrams go over
 SUBCRITICAL, SUPERCRITICAL = "subcritical", "supercritical"
 
 
 @dataclass(frozen=True)
 class RestingPoint:
-    """A resting position. displacement: (F, 2) of the journals over the clearance; ring_speeds_Hz: (R,); eigenvalues:
+    """A resting position. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over
+    the clearance; ring_speeds_Hz: (R,); eigenvalues:
     (N,) 1/s; stable: whether all of them decay."""
 
+    value: float
     speed_Hz: float
     displacement: Array
     ring_speeds_Hz: Array
@@ -40,12 +43,14 @@ class RestingPoint:
 
 @dataclass(frozen=True)
 class CyclePoint:
-    """A limit cycle. speed_Hz: of the rotor; frequency_Hz: of the cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,)
-    mean; torque_N_m: mean, that turns the rotor against its films; stable: whether all disturbances decay; multipliers:
-    (N,) the trivial one first, then by falling size; harmonics: (H + 1, F, 2) complex, of the displacements over the
-    clearance; kind: "", that of a special point,
-    or "asked" at a speed that was asked for."""
+    """A limit cycle. value: of the number that the diagram goes over; speed_Hz: of the rotor; frequency_Hz: of the
+    cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; torque_N_m: mean, that turns the rotor against its films;
+    stable: whether all disturbances decay; multipliers: (N,) the trivial one first, then by falling size; harmonics:
+    (H + 1, F, 2) complex, of the displacements over the clearance; kind: "", that of a special point, or "asked" at a
+    speed that was asked for.
+    """
 
+    value: float
     speed_Hz: float
     frequency_Hz: float
     eccentricity_max: Array
@@ -75,11 +80,13 @@ class CycleBranch:
 @dataclass(frozen=True)
 class SpecialPoint:
     """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
-    point; criticality: of a Hopf point, else None, with lyapunov (1/s, for an amplitude over the clearance): Re c_1 of
-    criticality.py; eccentricity_max: (F,)."""
+    point; value: of the number that the diagram goes over; criticality: of a Hopf point, else None, with lyapunov (1/s,
+    for an amplitude over the clearance): Re c_1 of criticality.py; eccentricity_max: (F,).
+    """
 
     kind: str
     branch: int | None
+    value: float
     speed_Hz: float
     frequency_Hz: float
     eccentricity_max: Array
@@ -97,15 +104,19 @@ class Cost:
 
 @dataclass(frozen=True)
 class LimitCycles:
-    """The diagram of a case over its speed. films: their names; notes: what is to be said of it."""
+    """The diagram of a case. over, unit: what it goes over, "speed" in Hz or a key of the case; films: their names;
+    notes: what is to be said of it; synchronous: the nonlinear response to the unbalance, descending in speed."""
 
     case: Case
+    over: str
+    unit: str
     films: tuple[str, ...]
     equilibria: tuple[RestingPoint, ...]
     branches: tuple[CycleBranch, ...]
     special: tuple[SpecialPoint, ...]
     notes: tuple[str, ...]
     cost: Cost
+    synchronous: tuple[CyclePoint, ...] = ()
 
     def of(self, kind: str) -> tuple[SpecialPoint, ...]:
         """The special points of a kind."""
@@ -116,18 +127,23 @@ class LimitCycles:
         import pandas as pd
 
         rows = [
-            {"branch": -1, "speed_Hz": point.speed_Hz, "frequency_Hz": math.nan, "stable": point.stable, "kind": ""}
+            self._over(point.value)
+            | {"branch": -1, "speed_Hz": point.speed_Hz, "frequency_Hz": math.nan, "stable": point.stable, "kind": ""}
             | self._columns(point.eccentricity, point.ring_speeds_Hz)
             for point in self.equilibria
         ]
         rows += [
-            {"branch": number, "speed_Hz": point.speed_Hz, "frequency_Hz": point.frequency_Hz, "stable": point.stable}
+            self._over(point.value)
+            | {"branch": number, "speed_Hz": point.speed_Hz, "frequency_Hz": point.frequency_Hz, "stable": point.stable}
             | {"kind": point.kind, "torque_N_m": point.torque_N_m}
             | self._columns(point.eccentricity_max, point.ring_speeds_Hz)
             for number, branch in enumerate(self.branches)
             for point in branch.points
         ]
         return pd.DataFrame(rows)
+
+    def _over(self, value: float) -> dict[str, float]:
+        return {} if self.over == SPEED else {self.over: value}
 
     def _columns(self, eccentricities: Array, ring_speeds_Hz: Array) -> dict[str, float]:
         several = len(self.films) > 1

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import Balance, packed, unpacked
+from frbcli.cycles.balance import packed
 from frbcli.cycles.branch import FIRST_HARMONICS, STRIDES, Follower, at_speed, largest, resized_like
 from frbcli.cycles.continuation import Place, Strides, corrected, follow, next_length
 from frbcli.cycles.equilibria import OSCILLATING, Equilibrium
@@ -26,8 +26,8 @@ MOST = 50.0  # share up to which springs and dashpots are added
 HALVINGS = 40
 
 
-def seed_cycle(machine: Machine, resting: Equilibrium) -> Place | None:
-    """A cycle at the speed of an unstable resting position, its tangent rising in speed; None if none was found."""
+def seed_cycle(machine: Machine, resting: Equilibrium) -> Array | None:
+    """A cycle, see balance.py, at the speed of an unstable resting position; None if none was found."""
     hopf = _stabilised(machine, resting)
     if hopf is None:
         return None
@@ -41,17 +41,10 @@ def seed_cycle(machine: Machine, resting: Equilibrium) -> Place | None:
             return None
         if found.y[-1] <= 0.0:
             there = at_speed(follower, place, found, 0.0)
-            return None if there is None else _at_last(machine, follower.as_cycle(there.y))
+            return None if there is None else follower.as_cycle(there.y)
         length = next_length(length, STRIDES, resized_like(place, found, machine.size), found)
         place = found
     return None
-
-
-def _at_last(machine: Machine, y: Array) -> Place | None:
-    """The cycle y as a place over the speed, with a rising tangent."""
-    along = np.zeros(len(y))
-    along[-1] = 1.0
-    return corrected(Balance(machine, unpacked(y[:-2], machine.size)), y, along)
 
 
 def _stabilised(machine: Machine, resting: Equilibrium) -> Place | None:

@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from frbcli.cycles.result import CycleBranch, LimitCycles
+from frbcli.cycles.result import SPEED, CycleBranch, LimitCycles
 from frbcli.plot.run_track import RunTrack
-from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
+from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, plain, styled
 
 Array = NDArray[np.float64]
-COLOURS = (BLUE, VERMILION, PURPLE, SKY, GREY)  # of branches
+COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
@@ -41,17 +41,22 @@ def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> 
 
 
 def _film(axes: Axes, found: LimitCycles, film: int) -> None:
-    speeds = np.array([point.speed_Hz for point in found.equilibria])
+    speeds = np.array([point.value for point in found.equilibria])
     eccentricity = np.array([point.eccentricity[film] for point in found.equilibria])
     stable = np.array([point.stable for point in found.equilibria])
     _line(axes, speeds, eccentricity, stable, BLACK, "at rest")
+    if found.synchronous:
+        speeds = np.array([point.value for point in found.synchronous])
+        values = np.array([point.eccentricity_max[film] for point in found.synchronous])
+        stable = np.array([point.stable for point in found.synchronous])
+        _line(axes, speeds, values, stable, GREY, "with unbalance")
     for number, branch in enumerate(found.branches):
         values = np.array([point.eccentricity_max[film] for point in branch.points])
         label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
         _line(axes, _speeds(branch), values, _stable(branch), COLOURS[number % len(COLOURS)], label)
     for kind, (marker, label) in MARKS.items():
         points = found.of(kind)
-        at = [point.speed_Hz for point in points], [point.eccentricity_max[film] for point in points]
+        at = [point.value for point in points], [point.eccentricity_max[film] for point in points]
         if points:
             axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
     axes.set_ylim(0.0, 1.0)
@@ -68,30 +73,31 @@ def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
 
 
 def _frequencies(axes: Axes, found: LimitCycles) -> None:
-    speeds = np.array([point.speed_Hz for point in found.equilibria])
+    speeds = np.array([point.value for point in found.equilibria])
     ends = np.array([speeds.min(initial=speeds.max()), speeds.max()])
-    axes.plot(ends, 0.5 * ends, color=GREY, linestyle=(0, (1, 2)), label="ω/2")
+    rotor = np.array([point.speed_Hz for point in found.equilibria])
+    axes.plot(speeds, 0.5 * rotor, color=GREY, linestyle=(0, (1, 2)), label="ω/2")
     rings = np.array([point.ring_speeds_Hz for point in found.equilibria])
     for ring in range(rings.shape[1] if rings.size else 0):
         own = rings[:, ring]
         labels = ("(ω + ω_F)/2", "ω_F/2") if ring == 0 else (None, None)
-        axes.plot(speeds, 0.5 * (speeds + own), color=GREY, linestyle=(0, (5, 3)), label=labels[0])
+        axes.plot(speeds, 0.5 * (rotor + own), color=GREY, linestyle=(0, (5, 3)), label=labels[0])
         axes.plot(speeds, 0.5 * own, color=GREY, linestyle="-", linewidth=0.7, label=labels[1])
     for number, branch in enumerate(found.branches):
         values = np.array([point.frequency_Hz for point in branch.points])
         _line(axes, _speeds(branch), values, _stable(branch), COLOURS[number % len(COLOURS)], None)
     for kind, (marker, _) in MARKS.items():
         points = found.of(kind)
-        at = [point.speed_Hz for point in points], [point.frequency_Hz for point in points]
+        at = [point.value for point in points], [point.frequency_Hz for point in points]
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
     axes.set_xlim(float(ends[0]), float(ends[1]))
     axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("rotor speed in Hz")
+    axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else plain(f"{found.over} in {found.unit}"))
     axes.set_ylabel("frequency in Hz")
 
 
 def _speeds(branch: CycleBranch) -> Array:
-    return np.array([point.speed_Hz for point in branch.points])
+    return np.array([point.value for point in branch.points])
 
 
 def _stable(branch: CycleBranch) -> NDArray[np.bool_]:

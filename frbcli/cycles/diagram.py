@@ -1,0 +1,208 @@
+"""From resting positions and their Hopf points to a whole diagram, over the speed or another number of the case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.case.bearing import Bores
+from frbcli.case.schema import Case
+from frbcli.cycles.balance import loads_along, unpacked
+from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, Follower, first_place, follow_branch
+from frbcli.cycles.continuation import oriented
+from frbcli.cycles.criticality import lyapunov_coefficient
+from frbcli.cycles.equilibria import Course, Equilibrium, HopfPoint, Resting
+from frbcli.cycles.machine import Machine
+from frbcli.cycles.result import (
+    SUBCRITICAL,
+    SUPERCRITICAL,
+    Cost,
+    CycleBranch,
+    CyclePoint,
+    LimitCycles,
+    RestingPoint,
+    SpecialPoint,
+)
+from frbcli.cycles.seed import seed_cycle
+from frbcli.scene.films import film_places
+
+Observer = Callable[[int, float, float], None]
+
+SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf point ends in it
+
+
+@dataclass(frozen=True)
+class Walk:
+    """What a diagram goes over. over, unit: name and unit of the number; films: names; course, resting: the resting
+    positions, whose values times `scale` are in the unit; follower: of its branches, whose last unknown times
+    `branch_scale` is in the unit."""
+
+    over: str
+    unit: str
+    films: tuple[str, ...]
+    course: Course
+    resting: Resting
+    scale: float
+    follower: Follower
+    branch_scale: float
+
+    def value(self, cycle: Cycle) -> float:
+        """The number of a cycle in the unit."""
+        return float(cycle.place.y[-1]) * self.branch_scale
+
+    def branch_from(self, hopf: HopfPoint, tell: Callable[[Cycle], None]) -> Branch:
+        """The branch from a Hopf point on."""
+        machine = self.course.machine(hopf.equilibrium.value)
+        last = hopf.equilibrium.value * self.scale / self.branch_scale
+        return follow_branch(self.follower, first_place(machine, hopf, last), tell)
+
+
+def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], float]) -> LimitCycles:
+    """The branches of all Hopf points of a walk. observe: see limit_cycles; cpu: tells the CPU time so far in s."""
+    resting, cycles = walk.resting, 0
+
+    def tell(cycle: Cycle) -> None:
+        nonlocal cycles
+        cycles += 1
+        if observe is not None:
+            observe(cycles, walk.value(cycle), float(cycle.eccentricity_max.max()))
+
+    branches: list[Branch | None] = []
+    for number, hopf in enumerate(resting.hopf):
+        known = any(branch is not None and _ends_in(walk, branch, hopf) for branch in branches[:number])
+        branches.append(None if known else walk.branch_from(hopf, tell))
+    followed: list[tuple[int | None, Branch]] = [(i, branch) for i, branch in enumerate(branches) if branch is not None]
+    numbers = {hopf: number for number, (hopf, _) in enumerate(followed)}
+    notes = [resting.note, *_notes(case, walk)]
+    if not any(point.stable for point in resting.points) and not resting.hopf:
+        seeded = _seeded(walk, tell)
+        followed += [] if seeded is None else [(None, seeded)]
+    special = [_hopf(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
+    for number, (_, branch) in enumerate(followed):
+        special += [_special(walk, cycle, number) for cycle in branch.cycles if cycle.kind in (FOLD, FLIP, TORUS)]
+    return LimitCycles(
+        case=case,
+        over=walk.over,
+        unit=walk.unit,
+        films=walk.films,
+        equilibria=tuple(_resting(walk, point) for point in resting.points),
+        branches=tuple(
+            CycleBranch(hopf, tuple(_cycle(walk, cycle) for cycle in branch.cycles), branch.note)
+            for hopf, branch in followed
+        ),
+        special=tuple(special),
+        notes=tuple(filter(None, notes)),
+        cost=Cost(cpu(), cycles),
+    )
+
+
+def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s: float) -> LimitCycles:
+    """The diagram with the synchronous response, and the CPU time of both."""
+    if response is None:
+        return replace(found, notes=(*found.notes, "No synchronous response was found at the highest speed."))
+    points = tuple(_cycle(walk, cycle) for cycle in response.cycles)
+    cost = Cost(cpu_s, found.cost.cycles + len(points))
+    if not response.note.startswith(LEFT):
+        found = replace(found, notes=(*found.notes, f"Synchronous response: {response.note}"))
+    return replace(found, synchronous=points, cost=cost)
+
+
+def _notes(case: Case, walk: Walk) -> list[str]:
+    """What is to be said of bores, and where no whirl is born."""
+    points, notes = walk.resting.points, []
+    if any(isinstance(place.geometry.supply, Bores) for place in film_places(case)):
+        notes.append("Bores that turn enter by their mean over the angle.")
+    between = f"{points[0].value * walk.scale:.4g} and {points[-1].value * walk.scale:.4g} {walk.unit}".rstrip()
+    if walk.resting.hopf:
+        return notes
+    if all(point.stable for point in points):
+        notes.append(f"No whirl is born between {between}: every small motion decays there.")
+    elif not any(point.stable for point in points):
+        notes.append(f"Unstable at rest between {between}: the whirl is born outside of the range.")
+    else:
+        notes.append(f"No whirl is born between {between}.")
+    return notes
+
+
+def _seeded(walk: Walk, tell: Callable[[Cycle], None]) -> Branch | None:
+    """The branch through a cycle that no Hopf point in the range leads to, from its low to its high end."""
+    points = walk.resting.points
+    for resting in (points[len(points) // 2], points[0], points[-1]):
+        y = seed_cycle(walk.course.machine(resting.value), resting)
+        place = None if y is None else walk.follower.entered(y, resting.value * walk.scale / walk.branch_scale)
+        if place is not None:
+            break
+    else:
+        return None
+    up = follow_branch(walk.follower, place, tell)
+    down = follow_branch(walk.follower, oriented(place, -place.tangent), tell)
+    notes = dict.fromkeys((down.note, up.note))
+    return Branch((*reversed(down.cycles), *up.cycles), " ".join(notes), down.ends_at_rest or up.ends_at_rest)
+
+
+def _ends_in(walk: Walk, branch: Branch, hopf: HopfPoint) -> bool:
+    """Whether a branch comes back to rest in a Hopf point."""
+    if not branch.ends_at_rest or not branch.cycles:
+        return False
+    at = hopf.equilibrium.value * walk.scale
+    return abs(walk.value(branch.cycles[-1]) - at) < SAME * abs(at)
+
+
+def _resting(walk: Walk, point: Equilibrium) -> RestingPoint:
+    machine = walk.course.machine(point.value)
+    films = 2 * machine.film_count
+    return RestingPoint(
+        value=point.value * walk.scale,
+        speed_Hz=_hertz(point.omega),
+        displacement=point.u[:films].reshape(-1, 2),
+        ring_speeds_Hz=_hertz(machine.pace) * point.u[films:],
+        eigenvalues=point.eigenvalues,
+        stable=point.stable,
+    )
+
+
+def _cycle(walk: Walk, cycle: Cycle) -> CyclePoint:
+    machine = cycle.machine
+    films = 2 * machine.film_count
+    motion, nu, omega = unpacked(cycle.y[:-2], machine.size), cycle.y[-2] * machine.pace, cycle.y[-1] * machine.pace
+    loads, _ = loads_along(machine, motion, float(nu), float(omega))
+    return CyclePoint(
+        value=walk.value(cycle),
+        speed_Hz=_hertz(omega),
+        frequency_Hz=_hertz(nu),
+        eccentricity_max=cycle.eccentricity_max,
+        ring_speeds_Hz=_hertz(machine.pace) * motion[0, films:].real,
+        torque_N_m=float(loads.drive.mean()),
+        stable=cycle.multipliers.stable,
+        multipliers=cycle.multipliers.values,
+        harmonics=motion[:, :films].reshape(len(motion), -1, 2),
+        kind=cycle.kind,
+    )
+
+
+def _hopf(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoint:
+    machine: Machine = walk.course.machine(hopf.equilibrium.value)
+    d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
+    coefficient = lyapunov_coefficient(machine, hopf).real
+    return SpecialPoint(
+        kind=HOPF,
+        branch=branch,
+        value=hopf.equilibrium.value * walk.scale,
+        speed_Hz=_hertz(hopf.equilibrium.omega),
+        frequency_Hz=_hertz(hopf.nu),
+        eccentricity_max=np.hypot(d[:, 0], d[:, 1]),
+        criticality=SUBCRITICAL if coefficient > 0.0 else SUPERCRITICAL,
+        lyapunov=coefficient,
+    )
+
+
+def _special(walk: Walk, cycle: Cycle, branch: int) -> SpecialPoint:
+    speed, frequency = _hertz(cycle.y[-1] * cycle.machine.pace), _hertz(cycle.y[-2] * cycle.machine.pace)
+    return SpecialPoint(cycle.kind, branch, walk.value(cycle), speed, frequency, cycle.eccentricity_max)
+
+
+def _hertz(omega: float) -> float:
+    return float(omega) / (2.0 * math.pi)

@@ -1,0 +1,141 @@
+"""Limit cycles over a number of the case other than the speed, which is kept: a clearance, a viscosity.
+
+The last unknown of branches is the number over its largest value. A machine is made for each value; how the equations
+change with it is a central difference.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.cycles.balance import Balance, unpacked
+from frbcli.cycles.branch import Follower
+from frbcli.cycles.continuation import Equations, Place, Unreachable
+from frbcli.cycles.diagram import Observer, Walk, diagram
+from frbcli.cycles.equilibria import Equilibrium, Resting, hopf_points, settled
+from frbcli.cycles.faults import check
+from frbcli.cycles.machine import Machine, make_machine
+from frbcli.cycles.result import LimitCycles
+from frbcli.cycles.stability_map import value_range
+from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.rotor.held import held_rotor
+from frbcli.scene.plan import make_plan
+from frbcli.scene.remedies import advised
+from frbcli.scene.system import System, make_system
+
+Array = NDArray[np.float64]
+
+POINTS = 41  # resting positions of the diagram
+DIFFERENCE = 1e-5  # of the largest value
+KEPT = 64  # machines
+
+
+class Family:
+    """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`."""
+
+    def __init__(self, case: Case, key: str, high: float, unit: str, omega: float) -> None:
+        self.case, self.key, self.high, self.unit, self.omega = case, key, high, unit, omega
+        self._made: dict[float, Machine] = {}
+
+    def system(self, share: float) -> System:
+        """The system at a share of the largest value. Raises InputError if the case cannot have it."""
+        setting = f"{self.key}={share * self.high!r} {self.unit}".strip()
+        case = load_case_text(self.case.source_text, [setting], self.case.name)
+        check(case)
+        return make_system(case, make_plan(case))
+
+    def machine(self, value: float) -> Machine:
+        """The machine at a share."""
+        if value not in self._made:
+            if len(self._made) >= KEPT:
+                self._made.pop(next(iter(self._made)))
+            self._made[value] = make_machine(self.system(value), self.omega)
+        return self._made[value]
+
+    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
+        """As Course says."""
+        share = (value - low.value) / (high.value - low.value)
+        return settled(self.machine(value), low.u + share * (high.u - low.u), self.omega, value)
+
+
+class KeyFollower(Follower):
+    """Follows branches over the key."""
+
+    def __init__(self, family: Family, lowest: float) -> None:
+        machine = family.machine(1.0)
+        super().__init__(machine, lowest * machine.pace, machine.pace, omega=family.omega)
+        self.family = family
+
+    def machine_at(self, y: Array) -> Machine:
+        return self.family.machine(float(y[-1]))
+
+    def told(self, y: Array) -> str:
+        return f"{y[-1] * self.family.high:.4g} {self.family.unit}".rstrip()
+
+    def equations(self, place: Place) -> Equations:
+        moving = place.y if self.moves(place.y) else place.tangent
+        reference = unpacked(moving[:-2], self.machine.size)
+
+        def at(y: Array) -> tuple[Array, Array]:
+            if not y[-1] > DIFFERENCE:
+                raise Unreachable
+            cycle, share = self.as_cycle(y), float(y[-1])
+            residual, slope = Balance(self.family.machine(share), reference)(cycle)
+            ahead, _ = Balance(self.family.machine(share + DIFFERENCE), reference)(cycle)
+            behind, _ = Balance(self.family.machine(share - DIFFERENCE), reference)(cycle)
+            slope[:, -1] = (ahead - behind) / (2.0 * DIFFERENCE)
+            return residual, slope
+
+        return at
+
+
+def limit_cycles_over(
+    case: Case, key: str, low: str, high: str, speed_Hz: float, observe: Observer | None = None
+) -> LimitCycles:
+    """As limit_cycles, over a key of the case from `low` to `high`, text with units, both above zero, at a speed in Hz.
+
+    Raises InputError and NotConverged as limit_cycles does.
+    """
+    begun = time.process_time()
+    check(case)
+    first, last, unit = value_range(case, key, low, high)
+    if first <= 0.0:
+        raise InputError(case.name or "case", (Fault(key, low, None, "must be above 0 here.", "Begin above it."),))
+    family = Family(case, key, last, unit, 2.0 * math.pi * speed_Hz)
+    try:
+        resting = _resting(family, first / last)
+    except Unreachable:
+        raise NotConverged(f"The resting positions could not be followed over {key}.") from None
+    walk = Walk(
+        over=key,
+        unit=unit,
+        films=family.machine(1.0).names,
+        course=family,
+        resting=resting,
+        scale=last,
+        follower=KeyFollower(family, first / last),
+        branch_scale=last,
+    )
+    return diagram(case, walk, observe, lambda: time.process_time() - begun)
+
+
+def _resting(family: Family, lowest: float) -> Resting:
+    """Resting positions over the key, ascending, sought from the largest value on."""
+    with advised(family.case):
+        system, machine = family.system(1.0), family.machine(1.0)
+        q = resting_position(system, family.omega)
+    turning = ring_speeds(system, held_rotor(system.rotor), family.omega, system.rotor.journals @ q)
+    near = np.concatenate([machine.places @ q[: machine.rotor.size], turning / machine.pace])
+    points = []
+    for share in np.linspace(1.0, lowest, POINTS):
+        points.append(settled(family.machine(float(share)), near, family.omega, float(share)))
+        near = points[-1].u
+    points.reverse()
+    return Resting(tuple(points), hopf_points(family, points), "")

@@ -1,0 +1,80 @@
+"""The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not.
+
+The equations are those of a cycle (balance.py) with nu = Omega in place of the phase condition, and the unbalance in
+the first harmonic, Omega^2 times the motion that it makes behind the films.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.balance import Balance, packed, unpacked
+from frbcli.cycles.branch import FIRST_HARMONICS, Branch, Follower, follow_branch
+from frbcli.cycles.continuation import Equations, Place, corrected, oriented
+from frbcli.cycles.equilibria import Equilibrium
+from frbcli.cycles.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
+from frbcli.cycles.linearised import state_space
+from frbcli.cycles.machine import Machine, transfer
+
+Array = NDArray[np.float64]
+
+DIFFERENCE = 1e-6  # of the pace
+
+
+class Synchronous(Follower):
+    """Follows the synchronous response."""
+
+    free = False
+
+    def equations(self, place: Place) -> Equations:
+        machine, harmonics = self.machine, (len(place.y) - 2) // self.machine.size // 2
+        balance = Balance(machine, unpacked(place.y[:-2], machine.size))
+
+        def at(y: Array) -> tuple[Array, Array]:
+            residual, slope = balance(y)
+            residual[:-1] -= _driven(machine, harmonics, float(y[-1]))
+            ahead, behind = (_driven(machine, harmonics, float(y[-1]) + side * DIFFERENCE) for side in (1.0, -1.0))
+            slope[:-1, -1] -= (ahead - behind) / (2.0 * DIFFERENCE)
+            residual[-1], slope[-1] = y[-2] - y[-1], 0.0
+            slope[-1, -2:] = 1.0, -1.0
+            return residual, slope
+
+        return at
+
+    def multipliers(self, place: Place) -> Multipliers:
+        """Of which none is trivial: the unbalance holds the motion in time. A 1 stands in its place."""
+        harmonics = (len(place.y) - 2) // self.machine.size // 2
+        count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
+        values = np.linalg.eigvals(monodromy(self.machine, state_space(self.machine), place.y, count)).astype(complex)
+        values = values[np.argsort(-np.abs(values), kind="stable")]
+        return Multipliers(np.concatenate([[1.0 + 0.0j], values]), 0.0)
+
+
+def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float) -> Branch | None:
+    """The response from the speed of a resting position down to the slowest one in rad/s; None if it does not begin."""
+    follower = Synchronous(machine, slowest, resting.omega)
+    motion = np.zeros((FIRST_HARMONICS + 1, machine.size), dtype=complex)
+    motion[0] = resting.u
+    share = resting.omega / machine.pace
+    guess = np.concatenate([packed(motion), [share, share]])
+    along = np.zeros(len(guess))
+    along[-1] = -1.0
+    start = corrected(follower.equations(Place(guess, along)), guess, along)
+    if start is None:
+        return None
+    place = follower.refitted(oriented(start, along))
+    if place is None:
+        return None
+    found = follow_branch(follower, place)
+    return replace(found, cycles=(follower.cycle(place), *found.cycles))
+
+
+def _driven(machine: Machine, harmonics: int, share: float) -> Array:
+    """The packed motion that the unbalance makes at a speed over the pace."""
+    omega = share * machine.pace
+    motion = np.zeros((harmonics + 1, machine.size), dtype=complex)
+    motion[1] = omega**2 * transfer(machine, 1, omega, omega).unbalance
+    return packed(motion)
