@@ -19,6 +19,7 @@ import click
 
 import frbcli
 from frbcli.cli.main import COMMANDS, frb
+from frbcli.linear.bearing_sheet import FilmState
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -161,12 +162,7 @@ def printed_tables(target: Path) -> None:
         for colour, ratio in zip(COLOURS, ("1", "0.5", "0.25"), strict=False):
             own = [row for row in rows if float(row["width_over_diameter"]) == float(ratio)]
             places = [float(row["eccentricity"]) for row in own]
-            case = frbcli.load_case("bearing", [
-                f"bearing.width={0.02 * float(ratio)}", "bearing.diameter=20 mm", "bearing.clearance=20 um",
-                "film.cavitation=reynolds", "oil.viscosity=10 mPa*s", "bearing.ends=oil-bath",
-                'bearing.supply={ kind = "none" }',
-            ])  # fmt: skip
-            sheet = frbcli.sommerfeld_chart(case, places, 50.0).of("")
+            sheet = [_printed_state(row) for row in own]
             for axes, key, values in (
                 (left, "sommerfeld_number", [state.sommerfeld_number for state in sheet]),
                 (right, "attitude_deg", [state.attitude_deg for state in sheet]),
@@ -181,6 +177,17 @@ def printed_tables(target: Path) -> None:
             axes.set_xlabel("eccentricity")
         right.legend()
         figure.savefig(target, dpi=150)
+
+
+def _printed_state(row: dict[str, str]) -> FilmState:
+    """The film of one row, which begins at the widest gap: there is a groove of half a degree."""
+    groove = f'{{ kind = "axial-grooves", position = "{row["attitude_deg"]} deg", opening_angle = "0.5 deg", '
+    case = frbcli.load_case("bearing", [
+        f"bearing.width={0.02 * float(row['width_over_diameter'])}", "bearing.diameter=20 mm",
+        "bearing.clearance=20 um", "film.cavitation=reynolds", "oil.viscosity=10 mPa*s", "bearing.ends=oil-bath",
+        f'bearing.supply={groove}pressure = "1 bar" }}',
+    ])  # fmt: skip
+    return frbcli.sommerfeld_chart(case, [float(row["eccentricity"])], 50.0).points[0]
 
 
 def reference() -> str:
