@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.case.schema import remove_bearing as remove_bearing
     from frbcli.case.schema import remove_law as remove_law
     from frbcli.case.shipped import shipped_cases as shipped_cases
+    from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
     from frbcli.errors import InputError as InputError
@@ -90,6 +91,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "damped_modes": "frbcli.linear.damped_modes",
     "find_events": "frbcli.analysis.events",
     "fit": "frbcli.studies.fit",
+    "limit_cycles": "frbcli.cycles.limit_cycles",
     "load_case": "frbcli.case.load",
     "load_case_text": "frbcli.case.load",
     "make_plan": "frbcli.scene.plan",

@@ -22,7 +22,8 @@ from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.cost import STAGES
-from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.plan import make_plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.system import System, make_system, settled_share
 from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS, State
@@ -75,7 +76,8 @@ def test_all_oil_is_accounted_for(settings: list[str]) -> None:
     passed = float(after.flows[0, 0].max())
     assert passed > 1.0  # several times the film's own oil
     assert oil(after) - oil(before) == pytest.approx(net_flow(after, 0), abs=1e-10 * passed)
-    defect = oil_defect(system, after)
+    profile = run_up_profile(case)
+    defect = oil_defect(system, after, profile.angle(profile.end))
     assert defect is not None
     assert defect < 1e-4
 
@@ -131,12 +133,13 @@ def test_measured_order_in_time_is_that_of_the_method(cavitation: str, method: s
 WHIRL = ("speed.from=60Hz", "speed.to=60Hz", "rotor.unbalance=100 g*mm", "start.displacement=[0.3,-0.3]")
 
 
+@pytest.mark.parametrize("grid", ["fixed", "half-speed"])
 @pytest.mark.parametrize("cavitation", ["penalty", "elrod", "two-phase"])
-def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str) -> None:
+def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str, grid: str) -> None:
     """A whirl that an unbalance drives, against a fiftieth of the tolerance: with balances as the plan allows them the
     error is that with balances off by 1e-5 of the pace, for fewer solutions; no oil is lost."""
     models = [f"film.cavitation={cavitation}", "film.solution=cells", "bearing.supply.pressure=2bar"]
-    case = case_of("jeffcott", *models, *WHIRL)
+    case = case_of("jeffcott", *models, *WHIRL, f"film.grid={grid}")
     usual = make_plan(case).tolerance
 
     def found(tolerance: float, settled: float) -> tuple[Array, float]:
@@ -153,7 +156,7 @@ def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str) -> No
 
     exact, _ = found(usual / 50.0, 1e-5)
     (loose, few), (tight, many) = found(usual, settled_share(usual)), found(usual, 1e-5)
-    assert few < 0.8 * many
+    assert few < (0.8 if grid == "fixed" else 0.9) * many  # in a grid that turns most corrections are of the motion
     assert np.abs(loose - exact).max() < 1.25 * np.abs(tight - exact).max()
 
 
@@ -177,9 +180,14 @@ def test_half_sommerfeld_on_cells_is_that_of_the_table() -> None:
     assert np.max(np.abs(found[:, :2] - exact[:, :2])) < 3e-3 * clearance
 
 
-def test_a_rotor_that_rests_stays_there() -> None:
+@pytest.mark.parametrize(("cavitation", "apart"), [("penalty", 2e-5), ("two-phase", 2e-3)])
+def test_a_rotor_that_rests_stays_there(cavitation: str, apart: float) -> None:
+    """A steady film carries its oil upwind, one in a run does not: their forces differ by the error of the cells."""
     settings = [
-        "film.cavitation=two-phase",
+        f"film.cavitation={cavitation}",
+        "film.solution=cells",
+        "film.grid=fixed",
+        "bearing.supply.pressure=2bar",
         "start.position=resting",
         "speed.from=60Hz",
         "speed.to=60Hz",
@@ -188,7 +196,7 @@ def test_a_rotor_that_rests_stays_there() -> None:
     case = case_of("jeffcott", *settings)
     plan, system = planned(case, tolerance=1e-5)
     q, _ = run(case, plan, system)
-    assert np.max(np.abs(q - q[0])) < 2e-5 * system.clearances[0]
+    assert np.max(np.abs(q - q[0])) < apart * system.clearances[0]
 
 
 def test_a_tighter_tolerance_moves_the_run_by_less_than_the_stated_error(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
-from frbcli.runs.cell_errors import ORDER, FewerCells
+from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.error_budget import BEFORE_WHIRL, quiet_until, summed
 from frbcli.runs.fewer_cells import fewer_cells, on_fewer_cells
 from frbcli.runs.film_error import FilmErrors
@@ -86,7 +86,7 @@ def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tm
     assert 1e-4 < apart.largest < run.error["eccentricity"] < 8.0 * apart.largest
     assert apart.signals["disk_y_m"] < run.error["displacement"]
     assert apart.signals["oil_fraction"] < run.error["oil_fraction"]
-    assert 0.5 * run.error["eccentricity"] < run.error["cells"] < run.error["eccentricity"]
+    assert 0.3 * run.error["eccentricity"] < run.error["cells"] < run.error["eccentricity"]
     assert run.cost["error_cpu_s"] > 0.0
 
 
@@ -94,29 +94,29 @@ def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tm
     ("name", "mesh", "fewer"),
     [
         ("jeffcott", [6, 48], None),  # no cells
-        ("jeffcott-two-phase", [6, 48], (24, 3)),
-        ("floating-ring", [6, 48], (32, 4)),  # with bores
-        ("floating-ring", [5, 40], (28, 3)),
+        ("jeffcott-two-phase", [6, 48], (40, 5)),
+        ("floating-ring", [6, 48], (40, 5)),  # with bores
+        ("floating-ring", [5, 40], (32, 4)),
         ("jeffcott-two-phase", [3, 12], None),
     ],
 )
 def test_cells_of_the_comparison(name: str, mesh: list[int], fewer: tuple[int, int] | None) -> None:
     case = load_case(name, [f"accuracy.mesh={mesh}"])
     plan = make_plan(case)
-    assert fewer_cells(plan, make_system(case, plan)) == fewer
+    assert fewer_cells(case, plan, make_system(case, plan)) == fewer
 
 
 def test_error_of_cells_from_two_runs() -> None:
-    """An error of the order that is taken for granted is found as it is; one run must not end before the other."""
+    """An error of which the other run has three times as much; one run must not end before the other."""
     case = load_case("rigid-two-phase")
     system = make_system(case, make_plan(case))
     exact, bent = (np.zeros((3, 2 * system.rotor.size + 2)) for _ in range(2))
     bent[1, 0], bent[2, -1] = 1e-2 * system.clearances[0], 3e-3
-    found = FewerCells(2.0, exact + 2.0**ORDER * bent).error(exact + bent, system)
+    found = FewerCells(0.5, exact + 3.0 * bent).error(exact + bent, system)
     assert found is not None
     assert (found.eccentricity, found.displacement) == pytest.approx((1e-2, 1e-2))
     assert (found.ring_speed, found.oil_fraction) == pytest.approx((0.0, 3e-3))
-    assert FewerCells(2.0, exact[:2]).error(exact, system) is None
+    assert FewerCells(1.0, exact[:2]).error(exact, system) is None
 
 
 def test_between_rings_only_lengths_count() -> None:
@@ -127,7 +127,7 @@ def test_between_rings_only_lengths_count() -> None:
     row, away = np.zeros((1, 2 * n + 3)), np.zeros((1, 2 * n + 3))
     along, across = (np.linalg.pinv(np.concatenate(system.rotor.journals))[:, [i, 2 + i]].sum(axis=1) for i in (0, 1))
     row[0, :n], away[0, :n] = out * along, out * across
-    found = FewerCells(2.0, away).error(row, system)
+    found = FewerCells(1.0, away).error(row, system)
     assert found is not None
     assert found.eccentricity == pytest.approx(0.0, abs=1e-12)
     assert found.displacement > 0.1

@@ -233,12 +233,13 @@ def test_a_short_ringing_is_not_self_excited() -> None:
 
 
 def test_a_starved_film_has_no_critical_speed_where_its_journal_vibrates(tmp_path: Path) -> None:
-    """jeffcott-two-phase, with 30 Hz/s past the 84 Hz that were told as its critical speed; the rotor's is 143 Hz."""
-    around = ("speed.from=65 Hz", "speed.to=107 Hz", "speed.duration=1.4 s")
+    """jeffcott-two-phase with 30 Hz/s past the 84 Hz of its mode on the starved film; the rotor's critical speed is 143
+    Hz. The vibration is seen near 0.8 of the speed, between the orders of a whirl and of a self-excited vibration."""
+    around = ("speed.from=80 Hz", "speed.to=122 Hz", "speed.duration=1.4 s", "accuracy.mesh=[6, 48]")
     run = runup(load_case("jeffcott-two-phase", around), tmp_path / "run.h5")
     (event,) = find_events(run)
-    assert event.kind == "self-excited"
-    assert (event.speed_Hz, event.frequency_Hz) == (pytest.approx(88.0, abs=3.0), pytest.approx(83.0, abs=2.0))
+    assert event.kind in ("self-excited", "onset")
+    assert (event.speed_Hz, event.frequency_Hz) == (pytest.approx(112.0, abs=5.0), pytest.approx(88.5, abs=2.0))
     assert run.error["quiet_until_s"] == pytest.approx(0.85 * event.t_s)
 
 

@@ -26,7 +26,8 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, RunFileError
 from frbcli.results.container import USER_BLOCK, seal
 from frbcli.results.store import Header, Run, RunWriter, read_run
-from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.plan import make_plan
+from frbcli.scene.planned import Plan
 
 MUTATIONS = int(os.environ.get("FRB_MUTATIONS", "400"))
 CASES = [find_shipped(name) for name in shipped_names()]

@@ -24,7 +24,8 @@ from frbcli.film.published.unknown import pressures_of, unknowns_of
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_created
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.plan import make_plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.system import System, make_system
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, ElementWork, make_element_work

@@ -48,6 +48,7 @@ SLOW = [
     Command(("stability", "jeffcott", "--speed", "30 Hz", "--set", "film.theory=short", "--no-picture"), "out"),
     Command(("bearing", "jeffcott", "--speed", "30 Hz", "--no-picture"), "out"),
     Command(("response", "jeffcott", "--speed", "30 Hz", "--set", "film.theory=short", "--no-picture"), "out"),
+    Command(("limit-cycles", "jeffcott", "--set", "film.theory=short", "--no-picture"), "out"),
     Command(("rotation", "bearing-axial-groove", *COARSE), "out"),
     Command(("squeeze", "squeeze", *MOMENT), "out"),
     Command(("whirl", "whirl", *MOMENT), "out"),

@@ -17,7 +17,7 @@ from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.section_faults import section_faults
 from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.films import make_law
-from frbcli.scene.plan import Decision
+from frbcli.scene.planned import Decision
 from frbcli.scene.published import DIFFUSIONS, ELEMENTS
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films

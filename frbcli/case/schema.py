@@ -117,8 +117,10 @@ class FilmModel(Model):
         default="all", description="on floating rings: both terms of (3.17), the first term, or formula (4.6)"
     )
     coupling: Coupling = Field(default="auto", description="coupling of rotor and films in the time integration")
-    grid: Literal["fixed", "half-speed"] = Field(
-        default="fixed", description="cells at rest, or turning with the mean speed of journal and shell (plain gaps)"
+    grid: Literal["auto", "fixed", "half-speed"] = Field(
+        default="auto",
+        description="cells at rest, or turning with the mean speed of journal and shell (plain gaps); auto: turning "
+        "for plain gaps that keep their oil",
     )
     solution: Literal["auto", "table", "cells"] = Field(
         default="auto", description="in runs: tabulated before the run where possible, or solved on cells"
@@ -198,6 +200,9 @@ class Accuracy(Model):
 
     target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = Field(
         default=1e-3, description="error of the eccentricities that is aimed at"
+    )
+    budget: Annotated[float, Quantity("s", "60 s", above=0)] | None = Field(
+        default=None, description="CPU time of a run-up: the most exact within it, if the target needs more"
     )
     mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
         default=None, description="elements along the axis and around the circumference"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from frbcli.scene.expected_error import ExpectedError
     from frbcli.scene.findings import Findings
     from frbcli.scene.operating import FilmOperation
-    from frbcli.scene.plan import Decision
+    from frbcli.scene.planned import Decision
 
 COLUMNS = 80
 TURN = 2.0 * math.pi
@@ -126,7 +126,7 @@ def _told_film(film: FilmOperation) -> dict[str, object]:
 def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, ...]:
     """Expected error and cost, the last lines of the plan."""
     from frbcli.scene.limits import clock, memory
-    from frbcli.scene.plan import Decision
+    from frbcli.scene.planned import Decision
 
     solves = f"{cost.steps} steps, {cost.film_solves} film solves, on the machine of docs/accuracy.md"
     beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"

@@ -35,6 +35,7 @@ COMMANDS = {
     "fit": ("frbcli.cli.fit", "Find numbers of a case from a measured run-up."),
     "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
     "response": ("frbcli.cli.response", "Linear unbalance response: amplitudes, phases, bearing forces over speed."),
+    "limit-cycles": ("frbcli.cli.limit_cycles", "Hopf points and branches of limit cycles over speed, stable or not."),
     "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
     "sweep": ("frbcli.cli.sweep", "Run one case with many settings, on all cores or a cluster."),
     "report": ("frbcli.cli.report", "Write a run as one page: machine, events, waterfall, orbits, errors."),

@@ -55,6 +55,8 @@ def main() -> NoReturn:
     interruption = Interruption()
     # Pictures go into files: no window system is asked for, and one that matplotlib does not know stops nothing.
     os.environ["MPLBACKEND"] = "agg"
+    # The matrices here are small: a second thread of the linear algebra costs CPU time and gains none.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         interruption.listen()
         from frbcli.cli.main import run

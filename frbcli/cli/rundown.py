@@ -18,12 +18,20 @@ if TYPE_CHECKING:
 @click.command()
 @case_argument
 @run_options
+@click.option("--explain", is_flag=True, help="Name the Hopf point or fold behind each onset and offset of a whirl.")
 @picture_options
 @output_options
 def command(
-    case: Case, output: Path | None, resume: bool, force: bool, picture: bool, verify: bool, terminal: Terminal
+    case: Case,
+    output: Path | None,
+    resume: bool,
+    force: bool,
+    picture: bool,
+    verify: bool,
+    explain: bool,
+    terminal: Terminal,
 ) -> int:
     """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture beside it."""
     from frbcli.runs.run import rundown
 
-    return transient("rundown", rundown, case, output, resume, force, picture, verify, terminal)
+    return transient("rundown", rundown, case, output, resume, force, picture, verify, terminal, explain=explain)

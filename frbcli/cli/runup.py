@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Run again with other ramps, steps and cells: between which speeds a whirl begins.",
 )
+@click.option("--explain", is_flag=True, help="Name the Hopf point or fold behind each onset and offset of a whirl.")
 @picture_options
 @output_options
 def command(
@@ -33,9 +34,10 @@ def command(
     picture: bool,
     verify: bool,
     onset_spread: bool,
+    explain: bool,
     terminal: Terminal,
 ) -> int:
     """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
     from frbcli.runs.run import runup
 
-    return transient("runup", runup, case, output, resume, force, picture, verify, terminal, onset_spread)
+    return transient("runup", runup, case, output, resume, force, picture, verify, terminal, onset_spread, explain)

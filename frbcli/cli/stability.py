@@ -23,6 +23,7 @@ from frbcli.cli.stability_table import tell_points
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
+    from frbcli.cycles.threshold import ThresholdKind
     from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
 
 
@@ -51,6 +52,7 @@ def command(
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
+    from frbcli.cycles.threshold import threshold_kind
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes
     from frbcli.linear.stability import stability
@@ -71,7 +73,8 @@ def command(
         return None
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         found = stability(case, speeds or None, counting(terminal, show))
-    _tell(terminal, found, bool(speeds))
+        kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
+    _tell(terminal, found, kind, bool(speeds))
     if picture is not None:
         from frbcli.plot.campbell import campbell_figure
 
@@ -88,6 +91,7 @@ def command(
             "case": case.name,
             "points": [_point(point) for point in found.points],
             "threshold": _threshold(found),
+            "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
             "note": found.note,
             "picture": picture,
         }
@@ -96,12 +100,14 @@ def command(
     return None if any(point.films for point in found.points) else NotConverged.exit_code
 
 
-def _tell(terminal: Terminal, found: Stability, every_speed: bool) -> None:
+def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, every_speed: bool) -> None:
     from frbcli.scene.clearance_steps import step_times
     from frbcli.scene.supply import unfed_films
 
     tell_points(terminal, found, every_speed)
     terminal.result(_sentence(found))
+    if kind is not None:
+        terminal.result(_character(kind))
     for film in unfed_films(found.case):
         terminal.result(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
     if step_times(found.case):
@@ -129,6 +135,18 @@ def _sentence(found: Stability) -> str:
     return (
         f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, initially with "
         f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed.{found.note}"
+    )
+
+
+def _character(kind: ThresholdKind) -> str:
+    """Whether a threshold is soft or hard."""
+    if kind.criticality == "supercritical":
+        return "The threshold is soft (supercritical): the whirl grows with the speed from nothing."
+    if kind.fold_Hz is None:
+        return "The threshold is hard (subcritical): the whirl jumps to a large one."
+    return (
+        "The threshold is hard (subcritical): the whirl jumps to a large one, which a\n"
+        f"disturbance leads to from {kind.fold_Hz:.1f} Hz on."
     )
 
 

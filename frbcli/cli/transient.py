@@ -17,6 +17,7 @@ from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, TOLD_EVERY_s, live_lines, p
 from frbcli.cli.onset_spread import spread_shown
 from frbcli.cli.pictures import draw
 from frbcli.cli.runs import OUTPUT, beside, here
+from frbcli.errors import FrbError
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -60,6 +61,7 @@ def transient(
     verify: bool,
     terminal: Terminal,
     spread: bool = False,
+    explain: bool = False,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.runs.run import run_cost
@@ -76,6 +78,7 @@ def transient(
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
     onset = spread_shown(case, run, terminal) if spread and run.status != "interrupted" else None
+    explained = _explained(case, run, terminal) if explain and run.status != "interrupted" else None
     terminal.emit(
         {
             "command": command,
@@ -86,6 +89,7 @@ def transient(
             "cost": run.cost,
             "error": run.error if verified is None else {**run.error, "verified": verified},
             **({} if onset is None else {"onset_spread": onset}),
+            **({} if explained is None else {"explanations": explained}),
         }
     )
     if picture and len(run) > 1:
@@ -168,6 +172,20 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
         "coupling": found.coupling,
         "cpu_s": found.cpu_s,
     }
+
+
+def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
+    """What causes the whirls of a run, as text and for the JSON document."""
+    from frbcli.cycles.explain import explanations
+    from frbcli.cycles.limit_cycles import limit_cycles
+
+    try:
+        told = explanations(limit_cycles(case), run.events)
+    except FrbError as error:
+        told = (f"Not explained: {error}",)
+    for sentence in told:
+        terminal.result(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
+    return told
 
 
 def exit_code(status: str) -> int:

@@ -238,7 +238,7 @@ def _single(case: Case, place: FilmPlace, cells: tuple[int, int], load: float, t
         names=(place.name,),
         clearances=(place.geometry.clearance,),
         bodies=np.array([[place.inside, place.outside]], dtype=np.int64),
-        turning=turning((place,), 0),
+        turning=turning((place,), 0, [False]),
         drags=(film_drag(case, place.geometry),),
         volumes=(film,),
         laws=case.cavitations,

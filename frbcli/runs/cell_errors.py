@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from frbcli.scene.system import System
 from frbcli.solve.state import Array
 
-ORDER = 0.66  # lowest order of the error in the mesh: that of films that fill again after starvation
-
 
 @dataclass(frozen=True)
 class CellErrors:
@@ -26,10 +24,10 @@ class CellErrors:
 
 @dataclass(frozen=True)
 class FewerCells:
-    """A run on fewer cells. ratio: of the cells in a direction, the geometric mean of both; samples: at the same times
-    as those of the run, see March; the last ones may be missing."""
+    """A run on fewer cells. share: of the difference between the runs that the error of the finer one may be; samples:
+    at the same times as those of the run, see March; the last ones may be missing."""
 
-    ratio: float
+    share: float
     samples: Array
 
     def at(self, there: NDArray[np.bool_]) -> FewerCells:
@@ -44,18 +42,14 @@ class FewerCells:
         other = self.samples[: len(samples)]
         apart = samples - other
         films = [_largest(apart[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True)]
-        eccentric = films
-        if system.ring_count:  # directions do not count for films at rings
-            runs = samples[:, :n], other[:, :n]
-            eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
+        runs = samples[:, :n], other[:, :n]
+        eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
         points = [_largest(apart[:, :n], selection, system.clearances[0]) for _, selection in rotor.points]
         spins = np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0)
         top = max(float(np.abs(samples[:, 2 * n]).max(initial=0.0)), 1e-300)
         oil = np.abs(apart[:, 2 * n + 1 :][:, list(system.remembering)]).max(initial=0.0)
-        # e(ratio h) - e(h) = e(h) (ratio^ORDER - 1)
-        share = 1.0 / (self.ratio**ORDER - 1.0)
         found = max(eccentric), max([*films, *points]), float(spins) / top, float(oil)
-        return CellErrors(*(share * off for off in found))
+        return CellErrors(*(self.share * off for off in found))
 
 
 def _largest(apart: Array, selection: Array, room: float) -> float:

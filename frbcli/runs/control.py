@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from frbcli.case.schema import Case
 from frbcli.scene.cost import longest_step
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.solve.state import Control
 
 

@@ -17,7 +17,7 @@ from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.film_error import film_force_errors
 from frbcli.runs.oil import oil_defect
 from frbcli.scene.coupling import APART, SEMI
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
 from frbcli.scene.turbocharger import all_modes, journals, kept_modes
@@ -25,8 +25,9 @@ from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array,
 from frbcli.solve.time_loop import NEWTON_SHARE
 
 # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films (ERROR_MEMORY):
-# that is 2 to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
-COUNTED = 0.5
+# that is 2 to 29 times the true error of the journals, where it was measured (docs/accuracy.md); 5 to 14 times with
+# finite-volume films.
+COUNTED, COUNTED_CELLS = 0.5, 0.25
 # A disk oscillates longer than its journals, which the films damp: its true error is 0.2 to 2.5 times the sum of all
 # local errors.
 LASTING = 3.0
@@ -55,7 +56,7 @@ def error_budget(
     """
     films = film_force_errors(plan, system, case, times, samples)
     force, short = films.relative(), plan.theory == "short"
-    fading, whole = steps
+    fading, whole = _counted(system) * steps[0], steps[1]
     quiet = samples[times <= until]
     eccentric, displaced = (_reach(system, quiet, parts) for parts in (_journals(system), _points(system)))
     by_films = (FILM_REACH if plan.cells is None else CELL_REACH) * (films.relative(until) or force or 0.0)
@@ -70,10 +71,10 @@ def error_budget(
         "coupling": None if plan.coupling in (SEMI, APART) else NEWTON_SHARE * plan.tolerance,
         "modal_reduction": modal_reduction(case, system, samples),
         "cells": None if cells is None else cells.eccentricity,
-        "eccentricity": COUNTED * fading + in_films,
+        "eccentricity": fading + in_films,
         "displacement": LASTING * whole + in_points,
-        "ring_speed": COUNTED * fading + cells.ring_speed if cells is not None and system.ring_count else None,
-        "oil_fraction": COUNTED * fading + cells.oil_fraction if cells is not None and system.remembers else None,
+        "ring_speed": fading + cells.ring_speed if cells is not None and system.ring_count else None,
+        "oil_fraction": fading + cells.oil_fraction if cells is not None and system.remembers else None,
         "quiet_until_s": until,
     }
 
@@ -117,10 +118,14 @@ def _reach(system: System, samples: Array, parts: Iterable[tuple[Array, float]])
 def quick_budget(system: System, state: State, angle: float) -> dict[str, float | None]:
     """The part of the error that is known during a run. angle: of the rotor, rad."""
     return {
-        "time_integration": COUNTED * float(state.numbers[ERROR_LARGEST]),
+        "time_integration": _counted(system) * float(state.numbers[ERROR_LARGEST]),
         "film_force_relative": None,
         "oil_balance_relative": oil_defect(system, state, angle),
     }
+
+
+def _counted(system: System) -> float:
+    return COUNTED_CELLS if system.volumes else COUNTED
 
 
 def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:

@@ -21,8 +21,9 @@ from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.runs.control import control_of
 from frbcli.scene.bearing_models import GIVEN
+from frbcli.scene.cell_choice import compared_states
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.system import System, planned_film, published_film
 from frbcli.solve.contact import felt_motion
 from frbcli.solve.state import Array
@@ -30,7 +31,6 @@ from frbcli.solve.state import Array
 SAMPLES = 48  # states of a run
 PUBLISHED_SAMPLES = 6  # in the published form, where a steady film takes hundreds of assemblies
 RICHARDSON = 3.0  # an error of second order on twice the elements, from the difference to it
-CELL_SAMPLES = 8  # of them for films with cells, which have to settle at each
 COMPARED = 192  # states at which a run is compared with one on fewer cells
 FINER = 2  # elements more in each direction
 SMALL_FORCE = 0.1  # of the median one
@@ -82,8 +82,10 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     else:
         forces = _source_forces(plan, system) if system.solved else _closed_forces(plan, system)
     control, n, found = control_of(case, plan), system.rotor.size, []
-    most = CELL_SAMPLES if system.published is None else PUBLISHED_SAMPLES
-    every = 1 if plan.cells is None else max(1, len(samples) // most)
+    every = 1
+    if plan.cells is not None:  # each has to settle
+        most = compared_states(plan.cells) if system.published is None else PUBLISHED_SAMPLES
+        every = max(1, len(samples) // most)
     for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
         omegas = system.omegas(omega, v[list(system.spins)])

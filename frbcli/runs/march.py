@@ -25,7 +25,7 @@ from frbcli.runs.oil import no_oil_comes_in, oil_passed
 from frbcli.runs.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.cost import expected_cost, expected_course
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import film_error_s
 from frbcli.scene.remedies import advised
 from frbcli.scene.segments import Segment, make_segments
@@ -125,6 +125,11 @@ class March:
         self._state = with_clearances(before, self._system, self._profile, self._state, self._apart)
         self._noted[:] = np.nan
         return RUNNING
+
+    @property
+    def case(self) -> Case:
+        """The case of the run."""
+        return self._case
 
     @property
     def plan(self) -> Plan:

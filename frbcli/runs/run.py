@@ -24,7 +24,8 @@ from frbcli.runs.restored import WrongCheckpoint
 from frbcli.scene.bearing_model_films import RECORD, model_record
 from frbcli.scene.cost import ExpectedCost, expected_cost
 from frbcli.scene.limits import require_affordable
-from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.plan import make_plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.profiles import run_down_profile, run_up_profile
 from frbcli.scene.segments import Segment, make_segments
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING

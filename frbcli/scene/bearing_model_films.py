@@ -69,7 +69,7 @@ def _key_faults(case: Case) -> list[Fault]:
     cavitation = next((law for law in case.cavitations if not law_named(law).closed), "")
     asked = {
         "solution": ("" if film.solution == "auto" else film.solution, "Write auto."),
-        "grid": ("" if film.grid == "fixed" else film.grid, "Write fixed."),
+        "grid": (film.grid if film.grid == "half-speed" else "", "Write auto."),
         "cavitation": (cavitation, "Leave it out, or write half-sommerfeld."),
         "coupling": (film.coupling if film.coupling == "monolithic" else "", "Write dynamic-static or auto."),
     }

@@ -21,10 +21,11 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import CHAIN_MODES, Mesh
 from frbcli.rotor.speed_profile import Array, SpeedProfile
 from frbcli.scene.bearing_models import GIVEN
+from frbcli.scene.cell_choice import USUAL, cells_time
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.films import film_places, turning_rings
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import after_s, before_s, memory_B, rotor_size, shaft_mass
 from frbcli.scene.published import PUBLISHED
 from frbcli.scene.tabulated import SOLUTIONS
@@ -45,8 +46,7 @@ CROWDED = {CLOSED_FORM: 1.05, CLIPPED: 1.1, TABLE: 1.05, FIELDS: 1.1, CHAINS: 1.
 ELASTIC = 1.7
 FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
-# Share of a solve on USUAL_CELLS that does not depend on the cells; how many along the axis double the time of a cell.
-CELLS_FIXED, USUAL_CELLS, CELLS_DOUBLE = 0.2, (48, 6), 14.0
+CELLS_FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
 PUBLISHED_COUNT, PUBLISHED_POWER = 288, 1.4
 LONGEST_STEP_s = 1e-3  # of a run: also at low speed the rotor falls and its shaft vibrates
 MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
@@ -124,14 +124,9 @@ def solve_us(plan: Plan) -> float:
         us *= (plan.cells[0] * plan.cells[1] / PUBLISHED_COUNT) ** PUBLISHED_POWER
     elif plan.cells is not None:
         around, along = plan.cells
-        size = _cells_time(around, along) / _cells_time(*USUAL_CELLS)
+        size = cells_time(around, along) / cells_time(*USUAL)
         us *= law_named(plan.cavitation).cost * (CELLS_FIXED + (1.0 - CELLS_FIXED) * size)
     return us
-
-
-def _cells_time(around: int, along: int) -> float:
-    """Time of a solve by its cells, in any unit."""
-    return around * along * (1.0 + (along / CELLS_DOUBLE) ** 2)
 
 
 def _fields_us(mesh: Mesh) -> float:

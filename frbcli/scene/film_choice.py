@@ -12,11 +12,10 @@ from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
-from frbcli.film.section_faults import starves
 from frbcli.scene.bearing_models import GIVEN, WHY
-from frbcli.scene.films import film_places
+from frbcli.scene.cell_choice import FEWEST, cell_error, fewest_cells
+from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
-from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 
 MIDDLE = 0.5  # axial position of a circumferential groove between two equal films
@@ -40,12 +39,8 @@ TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
 # Errors at SOLVED_HOLDS_TO between axial grooves, for widths up to the diameter; larger for wider bearings.
 CHAIN_ERROR = {Mesh(3, 48): 8.5e-4, Mesh(6, 48): 5e-4, Mesh(9, 72): 4e-4, Mesh(10, 192): 2e-4}
 CHAIN_FLOOR = 8.5e-4
-# Cells (around, along) by target; their order is a little above 1.
-COARSE_CELLS, DEFAULT_CELLS, FINE_CELLS = (40, 5), (48, 6), (96, 10)
-FEWEST_CELLS = (12, 3)
-# Errors on DEFAULT_CELLS: of plain films and grooves, with feed holes or a pocket, starved.
-CELL_ERROR, HOLE_ERROR, STARVED_ERROR, CELL_ORDER = 2e-3, 5e-3, 1.2e-2, 1.5
-LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4
+CELL_SHARE, RING_SHARE = 0.8, 0.85  # of the target, by cells; the steps of a rotor on rings have little error
+LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4  # of methods of third and of fourth order
 
 
 @dataclass(frozen=True)
@@ -65,9 +60,9 @@ class FilmChoice:
     films: tuple[tuple[str, Mesh], ...] = ()
 
 
-def choose_films(case: Case) -> FilmChoice:
-    """The cheapest film that holds the target of the case, or what the case sets."""
-    target, given = case.accuracy.target, case.accuracy.mesh
+def choose_films(case: Case, target: float) -> FilmChoice:
+    """The cheapest film that holds a target, or what the case sets."""
+    given = case.accuracy.mesh
     if case.film.bearing_model:
         each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
         return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
@@ -76,14 +71,15 @@ def choose_films(case: Case) -> FilmChoice:
         theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
         return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
     if needs_cells(case):
-        cells = _cells(case)
+        cells = _cells(case, target)
+        error = cell_error(case, cells)
         theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
-        mesh_why = "set in the case" if given is not None else "nearly parabolic over the width: few cells along"
+        mesh_why = f"{'set in the case; ' if given is not None else ''}error of the eccentricities {error:.1g}"
         if case.film.solution == "cells":
             mesh_why += "; film.solution is set in the case"
         elif all(law_named(model).tabulated for model in case.cavitations):
             mesh_why += f"; no table: {table_obstacle(case)}"
-        return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, _cell_error(case, cells), theory_why, mesh_why)
+        return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, error, theory_why, mesh_why)
     if not all_clipped(case):
         mesh = SOLUTION_MESH if given is None else Mesh(*given)
         mesh_why = "set in the case" if given is not None else f"error {SOLUTION_ERROR:.1g}, as of the splines"
@@ -186,18 +182,8 @@ def _mesh_error(form: str, mesh: Mesh, slenderness: float) -> float:
     return float(max(factor * slenderness**2, FIELDS_FLOOR if form == FIELDS else TABLE_FLOOR))
 
 
-def _cells(case: Case) -> tuple[int, int]:
+def _cells(case: Case, target: float) -> tuple[int, int]:
     if case.accuracy.mesh is not None:
         along, around = case.accuracy.mesh
-        return max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])
-    if case.accuracy.target > LOOSE_TARGET:
-        return COARSE_CELLS
-    return DEFAULT_CELLS if case.accuracy.target > FINE_TARGET else FINE_CELLS
-
-
-def _cell_error(case: Case, cells: tuple[int, int]) -> float:
-    sections = [film_section(case, place.geometry, place.feed_holes) for place in film_places(case)]
-    error = HOLE_ERROR if any(section.holes for section in sections) else CELL_ERROR
-    if any(starves(section) for section in sections):
-        error = STARVED_ERROR
-    return float(error * (DEFAULT_CELLS[0] / cells[0]) ** CELL_ORDER)
+        return max(around, FEWEST[0]), max(along, FEWEST[1])
+    return fewest_cells(case, (RING_SHARE if turning_rings(case) else CELL_SHARE) * target)

@@ -78,11 +78,19 @@ def is_plain(film: FilmGeometry) -> bool:
     return film.lobes is None and film.supply.kind in ("none", "circumferential-groove")
 
 
-def turning(places: tuple[FilmPlace, ...], ring_count: int, half_speed: bool = False) -> Array:
+def turns_with_oil(case: Case, place: FilmPlace) -> bool:
+    """Whether the cells of a film turn with the mean speed of journal and shell, as the oil between them does."""
+    if case.film.grid != "auto":
+        return case.film.grid == "half-speed"
+    plain = is_plain(place.geometry) and place.feed_holes is None
+    return plain and law_named(case.cavitation(place.geometry)).keeps_oil
+
+
+def turning(places: tuple[FilmPlace, ...], ring_count: int, with_oil: Sequence[bool]) -> Array:
     """(films, 3, 1 + rings) shares of the speeds of rotor and rings in omega_J + omega_S, in omega_J - omega_S, and in
-    the speed of the grid; see RotorData. half_speed: grids turn with the mean of journal and shell."""
+    the speed of the grid; see RotorData. with_oil: (films,) whether its grid turns with the mean of both."""
     shares = np.zeros((len(places), 3, 1 + ring_count))
-    for share, place in zip(shares, places, strict=True):
+    for share, place, half_speed in zip(shares, places, with_oil, strict=True):
         for body, signs in ((place.inside, (1.0, 1.0)), (place.outside, (1.0, -1.0))):
             if body != HOUSING:
                 share[0, 1 + body] += signs[0]

@@ -9,7 +9,8 @@ from frbcli.case.schema import MACRO_STEP, STEPS_PER_REVOLUTION, Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.cost import ExpectedCost, solve_us
-from frbcli.scene.plan import Plan, make_plan
+from frbcli.scene.plan import make_plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import before_s, rotor_size
 
 DAY_s = 86_400.0

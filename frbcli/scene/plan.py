@@ -5,20 +5,21 @@ All choices that the program makes for a run are made here, with their reasons; 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.grid import Mesh
-from frbcli.html import html_table
 from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
+from frbcli.scene.cost import expected_cost
 from frbcli.scene.coupling import plan_coupling
+from frbcli.scene.expected_error import expected_error
 from frbcli.scene.film_choice import (
     CHAINS,
     FIELDS,
@@ -28,8 +29,10 @@ from frbcli.scene.film_choice import (
     FilmChoice,
     choose_films,
 )
-from frbcli.scene.films import film_places, rings, turning_rings
+from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.plan_faults import plan_faults
+from frbcli.scene.planned import Decision, Plan
+from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.published import PUBLISHED, published_decisions
 from frbcli.scene.supply import unfed_films
 from frbcli.scene.tabulated import SOLUTIONS
@@ -40,65 +43,66 @@ THEORIES = ("short", "finite")
 CELL_STEPS, SOLVED_STEPS = 12.0, 20.0
 # Local error of a step over the target, by method: the errors of some revolutions then add up to less than the target.
 LOOSE_SHARE, TIGHT_SHARE = 0.02, 0.01
-# The same over the known error of the forces of finite-volume films, where these are above the target. The errors of
-# the steps then add up to 1e-2 to 0.4 of that of the mesh, a quarter in the median. Set on jeffcott-two-phase,
-# axial-groove-two-phase, floating-ring and floating-ring-table-7-1, without the turbochargers and the hard cases.
-CELL_SHARE = 0.02
-
-
-@dataclass(frozen=True)
-class Decision:
-    """One choice of the plan: what was chosen, and why."""
-
-    choice: str
-    value: str
-    reason: str
-
+# The same of finite-volume films, over the error of the cells where that is above the target: the steps then add up to
+# 0.3 of the target, and to 0.03 of it for rotors on rings. Set on jeffcott-two-phase, axial-groove-two-phase and
+# floating-ring, without the turbochargers and the hard cases.
+CELL_SHARE = 0.025
+LOOSER, LOOSEST = math.sqrt(2.0), 0.1  # targets that a budget is tried with
+REACHED = 1.2  # expected error over the target that counts as met
 
 Decide = Callable[[str, object, str], None]
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What will be modelled. theory: "short" | "finite", or the name of a bearing model; cavitation: of films that name
-    none of their own; form: how the most expensive film is evaluated, in words; mesh: the finest mesh of elements;
-    films: form and mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for
-    other films; film_error: expected relative error of the forces; method: name of a time integration method;
-    tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
-    COUPLINGS; macro_step: longest one in s of a co-simulation, else None."""
-
-    theory: str
-    cavitation: str
-    form: str
-    mesh: Mesh
-    films: tuple[tuple[str, Mesh], ...]
-    cells: tuple[int, int] | None
-    film_error: float
-    method: str
-    tolerance: float
-    steps_per_revolution: float
-    coupling: str
-    macro_step: float | None
-    decisions: tuple[Decision, ...]
-
-    def _repr_html_(self) -> str:
-        """In a notebook: its decisions."""
-        rows = [(each.choice, each.value, each.reason) for each in self.decisions]
-        return html_table("plan", ("choice", "value", "reason"), rows, len(rows))
-
-
 def make_plan(case: Case) -> Plan:
-    """Plan a case. Raises InputError naming every part of it that cannot be modelled."""
+    """Plan a case: the cheapest that holds its target, or the most exact within its budget, where it sets no mesh and
+    tolerance of its own. Raises InputError naming every part of it that cannot be modelled."""
     faults = plan_faults(case)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
+    target, budget = case.accuracy.target, case.accuracy.budget
+    plan = _plan(case, target)
+    while budget is not None and _total_s(case, plan) > budget and target < LOOSEST:
+        target = min(LOOSER * target, LOOSEST)
+        plan = _plan(case, target)
+    if (plan.cells is None or plan.form == PUBLISHED) and budget is None:
+        return plan
+    return replace(plan, decisions=(*plan.decisions, _about_target(case, plan)))
+
+
+def _about_target(case: Case, plan: Plan) -> Decision:
+    """What the target needs, and why the plan has something else."""
+    accuracy = case.accuracy
+    by_itself = accuracy.model_copy(update={"mesh": None, "tolerance": None})
+    asked = _plan(case.model_copy(update={"accuracy": by_itself}), accuracy.target)
+    error, needed = expected_error(plan).eccentricity, expected_error(asked).eccentricity
+    own = f"expected error {error:.1g}, {_total_s(case, plan):.2g} s"
+    told = f"{accuracy.target:g}"
+    if needed > REACHED * accuracy.target:
+        told += " is out of reach"
+    if (plan.cells, plan.mesh, plan.tolerance) == (asked.cells, asked.mesh, asked.tolerance):
+        return Decision("target", told, own)
+    mesh = f"{asked.mesh.axial} x {asked.mesh.circumferential} elements"
+    if asked.cells is not None:
+        mesh = f"{asked.cells[0]} x {asked.cells[1]} cells"
+    why = "set in the case" if accuracy.budget is None else f"budget of {accuracy.budget:g} s"
+    needs = f"{mesh} and tolerance {asked.tolerance:.2g}: {needed:.1g}, {_total_s(case, asked):.2g} s"
+    return Decision("target", told, f"needs {needs}; chosen: {own}; {why}")
+
+
+def _total_s(case: Case, plan: Plan) -> float:
+    """Expected CPU time of a run-up."""
+    return expected_cost(case, plan, run_up_profile(case)).total_s
+
+
+def _plan(case: Case, target: float) -> Plan:
+    """The cheapest plan that holds a target."""
     decisions: list[Decision] = []
 
     def decide(choice: str, value: object, reason: str) -> None:
         decisions.append(Decision(choice, str(value), reason))
 
     _decide_scene(case, decide)
-    films = choose_films(case)
+    films = choose_films(case, target)
     model = chosen_model(case)
     if model is not None:
         for decided in model_decisions(model):
@@ -111,7 +115,7 @@ def make_plan(case: Case) -> Plan:
     decide("coupling", coupling, reason)
     if model is None:
         _decide_film(case, films, decide)
-    method, tolerance, steps = _time_integration(case, films, decide)
+    method, tolerance, steps = _time_integration(case, films, target, decide)
     if not turning_rings(case):
         decide("torque", "left out", "the rotor speed is given and no ring turns")
     else:
@@ -200,13 +204,17 @@ def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
             decide(*decided)
         return
     decide("film", f"{films.cells[0]} x {films.cells[1]} cells", f"finite volumes, around x along; {films.mesh_why}")
-    if case.film.grid != "fixed":
-        decide("grid", case.film.grid, "set in the case; the cells turn with the mean speed of journal and shell")
+    with_oil = [place.name for place in film_places(case) if turns_with_oil(case, place)]
+    if with_oil:
+        told = "set in the case" if case.film.grid != "auto" else "no openings, and the film keeps its oil"
+        several = len(with_oil) < len(film_places(case))
+        which = f"{', '.join(with_oil)}: half-speed" if several else "half-speed"
+        decide("grid", which, f"{told}; the cells turn as the oil does, so that it does not diffuse")
 
 
-def _time_integration(case: Case, films: FilmChoice, decide: Decide) -> tuple[str, float, float]:
+def _time_integration(case: Case, films: FilmChoice, target: float, decide: Decide) -> tuple[str, float, float]:
     """Method, tolerance and steps per revolution."""
-    target, cells = case.accuracy.target, films.cells is not None
+    cells = films.cells is not None
     if cells and target > FINE_TARGET:
         reason = "third order, L-stable: cavity fronts that cross cells limit the order"
         method, share = "esdirk3", LOOSE_SHARE
@@ -216,9 +224,11 @@ def _time_integration(case: Case, films: FilmChoice, decide: Decide) -> tuple[st
         method, share, reason = "esdirk4", TIGHT_SHARE, "fourth order, L-stable: its error is far below the target"
     decide("integrator", method, reason)
     tolerance, reason = share * target, f"{share:g} of the target, for each step"
-    if cells and films.form != PUBLISHED and CELL_SHARE * films.error > tolerance:
-        tolerance = CELL_SHARE * films.error
-        reason = f"{CELL_SHARE:g} of the error of the cells, for each step: less would cost more and gain nothing"
+    if cells and films.form != PUBLISHED:
+        tolerance, reason = CELL_SHARE * target, f"{CELL_SHARE:g} of the target, for each step"
+        if films.error > target:
+            tolerance = CELL_SHARE * films.error
+            reason = f"{CELL_SHARE:g} of the error of the cells, for each step: less would cost more and gain nothing"
     if case.accuracy.tolerance is not None:
         tolerance, reason = case.accuracy.tolerance, "set in the case"
     decide("tolerance", f"{tolerance:g}", reason)

@@ -46,8 +46,9 @@ def plan_faults(case: Case) -> list[Fault]:
     faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
     faults += published_faults(case)
     faults += signal_faults(case, needs_cells(case))
-    if case.film.grid != "fixed" and not (needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))):
-        missing("film.grid", case.film.grid, ("fixed for films with openings or lobes, and for films without cells",))
+    may_turn = needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))
+    if case.film.grid == "half-speed" and not may_turn:
+        missing("film.grid", "half-speed", ("auto; it is for films on cells without openings and lobes",))
     for place in film_places(case):
         supply = place.geometry.supply
         if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):

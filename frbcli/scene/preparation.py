@@ -16,15 +16,16 @@ from frbcli.film.grid import Mesh
 from frbcli.rotor.beam import ELEMENTS
 from frbcli.rotor.reduction import DENSE, MOST, RIGID
 from frbcli.scene.bearing_models import GIVEN
+from frbcli.scene.cell_choice import compared_states
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE, needs_cells
 from frbcli.scene.films import film_places, turning_rings
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.published import PUBLISHED
 from frbcli.scene.tabulated import SOLUTION_MESH, SOLUTIONS
 
 FINER = 2  # factor of the elements in each direction for the error of the forces
-SAMPLES, CELL_SAMPLES = 48, 8  # states at which that is done
+SAMPLES = 48  # states at which that is done
 TABLE_s, TABLE_MODES = (
     3.2e-5,
     14,
@@ -76,7 +77,7 @@ def film_error_s(case: Case, plan: Plan) -> float:
         return 6 * PUBLISHED_STATE_s
     if plan.cells is not None:
         fine = plan.cells[0] * FINER, plan.cells[1] * FINER
-        return CELL_SAMPLES * films * (_steady_s(plan.cells) + _steady_s(fine))
+        return compared_states(plan.cells) * films * (_steady_s(plan.cells) + _steady_s(fine))
     if plan.form == GIVEN:
         return 0.0
     if plan.form == SOLUTIONS:  # one state in place of a table of thousands

@@ -35,8 +35,8 @@ def published_faults(case: Case) -> list[Fault]:
         found.append(("rotor.kind", "turbocharger", "has two bearings; the published form is for one film", REMEDY))
     elif any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
         found.append(("bearing.kind", "floating-ring", "has two films; the published form is for one", REMEDY))
-    if case.film.grid != "fixed":
-        found.append(("film.grid", case.film.grid, "is for cells; the published form has elements", 'Write "fixed".'))
+    if case.film.grid == "half-speed":
+        found.append(("film.grid", case.film.grid, "is for cells; the published form has elements", 'Write "auto".'))
     if case.film.two_phase.whirl_steepness is not None:
         value = f"{case.film.two_phase.whirl_steepness:g}"
         found.append(("film.two-phase.whirl_steepness", value, "is for the conservative form", REMEDY))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from frbcli.case.schema import Case
 from frbcli.scene.clearance_steps import case_at, step_times
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.system import System, make_system
 
 

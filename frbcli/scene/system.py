@@ -35,9 +35,10 @@ from frbcli.scene.films import (
     make_law,
     turning,
     turning_rings,
+    turns_with_oil,
     volume_film,
 )
-from frbcli.scene.plan import Plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.published import PUBLISHED
 from frbcli.scene.rotors import make_rotor
 from frbcli.scene.section import film_section
@@ -129,7 +130,7 @@ def make_system(case: Case, plan: Plan) -> System:
         names=tuple(place.name for place in places),
         clearances=tuple(place.geometry.clearance for place in places),
         bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64),
-        turning=turning(places, len(ringed), case.film.grid == "half-speed"),
+        turning=turning(places, len(ringed), [turns_with_oil(case, place) for place in places]),
         drags=tuple(film_drag(case, place.geometry) for place in places),
         ring_count=len(ringed),
         laws=case.cavitations,

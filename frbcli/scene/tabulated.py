@@ -24,8 +24,8 @@ def table_obstacle(case: Case) -> str:
             return f"{cavitation} is mass-conserving: the force does not depend on the motion alone"
         if not law_named(cavitation).tabulated:
             return f"{cavitation} has no such table"
-    if film.grid != "fixed":
-        return f"a {film.grid} grid needs cells"
+    if film.grid == "half-speed":
+        return "a half-speed grid needs cells"
     for place in film_places(case):
         if place.feed_holes is not None or not is_plain(place.geometry):
             return TURNING

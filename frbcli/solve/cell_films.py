@@ -28,7 +28,7 @@ from frbcli.film.cells.data import (
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.ring_solver import solve_ring_at
-from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, cell_states, follow_law
+from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, cell_states, follow_law, hold
 from frbcli.solve.stage import lagrange
 
 # How a film's grid stands, where the journal is in it, whether its cells balance (see OPEN), how far the journals were
@@ -125,6 +125,8 @@ def cell_numbers(
         set_law(numbers, grid, d_x, d_y, v_x, v_y, omega)
     drop, rate = numbers[CENTRIFUGAL] * spin * spin, 1.0 / g if remembers else 0.0
     cell_states(numbers, cells, law_of(grid), drop, w, states)
+    if iteration == 0:
+        hold(states, omega - 2.0 * spin)
     balances(
         numbers, ring, width, cells, states, x, y, omega - 2.0 * spin, rate, past, g, v_f, v_g, spin, stencil, fields,
         flows,

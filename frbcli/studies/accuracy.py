@@ -21,7 +21,8 @@ from frbcli.runs.run import runup
 from frbcli.scene.cost import solve_us
 from frbcli.scene.coupling import COUPLINGS
 from frbcli.scene.film_choice import DEFAULT_MESH
-from frbcli.scene.plan import THEORIES, Plan, make_plan
+from frbcli.scene.plan import THEORIES, make_plan
+from frbcli.scene.planned import Plan
 from frbcli.scene.system import make_system
 from frbcli.studies.differences import difference, onset_speed
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult

@@ -12,6 +12,7 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.axial import BEND
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
+from frbcli.film.cells.carried import limited_at
 from frbcli.film.cells.data import (
     ALONG,
     AMBIENT,
@@ -44,7 +45,15 @@ from frbcli.film.cells.data import (
     UNKNOWN,
 )
 from frbcli.film.cells.ends import PREFACTOR, STEEPNESS
-from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE, SOURCE, SOURCE_SLOPE
+from frbcli.film.cells.states import (
+    BEFORE_UPSTREAM,
+    FRACTION,
+    FRACTION_SLOPE,
+    PRESSURE,
+    PRESSURE_SLOPE,
+    SOURCE,
+    SOURCE_SLOPE,
+)
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
 # supply by given cells; what channels of a ring bring net.
@@ -83,7 +92,7 @@ def _flow_around(
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     bored, half = numbers[BORED] != 0.0, 0.5 * omega
-    here, next_ = (1.0, 0.0) if omega >= 0.0 else (0.0, 1.0)
+    forward = omega >= 0.0
     taken = 0.0  # by the openings in cells that are film in part
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -108,7 +117,12 @@ def _flow_around(
             t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
             share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
             over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
-            theta = here * (t - over) + next_ * (t_n - over_n) + 0.5 * (over + over_n)
+            loose, loose_n = t - over, t_n - over_n
+            upstream, across = (loose, loose_n - loose) if forward else (loose_n, loose - loose_n)
+            more, by_before, by_across = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], across)
+            theta = upstream + more + 0.5 * (over + over_n)
+            by_upstream = 1.0 + by_before - by_across
+            here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
             fall = p - p_n
             pressed, drawn = through * fall, carried * h * theta
             own = carried * h * (0.5 if t > 1.0 else here) * states[FRACTION_SLOPE, i, j]

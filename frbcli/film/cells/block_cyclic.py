@@ -17,9 +17,7 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cells.vectors import eliminate_column, next_column, row_length, take_in_border, take_in_next
 
 CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
-# Lengths of columns that are eliminated on the vector units, with the usual number of right-hand sides: those of plans,
-# and of the runs on fewer cells that errors follow from. Each takes a second to compile.
-THREE, FOUR, FIVE, SIX, TEN = (0,) * 3, (0,) * 4, (0,) * 5, (0,) * 6, (0,) * 10
+# Right-hand sides of a film that shares no oil with others: its own, and two for the motion of its journal.
 USUAL = (0,) * 3
 
 
@@ -81,7 +79,13 @@ def _fill(stencil: Array, i: int, block: Array, columns: Any) -> None:
 
 @compiled(fastmath={"contract", "reassoc"})
 def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row: Any) -> None:
-    """As solve_ring; column, row: anything as long as a column and a row of fields."""
+    """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
+
+    stencil: (ENTRIES, m, k) entries of the cell itself, of the cells before and behind it around the ring, of those
+    below and above it in its column, all arrays in one piece. blocks: (m, k, k) scratch, as are the first k layers of
+    fields: what a column takes from the last one, so that both are one product. m >= 3. Not finite where the matrix is
+    singular. column, row: anything as long as a column and a row of fields.
+    """
     m, k, n = len(blocks), len(column), len(row)
     last, held = m - 1, np.empty((k, n))
     # x_i = right_i - blocks_i behind_i x_i+1 - border_i x_last, border and right beside each other
@@ -146,7 +150,7 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
 
 @compiled(fastmath={"contract", "reassoc"})
 def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
-    """As solve_ring, for columns of a length and right-hand sides of a number that the compiler knows, see vectors.py.
+    """As solve_blocks, for columns of a length and right-hand sides of a number known to the compiler, see vectors.py.
 
     A column is coupled to the next as x_i = right_i - inverse_i behind_i x_i+1 - border_i x_last. The rows hold
     inverse, border and right of each, the two latter first without and then with what the columns behind it bring.
@@ -187,28 +191,3 @@ def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
     for a in range(k):
         for side in range(r):
             fields[last, a, k + side] = rows[last, a, 2 * k + side]
-
-
-@compiled()
-def solve_ring(stencil: Array, blocks: Array, fields: Array) -> None:
-    """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
-
-    stencil: (ENTRIES, m, k) entries of the cell itself, of the cells before and behind it around the ring, of those
-    below and above it in its column, all arrays in one piece. blocks: (m, k, k) scratch, as are the first k layers of
-    fields: what a column takes from the last one, so that both are one product. m >= 3. Not finite where the matrix is
-    singular.
-    """
-    k, n = fields.shape[1:]
-    known = n == k + len(USUAL)
-    if known and k == len(SIX):
-        solve_known(stencil, fields, SIX, USUAL)
-    elif known and k == len(FIVE):
-        solve_known(stencil, fields, FIVE, USUAL)
-    elif known and k == len(FOUR):
-        solve_known(stencil, fields, FOUR, USUAL)
-    elif known and k == len(THREE):
-        solve_known(stencil, fields, THREE, USUAL)
-    elif known and k == len(TEN):
-        solve_known(stencil, fields, TEN, USUAL)
-    else:
-        solve_blocks(stencil, blocks, fields, stencil[0, 0], fields[0, 0])

@@ -28,11 +28,13 @@ from frbcli.film.cells.data import (
     PRESSURE_SCALE,
     RESISTANCE,
     SLOT,
+    SOLVER_AT,
     UNKNOWN,
     VolumeFilms,
 )
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.openings import hole_opening
+from frbcli.film.cells.ring_solver import ring_solver
 from frbcli.film.grid import Array
 
 IN_GROOVE = -1.0  # in place of a feed hole
@@ -47,7 +49,8 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
     channels = [channel for channel in channels if _is_open(films, channel.inner) and _is_open(films, channel.outer)]
     if not channels:
         return data
-    cells = data.cells.copy()
+    cells, numbers_of_films = data.cells.copy(), data.numbers.copy()
+    numbers_of_films[:, SOLVER_AT] = ring_solver(cells.shape[-1], usual=False)
     rows, feed_holes, places = np.zeros((len(channels), CHANNEL_NUMBERS)), [], []
     slots = dict.fromkeys(range(len(films)), 0)
 
@@ -75,7 +78,13 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
     filled = np.full((len(places), max(map(len, places)), 2), -1, dtype=np.int64)
     for place, own in zip(filled, places, strict=True):
         place[: len(own)] = own
-    return data._replace(cells=cells, channels=rows, feed_holes=np.array(feed_holes), feed_hole_cells=filled)
+    return data._replace(
+        numbers=numbers_of_films,
+        cells=cells,
+        channels=rows,
+        feed_holes=np.array(feed_holes),
+        feed_hole_cells=filled,
+    )
 
 
 def _cells(film: VolumeFilm, feed_hole: FeedHole) -> NDArray[np.bool_]:

@@ -137,7 +137,7 @@ def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Ar
         AMBIENT: scales.ambient,
         FOLLOW_AT: follow_at,
         CELLS_AT: cells_at,
-        SOLVER_AT: ring_solver(),
+        SOLVER_AT: ring_solver(grid.shape[1]),
         CLIPS: float(law.clips),
         REMEMBERS: float(law.keeps_oil),
         NEAR: ENDS[section.near],

@@ -89,7 +89,7 @@ def film_newton(
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """One step of Newton's method of a film from the unknowns w (m, k): fields (m, k, k + SIDES) <- its changes.
 
-    See balances for the arguments; returns film_loads.
+    See balances for the arguments; the layer BEFORE_UPSTREAM of states is given. Returns film_loads.
     """
     law = np.empty(LAW_NUMBERS)
     follow_law(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin, law)

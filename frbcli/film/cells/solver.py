@@ -18,10 +18,20 @@ from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, balances
 from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
+from frbcli.film.cells.carried import UPWIND, before_upstream
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion, Storage
-from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE, SOURCE, STATES, cell_states
+from frbcli.film.cells.states import (
+    BEFORE_UPSTREAM,
+    FRACTION,
+    FRACTION_SLOPE,
+    PRESSURE,
+    PRESSURE_SLOPE,
+    SOURCE,
+    STATES,
+    cell_states,
+)
 from frbcli.film.gap import gap_rate
 from frbcli.film.grid import Array
 
@@ -61,14 +71,18 @@ class FilmSolver:
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
+        self._before = np.full((m, k), UPWIND)
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
 
     def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
         """Cells whose oil fraction does not change while the journal moves as it does.
 
+        Oil is carried upwind: what passes the cavity of a steady film does not depend on the oil fraction in it.
+
         start: (m, k) unknown to begin from, else a full film. Raises FilmUnsolved.
         """
         grid = self.film.grid
+        self._before = np.full(grid.shape, UPWIND)
         storage = Storage(gap_rate(motion.v, grid.centre)[:, None], np.zeros(grid.shape))
         return self._solve(motion, self.film.full() if start is None else start, storage)
 
@@ -79,6 +93,7 @@ class FilmSolver:
         from. Returns (solution, content H theta). Raises FilmUnsolved.
         """
         gap = self.film.gap(motion.d, self.film.grid.centre)[:, None]
+        self._before = before_upstream(self.film.cells(w).fraction, motion.omega)
         solution = self._solve(flowing, w, Storage(rate * gap, past))
         return solution, gap * solution.state.fraction
 
@@ -105,7 +120,8 @@ class FilmSolver:
         worst = np.zeros_like(w)
         for iteration in range(1, attempt.limit + 1):
             residual = self._assemble(motion, w, storage)
-            worst = np.abs(residual) / self._terms(passed, w, storage)
+            with np.errstate(over="ignore"):  # on the way to a failure
+                worst = np.abs(residual) / self._terms(passed, w, storage)
             largest, left = float(np.max(worst)), float(np.abs(residual).sum())
             if largest < ROUND_OFF or 0.5 * largest_before <= largest < SETTLED:
                 return w, iteration, ""
@@ -114,7 +130,6 @@ class FilmSolver:
                 pseudo_rate /= min(max(left_before / left, SHRINK), attempt.growth)
             left_before = left
             self._stencil[CENTRE] += pseudo_rate * self._area
-            # not solve_ring: its kernels for usual lengths take most of the time to compile, and serve the time loop
             solve_blocks(self._stencil, self._blocks, self._fields, self._stencil[0, 0], self._fields[0, 0])
             w = w + self._fields[:, :, w.shape[1]]
             if not np.max(np.abs(w)) < LARGEST:
@@ -124,6 +139,7 @@ class FilmSolver:
     def _assemble(self, motion: Motion, w: Array, storage: Storage) -> Array:
         """(m, k) what does not balance, and in the arrays of the solver Newton's equations."""
         cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
+        self._states[BEFORE_UPSTREAM] = self._before
         self._flow(motion, storage.past)
         states, kept = self._states, self._area * storage.factor
         self._stencil[CENTRE] += kept * states[FRACTION_SLOPE]
@@ -161,7 +177,7 @@ class FilmSolver:
     def _solution(self, motion: Motion, w: Array, storage: Storage, iterations: int) -> VolumeSolution:
         """Of the cells that the arrays of the solver hold."""
         film, (pressure, fraction, source) = self.film, self._states[:PRESSURE_SLOPE]
-        state = CellState(*self._states.copy())
+        state = CellState(*self._states[:BEFORE_UPSTREAM].copy())
         if film.law.clips:  # so do the flows, as the loads
             pressure[:] = film.pressure(state)
             self._flow(motion, storage.past)

@@ -10,8 +10,9 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import ECCENTRICITY, MOTION, SPEED, WHIRL, call_cells, call_follow
 from frbcli.film.cells.data import CELLS_AT, FOLLOW_AT, GIVEN_PRESSURE, PARAMETERS, REFERENCE, SCALES_END, UNKNOWN
 
-# Layers of the states of the cells, their slopes by w last.
-PRESSURE, FRACTION, SOURCE, PRESSURE_SLOPE, FRACTION_SLOPE, SOURCE_SLOPE, STATES = range(7)
+# Layers of the states of the cells: of the law, the slopes by w last; and the oil fraction before the cell upstream of
+# the face after each cell, as it is held, see carried.py.
+PRESSURE, FRACTION, SOURCE, PRESSURE_SLOPE, FRACTION_SLOPE, SOURCE_SLOPE, BEFORE_UPSTREAM, STATES = range(8)
 CENTRE = 1e-6  # of the clearance, squared: a journal in the centre does not whirl
 WHIRL_EDGE, WHIRL_STEP = 0.3, 0.15  # distance from 0.5 where no whirl is left, and over which it fades
 
@@ -51,8 +52,22 @@ def cell_states(numbers: Array, cells: Array, law: Array, drop: float, w: Array,
                     1.0,
                     0.0,
                 )
-                for layer in range(PRESSURE_SLOPE, STATES):
+                for layer in range(PRESSURE_SLOPE, BEFORE_UPSTREAM):
                     states[layer, i, j] = 0.0
+
+
+@compiled()
+def hold(states: Array, omega: float) -> None:
+    """The layer BEFORE_UPSTREAM of states (STATES, m, k) <- before_upstream of their oil fractions."""
+    m, k = states.shape[1], states.shape[2]
+    for i in range(m):
+        before = i - 1 if omega >= 0.0 else i + 2
+        if before < 0:
+            before += m
+        elif before >= m:
+            before -= m
+        for j in range(k):
+            states[BEFORE_UPSTREAM, i, j] = min(states[FRACTION, before, j], 1.0)
 
 
 @compiled()

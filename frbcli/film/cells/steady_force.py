@@ -8,13 +8,14 @@ import numpy as np
 
 from frbcli.film.cells.balances import FLOWS, SIDES
 from frbcli.film.cells.block_cyclic import ENTRIES
+from frbcli.film.cells.carried import UPWIND
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.newton_step import film_newton
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.states import STATES
+from frbcli.film.cells.states import BEFORE_UPSTREAM, STATES
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce
 
@@ -42,13 +43,14 @@ def steady_force(
     solution = steady_solution(film, motion, start)
     data = volume_films([film_at(film, math.hypot(*motion.d), omega)])
     m, k = film.grid.shape
-    nothing = np.zeros((m, k))
+    nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
+    states[BEFORE_UPSTREAM] = UPWIND
     slopes = []
     for g in (CARRIED, HELD):
-        scratch = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
+        scratch = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
         values = film_newton(
             data.numbers[0], data.ring[0], data.width[0], data.cells[0], solution.w.copy(), *motion.d, omega, 0.0,
-            nothing, g, *motion.v, 0.0, *scratch, np.zeros(FLOWS),
+            nothing, g, *motion.v, 0.0, states, *scratch, np.zeros(FLOWS),
         )  # fmt: skip
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.pressure(solution.state)))

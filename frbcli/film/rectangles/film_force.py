@@ -15,13 +15,16 @@ from numba.extending import overload
 from frbcli.compiled import compiled
 from frbcli.film.bearing_model.film import BearingModelFilm, model_force
 from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.mean_fields.table import MeanFilm, mean_force
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
 from frbcli.film.rectangles.chain import ChainFilm, chain_force
 from frbcli.film.rectangles.fields import FieldsFilm, fields_force
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, short_closed, short_general
 from frbcli.film.rectangles.table import TableFilm, table_force
 
-FilmData = ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm | BearingModelFilm
+FilmData = (
+    ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm | BearingModelFilm | MeanFilm
+)
 
 NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
 
@@ -40,6 +43,7 @@ POLAR = {
     PenaltyTableFilm: lambda film, eccentricity, w_r, w_t, omega: source_force(
         film.table, film.numbers, eccentricity, w_r, w_t, omega
     ),
+    MeanFilm: lambda film, eccentricity, w_r, w_t, omega: mean_force(film, eccentricity, w_r, w_t, omega),
 }
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.axial import BEND, EndSlope, end_slopes
+from frbcli.film.cells.carried import UPWIND, limited
 from frbcli.film.cells.ends import end_outflow
 from frbcli.film.cells.grid import VolumeGrid
 from frbcli.film.cells.motion import Motion, Storage
@@ -95,19 +96,21 @@ def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conducta
 class Balance:
     """Balances of the cells of one section for one motion; constant."""
 
-    def __init__(self, section: Section, grid: VolumeGrid, motion: Motion) -> None:
+    def __init__(self, section: Section, grid: VolumeGrid, motion: Motion, before: Array | None = None) -> None:
+        """before: (m, k), see before_upstream; None: oil is carried upwind."""
         self.section, self.grid, self.motion = section, grid, motion
+        self.before = np.full(grid.shape, UPWIND) if before is None else before
         self.conductances = conductances(section, grid, motion)
 
     def fluxes(self, pressure: Array, theta: Array) -> tuple[Fluxes, EndFlow, EndFlow]:
         """Flows for pressures and oil fractions (m, k), and those at the ends with their derivatives.
 
-        The surfaces carry the oil of a part-filled film as it is in the cell that they come from (upwind), what a full
-        film is compressed by as it is at the face (second order).
+        The surfaces carry the oil of a part-filled film with the limited oil fraction of carried.py, what a full film
+        is compressed by as it is at the face (second order).
         """
         c = self.conductances
         packed = np.maximum(theta - 1.0, 0.0)
-        loose = theta - packed if self.motion.omega >= 0.0 else np.roll(theta - packed, -1, axis=0)
+        loose, _, _ = self._at_faces(theta - packed)
         carried = c.carried * (loose + 0.5 * (packed + np.roll(packed, -1, axis=0)))
         around = c.around * (pressure - np.roll(pressure, -1, axis=0))
         along = c.along * (pressure[:, :-1] - pressure[:, 1:])
@@ -119,6 +122,17 @@ class Balance:
             self.section.far, pressure[:, inwards], self.grid.fixed[:, inwards], c.far, groove, last
         )
         return Fluxes(around, carried, c.rise * theta, along, near.out, far.out), near, far
+
+    def _at_faces(self, loose: Array) -> tuple[Array, Array, Array]:
+        """(m, k) oil fraction at the face after each cell and its derivatives by those of this cell and the next.
+
+        loose: (m, k) oil fractions, full at the most."""
+        forward, after = self.motion.omega >= 0.0, np.roll(loose, -1, axis=0)
+        upstream, downstream = (loose, after) if forward else (after, loose)
+        across = downstream - upstream
+        more, by_before, by_across = limited(upstream - self.before, across)
+        by_upstream = 1.0 + by_before - by_across
+        return upstream + more, *((by_upstream, by_across) if forward else (by_across, by_upstream))
 
     def _end(
         self, kind: str, pressure: Array, fixed: NDArray[np.bool_], conductance: Array, groove: float, slope: EndSlope
@@ -150,12 +164,11 @@ class Balance:
 
     def _stencil(self, state: CellState, storage: Storage, near: EndFlow, far: EndFlow) -> Stencil:
         c, p_w, t_w = self.conductances, state.pressure_slope, state.fraction_slope
-        half = np.where(state.fraction > 1.0, 0.5 * t_w, 0.0)
-        whole = np.where(state.fraction > 1.0, 0.0, t_w)
-        own, other = (half + whole, half) if self.motion.omega >= 0.0 else (half, half + whole)
-        share = self.grid.share
+        packed, share = state.fraction > 1.0, self.grid.share
+        _, own, next_ = self._at_faces(np.minimum(state.fraction, 1.0))
         by_own, by_next = c.around * p_w, c.around * np.roll(p_w, -1, axis=0)  # through the face after each cell
-        own, other = c.carried * own, c.carried * np.roll(other, -1, axis=0)
+        own = c.carried * np.where(packed, 0.5, own) * t_w
+        other = c.carried * np.where(np.roll(packed, -1, axis=0), 0.5, next_) * np.roll(t_w, -1, axis=0)
         low, high = c.along * p_w[:, :-1], c.along * p_w[:, 1:]
         centre = by_own + share * own + np.roll(by_next, 1, axis=0) - share * np.roll(other, 1, axis=0)
         centre += c.rise * t_w + self.grid.area * (storage.factor * t_w - state.source_slope)

@@ -1,0 +1,194 @@
+"""`frb limit-cycles`: resting positions, Hopf points and branches of limit cycles over the rotor speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.live import live_lines
+from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.quantities import SPEED_OPTION
+from frbcli.cli.runs import OUTPUT, here
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint
+    from frbcli.plot.run_track import RunTrack
+
+ASKED = "asked"
+MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
+
+
+@click.command()
+@case_argument
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
+              help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
+@click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
+              help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
+@click.option("--no-picture", is_flag=True, help="No picture.")
+@click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
+@output_options
+def command(
+    case: Case,
+    speeds: tuple[float, ...],
+    runs: tuple[str, ...],
+    output: Path | None,
+    no_picture: bool,
+    csv: Path | None,
+    terminal: Terminal,
+) -> None:
+    """Resting positions of CASE over its speed, the Hopf points where a whirl is born, and the limit cycles from there.
+
+    Branches of cycles, stable or not, are followed through folds; unbalance is left out.
+    """
+    from frbcli.cycles.limit_cycles import limit_cycles
+    from frbcli.results.place import require_place
+
+    if no_picture and output is not None:
+        raise click.UsageError("-o names the picture that --no-picture leaves out.")
+    picture = None if no_picture else output or here(case.name, "-limit-cycles.png")
+    check_place(picture)
+    require_place(csv)
+    tracks = [track for name in runs for track in _tracks(Path(name))]
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = limit_cycles(case, speeds, _showing(show))
+    _tell(terminal, found)
+    if csv is not None:
+        found.to_pandas().to_csv(csv, index=False)
+        terminal.result(f"table: {csv}")
+    if picture is not None:
+        from frbcli.plot.limit_cycles import limit_cycles_figure
+
+        picture = draw(terminal, lambda: limit_cycles_figure(found, tracks), picture)
+    terminal.emit(_document(found) | {"picture": picture, "csv": csv})
+
+
+def _tracks(path: Path) -> tuple[RunTrack, ...]:
+    """The way up of a run, and the way down if it has one."""
+    from frbcli.plot.run_track import run_tracks
+    from frbcli.results.store import read_run
+
+    return run_tracks(read_run(path), path.stem)
+
+
+def _showing(show: Callable[[str], None] | None) -> Callable[[int, float, float], None]:
+    def observe(number: int, speed: float, eccentricity: float) -> None:
+        if show is not None:
+            show(f"cycle {number}: {speed:.1f} Hz, eccentricity {eccentricity:.4f}")
+
+    return observe
+
+
+def _tell(terminal: Terminal, found: LimitCycles) -> None:
+    rows = [
+        (
+            point.kind,
+            "-" if point.branch is None else str(point.branch + 1),
+            f"{point.speed_Hz:.2f}",
+            f"{point.frequency_Hz:.2f}",
+            f"{point.frequency_Hz / point.speed_Hz:.4f}",
+            f"{point.eccentricity_max.max():.4f}",
+            point.criticality or "",
+        )
+        for point in found.special
+    ]
+    columns = ("point", "branch", "Hz", "whirl Hz", "ratio", "eps max", "")
+    terminal.table(found.case.title or found.case.name, columns, rows)
+    for number, branch in enumerate(found.branches):
+        speeds = [point.speed_Hz for point in branch.points]
+        if not speeds:
+            terminal.result(_wrapped(f"Branch {number + 1} has no cycles. {branch.note}"))
+            continue
+        stable = sum(point.stable for point in branch.points)
+        told = f"{len(speeds)} cycles from {min(speeds):.1f} to {max(speeds):.1f} Hz, {stable} stable."
+        terminal.result(_wrapped(f"Branch {number + 1}: {told} {branch.note}"))
+    for number, branch in enumerate(found.branches):
+        for point in branch.points:
+            if point.kind == ASKED:
+                how = "stable" if point.stable else "unstable"
+                at = f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {point.frequency_Hz:.3f} Hz, {how}"
+                terminal.result(f"{at}, eccentricity {point.eccentricity_max.max():.5f}")
+    for note in (*found.notes, *_left_out(found)):
+        terminal.result(_wrapped(note))
+    terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
+
+
+def _left_out(found: LimitCycles) -> list[str]:
+    from frbcli.scene.clearance_steps import step_times
+
+    notes = []
+    if getattr(found.case.rotor, "unbalance", 0.0) or any(disk.unbalance for disk in found.case.disks):
+        notes.append("Without the unbalance: with it a whirl is a motion of two frequencies.")
+    if step_times(found.case):
+        notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
+    return notes
+
+
+def _wrapped(text: str) -> str:
+    return fill(text, 80, break_long_words=False, break_on_hyphens=False)
+
+
+def _document(found: LimitCycles) -> dict[str, object]:
+    return {
+        "command": "limit-cycles",
+        "case": found.case.name,
+        "over": "speed",
+        "equilibria": [
+            {
+                "speed_Hz": point.speed_Hz,
+                "displacement": point.displacement[0],
+                "stable": point.stable,
+                "films": dict(zip(found.films, point.displacement, strict=True)),
+                "ring_speeds_Hz": point.ring_speeds_Hz,
+            }
+            for point in found.equilibria
+        ],
+        "branches": [
+            {
+                "from": None if branch.start is None else _special(found, found.special[branch.start]),
+                "points": [_cycle(found, point) for point in branch.points],
+                "note": branch.note,
+            }
+            for branch in found.branches
+        ],
+        "special": [_special(found, point) for point in found.special],
+        "notes": found.notes,
+        "cost": {"cpu_s": found.cost.cpu_s, "cycles": found.cost.cycles},
+    }
+
+
+def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
+    return {
+        "speed_Hz": point.speed_Hz,
+        "frequency_Hz": point.frequency_Hz,
+        "eccentricity_max": dict(zip(found.films, point.eccentricity_max, strict=True)),
+        "stable": point.stable,
+        "multipliers": [[value.real, value.imag] for value in point.multipliers[:MULTIPLIERS].tolist()],
+        "ring_speeds_Hz": point.ring_speeds_Hz,
+        "torque_N_m": point.torque_N_m,
+        "kind": point.kind or None,
+    } | ({"orbits": _orbits(found, point)} if point.kind == ASKED else {})
+
+
+def _orbits(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
+    return {name: point.orbit(film) for film, name in enumerate(found.films)}
+
+
+def _special(found: LimitCycles, point: SpecialPoint) -> dict[str, object]:
+    largest = dict(zip(found.films, point.eccentricity_max, strict=True))
+    return {
+        "kind": point.kind,
+        "branch": point.branch,
+        "speed_Hz": point.speed_Hz,
+        "frequency_Hz": point.frequency_Hz,
+        "criticality": point.criticality,
+        "lyapunov_1_s": point.lyapunov,
+        "eccentricity_max": largest,
+    }

@@ -1,0 +1,1 @@
+"""Limit cycles: where a whirl begins, how far it goes, where it ends."""

@@ -1,0 +1,338 @@
+"""A branch of limit cycles from a Hopf point on: followed by its arc length through folds, with the stability of each
+cycle and the points where it changes.
+
+Harmonics are added where the next ones would be larger than a tolerance, and left out where the last ones are much
+smaller.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.balance import Balance, left_out, moments, motion_along, packed, unpacked
+from frbcli.cycles.continuation import Place, Strides, corrected, fold_between, next_length, oriented, step_from
+from frbcli.cycles.equilibria import HopfPoint
+from frbcli.cycles.floquet import TRIVIAL, Multipliers, multipliers
+from frbcli.cycles.linearised import StateSpace, state_space
+from frbcli.cycles.machine import Machine
+
+Array = NDArray[np.float64]
+
+STRIDES = Strides(first=0.01, shortest=1e-6, longest=0.06, points=600)
+FIRST_HARMONICS, MOST_HARMONICS = 5, 80
+REFITS = 4  # of a fold with more harmonics
+# Of one film, of several: what the harmonics left out may have of the clearance, and unknowns up to which harmonics are
+# added for the trivial multiplier alone.
+TAIL, MOST_UNKNOWNS = (1e-7, 1e-6), (1100, 450)
+SPARE = 0.1  # of it: what the last harmonics have where there are too many
+NARROWER = 0.6  # share of the smallest gap that one step may leave
+LARGEST = 0.9998  # eccentricity beyond which no cycle is followed
+NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
+SMALL = 2e-3  # amplitude over the clearance below which a branch has come back to rest
+MOMENTS = 256  # of a period at which eccentricities are taken
+HALVINGS = 14  # to locate a flip or a torus point: of the step
+FOLD, FLIP, TORUS, HOPF = "fold", "flip", "torus", "hopf"
+ASKED = "asked"  # a cycle at a speed that was asked for
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A limit cycle. y: see balance.py; place: with its tangent; eccentricity_max: (F,); multipliers: None if they were
+    not asked for."""
+
+    place: Place
+    eccentricity_max: Array
+    multipliers: Multipliers
+    kind: str = ""
+
+    @property
+    def y(self) -> Array:
+        """The unknowns."""
+        return self.place.y
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Cycles in their order from the Hopf point on, special ones among them by their kind; note: why it ends;
+    ends_at_rest: whether it comes back to rest."""
+
+    cycles: tuple[Cycle, ...]
+    note: str
+    ends_at_rest: bool = False
+
+
+AT_REST = "It ends at rest, in another Hopf point."
+
+
+class Follower:
+    """One branch while it is followed; omega: as in Balance."""
+
+    def __init__(
+        self, machine: Machine, slowest: float, fastest: float, asked: Sequence[float] = (), omega: float | None = None
+    ) -> None:
+        self.machine = machine
+        self.omega = omega
+        self.space: StateSpace = state_space(machine)
+        self.range = (slowest / machine.pace, fastest / machine.pace)
+        self.asked = tuple(speed / machine.pace for speed in asked)
+
+    def cycle(self, place: Place, kind: str = "") -> Cycle:
+        """A point of the branch with all that is told of it."""
+        found = multipliers(self.machine, self.space, place.y)
+        while found.defect > TRIVIAL:
+            finer = self.with_more(place)
+            if finer is None:
+                break
+            place, found = finer, multipliers(self.machine, self.space, finer.y)
+        return Cycle(place, eccentricities(self.machine, place.y), found, kind)
+
+    def equations(self, place: Place) -> Balance:
+        moving = amplitude(self.machine, place.y) > NOTHING  # at a Hopf point only the tangent has a phase
+        return Balance(
+            self.machine, unpacked((place.y if moving else place.tangent)[:-2], self.machine.size), self.omega
+        )
+
+    def as_cycle(self, y: Array) -> Array:
+        """The unknowns y with the speed of the rotor at their end."""
+        return y if self.omega is None else np.append(y[:-1], self.omega / self.machine.pace)
+
+    def with_more(self, place: Place) -> Place | None:
+        """The place with half as many harmonics more, None if those are too many."""
+        c, harmonics = self.machine.size, (len(place.y) - 2) // self.machine.size // 2
+        more = resized(place, c, harmonics + harmonics // 2)
+        if len(more.y) > MOST_UNKNOWNS[self.machine.film_count > 1]:
+            return None
+        found = corrected(self.equations(more), more.y, more.tangent)
+        return None if found is None else oriented(found, more.tangent)
+
+    def refitted(self, place: Place) -> Place | None:
+        """The place with as many harmonics as it needs; None if that does not converge, or if they are too many."""
+        c = self.machine.size
+        for _ in range(12):
+            harmonics = (len(place.y) - 2) // c // 2
+            tail = left_out(self.machine, self.as_cycle(place.y))
+            motion = unpacked(place.y[:-2], c)
+            if tail < TAIL[self.machine.film_count > 1]:
+                used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * TAIL[self.machine.film_count > 1])
+                wanted = max(FIRST_HARMONICS, int(used[-1]) + 2)
+                return place if wanted >= harmonics else resized(place, c, wanted)
+            if harmonics >= MOST_HARMONICS:
+                return None
+            place = resized(place, c, min(MOST_HARMONICS, harmonics + max(2, harmonics // 3)))
+            found = corrected(self.equations(place), place.y, place.tangent)
+            if found is None or found.side * place.side < 0:  # of another part of the branch that passes close by
+                return None
+            place = oriented(found, place.tangent)
+        return None
+
+    def fold(self, place: Place, length: float) -> Place | None:
+        """The refitted fold within a step from a place."""
+        found = None
+        for _ in range(REFITS):
+            found = fold_between(self.equations(place), place, length)
+            fitted = None if found is None else self.refitted(found)
+            if found is None or fitted is None or len(fitted.y) <= len(place.y):
+                break
+            place = resized_like(place, fitted, self.machine.size)
+        return found
+
+    def stepped(self, place: Place, length: float) -> Place | None:
+        """The refitted place behind a step."""
+        narrow = 1.0 - largest(self.machine, place.y + length * place.tangent)
+        if narrow < NARROWER * (1.0 - largest(self.machine, place.y)):
+            return None
+        found = step_from(self.equations(place), place, length)
+        return None if found is None else self.refitted(oriented(found, place.tangent))
+
+
+def follow_branch(
+    machine: Machine,
+    start: Place,
+    slowest: float,
+    fastest: float,
+    asked: Sequence[float] = (),
+    observe: Callable[[Cycle], None] | None = None,
+    until: Callable[[Cycle], bool] | None = None,
+) -> Branch:
+    """The cycles from a place on, as that of a Hopf point, between two speeds in rad/s.
+
+    asked: speeds at which cycles are computed exactly; observe: called with each cycle;
+    until: called with each cycle, special ones too, the last one being that for which it says so.
+    """
+    follower = Follower(machine, slowest, fastest, asked)
+    place, length, strides = start, STRIDES.first, STRIDES
+    cycles: list[Cycle] = []
+    note = ""
+    for _ in range(strides.points):
+        found = follower.stepped(place, length)
+        while found is None and length > strides.shortest:
+            length *= 0.5
+            found = follower.stepped(place, length)
+        if found is None:
+            note = _why_not(follower, place)
+            break
+        if cycles and passed_rest(machine, place, found):
+            return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
+        beyond = not follower.range[0] <= found.y[-1] <= follower.range[1]
+        if beyond:
+            limit = follower.range[0] if found.y[-1] < follower.range[0] else follower.range[1]
+            found, note = at_speed(follower, place, found, limit), "It leaves the range of speeds."
+            if found is None:
+                break
+        cycle = follower.cycle(found)
+        known = len(cycles)
+        cycles += special_cycles(follower, cycles[-1] if cycles else None, place, cycle, length)
+        cycles.append(cycle)
+        if until is not None and any(until(one) for one in cycles[known:]):
+            return Branch(tuple(cycles), "")
+        if observe is not None:
+            observe(cycle)
+        if beyond:
+            break
+        if largest(machine, found.y) > LARGEST:
+            note = f"The journal comes nearer to its shell than an eccentricity of {LARGEST}."
+            break
+        if len(cycles) > 3 and amplitude(machine, found.y) < SMALL:
+            return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
+        length = next_length(length, strides, resized_like(place, found, machine.size), found)
+        place = found
+    else:
+        note = f"It was followed over {strides.points} cycles and goes on."
+    return Branch(tuple(cycles), note)
+
+
+def first_place(machine: Machine, hopf: HopfPoint) -> Place:
+    """The Hopf point as a cycle of no size, with the tangent along its mode."""
+    motion = np.zeros((FIRST_HARMONICS + 1, machine.size), dtype=complex)
+    along = np.zeros_like(motion)
+    motion[0], along[1] = hopf.equilibrium.u, hopf.mode
+    y = np.concatenate([packed(motion), [hopf.nu / machine.pace, hopf.equilibrium.omega / machine.pace]])
+    tangent = np.concatenate([packed(along), [0.0, 0.0]])
+    return Place(y, tangent / np.linalg.norm(tangent))
+
+
+def resized(place: Place, c: int, harmonics: int) -> Place:
+    """The place with other harmonics, new ones zero; as it was found."""
+
+    def cut(vector: Array) -> Array:
+        body = np.zeros(c * (2 * harmonics + 1))
+        kept = min(len(body), len(vector) - 2)
+        body[:kept] = vector[:kept]
+        return np.concatenate([body, vector[-2:]])
+
+    tangent = cut(place.tangent)
+    return replace(place, y=cut(place.y), tangent=tangent / np.linalg.norm(tangent))
+
+
+def resized_like(place: Place, other: Place, c: int) -> Place:
+    """The place with as many harmonics as another."""
+    return place if len(place.y) == len(other.y) else resized(place, c, (len(other.y) - 2) // c // 2)
+
+
+def eccentricities(machine: Machine, y: Array) -> Array:
+    """(F,) largest eccentricity of each film on the cycle y."""
+    motion = unpacked(y[:-2], machine.size)
+    u, _ = motion_along(motion, max(MOMENTS, moments(len(motion))))
+    d = u[:, : 2 * machine.film_count].reshape(len(u), -1, 2)
+    return np.asarray(np.hypot(d[:, :, 0], d[:, :, 1]).max(axis=0))
+
+
+def largest(machine: Machine, y: Array) -> float:
+    """The largest of them."""
+    return float(eccentricities(machine, y).max())
+
+
+def amplitude(machine: Machine, y: Array) -> float:
+    """Size over the clearance of what is not the mean of the cycle."""
+    motion = unpacked(y[:-2], machine.size)[1:, : 2 * machine.film_count]
+    return float(2.0 * np.abs(motion).max(initial=0.0))
+
+
+def passed_rest(machine: Machine, before: Place, after: Place) -> bool:
+    """Whether the cycle has shrunk to rest between two places: behind it the branch comes back."""
+    one, other = (unpacked(place.y[:-2], machine.size)[1] for place in (before, after))
+    return bool(np.sum(np.conj(one) * other).real < 0.0)
+
+
+def special_cycles(follower: Follower, before: Cycle | None, place: Place, after: Cycle, length: float) -> list[Cycle]:
+    """Folds, flips and torus points between a place and the cycle a step behind it."""
+    found: list[Cycle] = []
+    if place.tangent[-1] * after.place.tangent[-1] < 0.0:
+        fold = follower.fold(resized_like(place, after.place, follower.machine.size), length)
+        if fold is not None:
+            found.append(follower.cycle(fold, FOLD))
+    ends = sorted((place.y[-1], after.y[-1]))
+    for speed in follower.asked if not found else ():  # beside a fold there are two of them, or none
+        there = at_speed(follower, place, after.place, speed) if ends[0] < speed <= ends[1] else None
+        if there is not None:
+            found.append(follower.cycle(there, ASKED))
+    found.sort(key=lambda cycle: abs(cycle.y[-1] - place.y[-1]))
+    if before is None:
+        return found
+    change = after.multipliers.unstable - before.multipliers.unstable
+    folds = any(cycle.kind == FOLD for cycle in found)
+    if change == 0 or (folds and abs(change) == 1):
+        return found
+    kind = _kind(before if change < 0 else after)
+    if kind == FOLD:  # a real multiplier at 1 away from a fold is one that the harmonics have not resolved
+        return found
+    finer = resized_like(place, after.place, follower.machine.size)
+    place_there = _bisected(follower, finer, before.multipliers.unstable, length)
+    if place_there is not None:
+        found.append(follower.cycle(place_there, kind))
+    return found
+
+
+def _kind(cycle: Cycle) -> str:
+    """What leads to a cycle with more multipliers outside of the unit circle: by the one that is nearest to it."""
+    others = cycle.multipliers.others
+    outside = others[np.abs(others) > 1.0 + cycle.multipliers.defect]
+    if not len(outside):
+        return FOLD
+    nearest = outside[np.argmin(np.abs(outside))]
+    if abs(nearest.imag) > 1e-6 * abs(nearest):
+        return TORUS
+    return FLIP if nearest.real < 0.0 else FOLD
+
+
+def _bisected(follower: Follower, place: Place, unstable: int, length: float) -> Place | None:
+    """Where the number of growing disturbances changes from `unstable` within a step."""
+    low, high, found = 0.0, length, None
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        there = step_from(follower.equations(place), place, middle)
+        if there is None:
+            return None
+        there = oriented(there, place.tangent)
+        if multipliers(follower.machine, follower.space, there.y).unstable == unstable:
+            low = middle
+        else:
+            high, found = middle, there
+    return found
+
+
+def at_speed(follower: Follower, place: Place, beyond: Place, speed: float) -> Place | None:
+    """The cycle at a speed over the pace between two."""
+    near = resized_like(place, beyond, follower.machine.size)
+    share = (speed - near.y[-1]) / (beyond.y[-1] - near.y[-1])
+    guess = near.y + share * (beyond.y - near.y)
+    along = np.zeros(len(guess))
+    along[-1] = 1.0
+    found = corrected(follower.equations(beyond), guess, along)
+    return None if found is None else oriented(found, beyond.tangent)
+
+
+def _why_not(follower: Follower, place: Place) -> str:
+    """Why no step leads on."""
+    machine = follower.machine
+    harmonics, tail = (len(place.y) - 2) // machine.size // 2, left_out(machine, follower.as_cycle(place.y))
+    speed, eccentricity = place.y[-1] * machine.pace / (2.0 * math.pi), largest(machine, place.y)
+    told = f"It could not be followed beyond {speed:.4g} Hz, an eccentricity of {eccentricity:.4f}"
+    if harmonics >= MOST_HARMONICS - 2:
+        return f"{told}: {harmonics} harmonics leave {tail:.1g} of the clearance."
+    return f"{told}: the steps became too short."

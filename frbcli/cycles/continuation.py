@@ -1,0 +1,147 @@
+"""Curves of solutions of n equations in n + 1 unknowns, followed by their arc length (Keller 1977).
+
+From a point y with the unit tangent t the next one is predicted at y + h t and corrected by Newton's method in the
+plane across t. The plane is met also where the curve turns back in its parameter, the last unknown: at folds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lu_factor, lu_solve
+
+Array = NDArray[np.float64]
+Equations = Callable[[Array], tuple[Array, Array]]  # residual (n,), and its derivative (n, n + 1)
+
+ITERATIONS = 10
+STEP = 1e-10  # a Newton step below this ends the iteration
+SLOW = 0.5  # a Newton step that is not shorter than this share of the one before ends it without success
+WANTED = 4.0  # iterations that keep the step size
+SHARPEST = 0.9  # cosine of the angle between two tangents that a step may turn by
+CLOSEST = 1e-4  # step below which a change of the side is one of the curve itself: it branches there
+TURNED_BY = 0.98  # beyond which the step size does not grow
+
+
+class Unreachable(Exception):
+    """The equations cannot be asked there."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point of a curve: the unknowns y (n + 1,) and the unit tangent (n + 1,) there; iterations: that it took; side:
+    sign of the determinant of the derivative bordered by the tangent, which does not change along a curve, 0 if it is
+    not known."""
+
+    y: Array
+    tangent: Array
+    iterations: int = 0
+    side: int = 0
+
+
+@dataclass(frozen=True)
+class Strides:
+    """Step sizes along the curve: first, shortest, longest; turns: at most so many points."""
+
+    first: float
+    shortest: float
+    longest: float
+    points: int
+
+
+def corrected(equations: Equations, guess: Array, tangent: Array) -> Place | None:
+    """The point of the curve in the plane through a guess across a tangent; None if it is not found."""
+    y, before = guess, np.inf
+    for iteration in range(1, ITERATIONS + 1):
+        try:
+            residual, slope = equations(y)
+        except Unreachable:
+            return None
+        matrix = np.vstack([slope, tangent])
+        if not np.isfinite(matrix).all():
+            return None
+        right = np.zeros((len(y), 2))
+        right[:-1, 0], right[-1, 0] = -residual, tangent @ (guess - y)
+        right[-1, 1] = 1.0
+        factors, swaps = lu_factor(matrix, overwrite_a=True, check_finite=False)
+        pivots = np.diag(factors)
+        if not np.all(pivots):
+            return None
+        step, along = lu_solve((factors, swaps), right, check_finite=False).T
+        y = y + step
+        size = float(np.linalg.norm(step))
+        if size < STEP:
+            swapped = np.count_nonzero(swaps != np.arange(len(swaps)))
+            side = (-1) ** int(np.count_nonzero(pivots < 0.0) + swapped)
+            return Place(y, along / np.linalg.norm(along), iteration, side)
+        if iteration > 2 and size > SLOW * before:
+            return None
+        before = size
+    return None
+
+
+def oriented(place: Place, direction: Array) -> Place:
+    """The point with its tangent turned so that it goes along a direction."""
+    if place.tangent @ direction >= 0.0:
+        return place
+    return replace(place, tangent=-place.tangent, side=-place.side)
+
+
+def step_from(equations: Equations, place: Place, length: float) -> Place | None:
+    """The point at a length along the tangent; None if it is not found, if the curve turns too much on the way, or if
+    the step has come to another part of the curve that passes close by."""
+    found = corrected(equations, place.y + length * place.tangent, place.tangent)
+    if found is None or (found.side * place.side < 0 and length > CLOSEST):
+        return None
+    return found if abs(found.tangent @ place.tangent) >= SHARPEST else None
+
+
+def next_length(length: float, strides: Strides, before: Place, after: Place) -> float:
+    """The length of the following step: longer where few iterations were needed and the curve is nearly straight."""
+    factor = 2.0 ** ((WANTED - after.iterations) / 2.0)
+    if abs(before.tangent @ after.tangent) < TURNED_BY:
+        factor = min(factor, 1.0 if after.iterations > 2 else 1.2)
+    return float(np.clip(length * np.clip(factor, 0.5, 2.0), strides.shortest, strides.longest))
+
+
+def follow(equations: Equations, start: Place, strides: Strides) -> Iterator[tuple[Place, float]]:
+    """The points of a curve behind `start` with the lengths of their steps, until a step of the shortest length fails
+    or there are enough of them."""
+    place, length = start, strides.first
+    for _ in range(strides.points):
+        found = step_from(equations, place, length)
+        while found is None:
+            length *= 0.5
+            if length < strides.shortest:
+                return
+            found = step_from(equations, place, length)
+        yield found, length
+        length = next_length(length, strides, place, found)
+        place = found
+
+
+def fold_between(equations: Equations, place: Place, length: float, tolerance: float = 1e-9) -> Place | None:
+    """Where the parameter turns back within a step of `length` from `place`: the tangent has no part along it there."""
+    from scipy.optimize import brentq
+
+    found: dict[float, Place | None] = {0.0: place}
+
+    def turning(at: float) -> float:
+        if at not in found:
+            other = step_from(equations, place, at)
+            found[at] = None if other is None else oriented(other, place.tangent)
+        there = found[at]
+        if there is None:
+            raise Unreachable
+        return float(there.tangent[-1])
+
+    try:
+        if turning(0.0) * turning(length) > 0.0:
+            return None
+        root = float(brentq(turning, 0.0, length, xtol=tolerance * max(length, 1.0), rtol=1e-12))
+        turning(root)
+    except Unreachable:
+        return None
+    return found[root]

@@ -1,0 +1,54 @@
+"""What limit cycles cannot be computed of, told before anything is."""
+
+from __future__ import annotations
+
+import math
+
+from frbcli.case.bearing import Bores
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.film.cavitation.table import law_named
+from frbcli.linear.stability import default_speeds
+from frbcli.scene.channels import coupled
+from frbcli.scene.film_choice import all_clipped, needs_cells
+from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings
+from frbcli.scene.keys import cavitation_keys
+
+
+def check(case: Case) -> tuple[float, float]:
+    """The range of speeds of a case in rad/s, the slowest above zero. Raises InputError."""
+    faults = list(_films(case))
+    speeds = default_speeds(case)
+    if not speeds or not speeds[-1] > speeds[0]:
+        problem, remedy = "leaves no range of speeds above zero.", 'Write e.g. speed.to = "300 Hz".'
+        faults.append(Fault("speed.to", f"{case.speed.end:g} Hz", None, problem, remedy))
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))
+    return 2.0 * math.pi * speeds[0], 2.0 * math.pi * speeds[-1]
+
+
+def turning_openings(case: Case) -> bool:
+    """Whether all films on cells solve a linear equation and have no openings but those that turn."""
+    if not all_clipped(case) or any(coupled(bearing) for bearing in rings(case)):
+        return False
+    return all(is_plain(place.geometry) or _turn(place) for place in film_places(case))
+
+
+def _turn(place: FilmPlace) -> bool:
+    geometry = place.geometry
+    return isinstance(geometry.supply, Bores) and geometry.lobes is None and place.grid_body != HOUSING
+
+
+def _films(case: Case) -> tuple[Fault, ...]:
+    """Films whose force does not follow smoothly from the motion alone."""
+    named = {} if case.film.bearing_model else dict(cavitation_keys(case))
+    keeping = {key: name for key, name in named.items() if law_named(name).keeps_oil}
+    if keeping:
+        problem = "is mass-conserving: the force depends on the oil that the film keeps, not on the motion alone."
+        remedy = "Take half-sommerfeld or penalty here, and a run-up for this model."
+        return tuple(Fault(key, name, None, problem, remedy) for key, name in keeping.items())
+    if not needs_cells(case) or turning_openings(case):
+        return ()
+    problem = "is solved on cells, where the force has no continuous derivative."
+    remedy = "Take half-sommerfeld, and no openings but grooves around the film and bores that turn."
+    return tuple(Fault(key, name, None, problem, remedy) for key, name in named.items())

@@ -1,0 +1,120 @@
+"""Stability of a cycle: the multipliers by which disturbances grow over its period (Floquet).
+
+The equations linearised about the cycle are integrated over a period by Radau's collocation with three nodes (order 5,
+L-stable), with all states of the rotor and the rings. Between the films the rotor is linear and the same in every
+interval: what its states and the loads at the nodes do is computed once. Of the films, c loads at each node are left.
+One multiplier is 1, of a shift in time; how far it is off tells the error of the integration and of the harmonics.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.balance import unpacked
+from frbcli.cycles.linearised import StateSpace
+from frbcli.cycles.machine import Machine, film_loads
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
+FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, MOST_INTERVALS = 48, 4, 768
+TRIVIAL = 1e-6  # error of the trivial multiplier from which on intervals are halved
+NEUTRAL = 1e-7  # beyond 1: a multiplier that grows
+
+
+@dataclass(frozen=True)
+class Multipliers:
+    """values: (N,) by falling size, the trivial one first; defect: how far that is from 1."""
+
+    values: Complex
+    defect: float
+
+    @property
+    def others(self) -> Complex:
+        """All but the trivial one."""
+        return self.values[1:]
+
+    @property
+    def unstable(self) -> int:
+        """How many disturbances grow."""
+        return int(np.count_nonzero(np.abs(self.others) > 1.0 + max(NEUTRAL, self.defect)))
+
+    @property
+    def stable(self) -> bool:
+        """Whether all decay."""
+        return self.unstable == 0
+
+
+def multipliers(machine: Machine, space: StateSpace, y: Array) -> Multipliers:
+    """Those of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right."""
+    harmonics = (len(y) - 2) // machine.size // 2
+    count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
+    found = _sorted(monodromy(machine, space, y, count))
+    while found.defect > TRIVIAL and 2 * count <= MOST_INTERVALS:
+        count *= 2
+        finer = _sorted(monodromy(machine, space, y, count))
+        if finer.defect > 0.5 * found.defect:  # not of the integration, but of the harmonics
+            return finer
+        found = finer
+    return found
+
+
+def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Array:
+    """(N, N): what one period makes of a disturbance, with `count` equal intervals."""
+    c, nu, omega = machine.size, float(y[-2] * machine.pace), float(y[-1] * machine.pace)
+    h, size, s = 2.0 * np.pi / (nu * count), len(space.still), len(NODES)
+    tau = 2.0 * np.pi * (np.arange(count)[:, None] + NODES) / count
+    u, rate = _at(unpacked(y[:-2], c), tau.ravel())
+    loads = film_loads(machine, u, nu * rate, omega)
+    weights = _weights()
+    linear = space.still + omega * space.by_speed
+    # x_j = x_0 + h sum of a_jl (A_0 x_l + B g_l)
+    inverse = np.linalg.inv(np.eye(s * size) - h * np.kron(weights, linear))
+    by_start = inverse @ np.tile(np.eye(size), (s, 1))
+    by_loads = inverse @ (h * np.kron(weights, space.given))
+    reads, rates = np.kron(np.eye(s), space.read), np.kron(np.eye(s), space.read_rate)
+    by_u, by_v = _diagonal(loads.by_u, count, s), _diagonal(loads.by_v, count, s)
+    matrix = np.eye(s * c) - by_u @ (reads @ by_loads) - by_v @ (rates @ by_loads)
+    answer = np.linalg.solve(matrix, by_u @ (reads @ by_start) + by_v @ (rates @ by_start))
+    steps = by_start[-size:] + by_loads[-size:] @ answer
+    while len(steps) > 1:
+        if len(steps) % 2:
+            steps = np.concatenate([steps[:-2], (steps[-1] @ steps[-2])[None]])
+        else:
+            steps = steps[1::2] @ steps[::2]
+    return np.asarray(steps[0])
+
+
+def _sorted(matrix: Array) -> Multipliers:
+    values = np.linalg.eigvals(matrix).astype(complex)
+    trivial = int(np.argmin(np.abs(values - 1.0)))
+    others = np.delete(values, trivial)
+    others = others[np.argsort(-np.abs(others), kind="stable")]
+    return Multipliers(np.concatenate([values[trivial : trivial + 1], others]), float(abs(values[trivial] - 1.0)))
+
+
+def _at(motion: Complex, tau: Array) -> tuple[Array, Array]:
+    """(n, c) the motion and its derivative by tau at given moments."""
+    k = np.arange(len(motion))
+    turn = np.exp(1j * np.outer(tau, k))
+    turn[:, 1:] *= 2.0
+    return (turn @ motion).real, (turn @ (1j * k[:, None] * motion)).real
+
+
+def _weights() -> Array:
+    """(3, 3): a_jl, exact for parabolas between the nodes."""
+    powers = np.arange(1, len(NODES) + 1)
+    return np.asarray((NODES[:, None] ** powers / powers) @ np.linalg.inv(NODES[:, None] ** (powers - 1)))
+
+
+def _diagonal(slopes: Array, count: int, s: int) -> Array:
+    """(count, s c, s c) with the slopes (count s, c, c) of each interval's nodes on the diagonal."""
+    c = slopes.shape[1]
+    found = np.zeros((count, s, c, s, c))
+    for node in range(s):
+        found[:, node, :, node, :] = slopes.reshape(count, s, c, c)[:, node]
+    return found.reshape(count, s * c, s * c)

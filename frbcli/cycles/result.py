@@ -1,0 +1,138 @@
+"""What `limit_cycles` returns: resting positions, branches of cycles, special points; frozen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.schema import Case
+from frbcli.cycles.balance import motion_along
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SUBCRITICAL, SUPERCRITICAL = "subcritical", "supercritical"
+
+
+@dataclass(frozen=True)
+class RestingPoint:
+    """A resting position. displacement: (F, 2) of the journals over the clearance; ring_speeds_Hz: (R,); eigenvalues:
+    (N,) 1/s; stable: whether all of them decay."""
+
+    speed_Hz: float
+    displacement: Array
+    ring_speeds_Hz: Array
+    eigenvalues: Complex
+    stable: bool
+
+    @property
+    def eccentricity(self) -> Array:
+        """(F,)."""
+        return np.asarray(np.hypot(self.displacement[:, 0], self.displacement[:, 1]))
+
+
+@dataclass(frozen=True)
+class CyclePoint:
+    """A limit cycle. speed_Hz: of the rotor; frequency_Hz: of the cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,)
+    mean; torque_N_m: mean, that turns the rotor against its films; stable: whether all disturbances decay; multipliers:
+    (N,) the trivial one first, then by falling size; harmonics: (H + 1, F, 2) complex, of the displacements over the
+    clearance; kind: "", that of a special point,
+    or "asked" at a speed that was asked for."""
+
+    speed_Hz: float
+    frequency_Hz: float
+    eccentricity_max: Array
+    ring_speeds_Hz: Array
+    torque_N_m: float
+    stable: bool
+    multipliers: Complex
+    harmonics: Complex
+    kind: str = ""
+
+    def orbit(self, film: int = 0, count: int = 360) -> Array:
+        """(count, 2) displacements of a journal over the clearance, at equal moments of a period."""
+        count = max(count, 2 * len(self.harmonics))
+        return motion_along(self.harmonics[:, film], count)[0]
+
+
+@dataclass(frozen=True)
+class CycleBranch:
+    """Cycles in their order from a Hopf point on. start: its number among the special points,
+    None where the Hopf point lies outside of the range; note: why it ends."""
+
+    start: int | None
+    points: tuple[CyclePoint, ...]
+    note: str
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
+    point; criticality: of a Hopf point, else None, with lyapunov (1/s, for an amplitude over the clearance): Re c_1 of
+    criticality.py; eccentricity_max: (F,)."""
+
+    kind: str
+    branch: int | None
+    speed_Hz: float
+    frequency_Hz: float
+    eccentricity_max: Array
+    criticality: str | None = None
+    lyapunov: float = math.nan
+
+
+@dataclass(frozen=True)
+class Cost:
+    """cpu_s: of all; cycles: how many were computed."""
+
+    cpu_s: float
+    cycles: int
+
+
+@dataclass(frozen=True)
+class LimitCycles:
+    """The diagram of a case over its speed. films: their names; notes: what is to be said of it."""
+
+    case: Case
+    films: tuple[str, ...]
+    equilibria: tuple[RestingPoint, ...]
+    branches: tuple[CycleBranch, ...]
+    special: tuple[SpecialPoint, ...]
+    notes: tuple[str, ...]
+    cost: Cost
+
+    def of(self, kind: str) -> tuple[SpecialPoint, ...]:
+        """The special points of a kind."""
+        return tuple(point for point in self.special if point.kind == kind)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per resting position (branch -1) and cycle."""
+        import pandas as pd
+
+        rows = [
+            {"branch": -1, "speed_Hz": point.speed_Hz, "frequency_Hz": math.nan, "stable": point.stable, "kind": ""}
+            | self._columns(point.eccentricity, point.ring_speeds_Hz)
+            for point in self.equilibria
+        ]
+        rows += [
+            {"branch": number, "speed_Hz": point.speed_Hz, "frequency_Hz": point.frequency_Hz, "stable": point.stable}
+            | {"kind": point.kind, "torque_N_m": point.torque_N_m}
+            | self._columns(point.eccentricity_max, point.ring_speeds_Hz)
+            for number, branch in enumerate(self.branches)
+            for point in branch.points
+        ]
+        return pd.DataFrame(rows)
+
+    def _columns(self, eccentricities: Array, ring_speeds_Hz: Array) -> dict[str, float]:
+        several = len(self.films) > 1
+        named = {
+            f"eccentricity_max_{name}" if several else "eccentricity_max": float(value)
+            for name, value in zip(self.films, eccentricities, strict=True)
+        }
+        return named | {f"ring_speed_{ring}_Hz": float(speed) for ring, speed in enumerate(ring_speeds_Hz)}

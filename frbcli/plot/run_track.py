@@ -1,0 +1,51 @@
+"""What a diagram over the speed shows of a run: the largest eccentricity of each film in each short span of time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.results.signals import pieces
+from frbcli.results.store import Run
+
+Array = NDArray[np.float64]
+
+SPANS = 200  # of a run: longer than the periods of its whirl
+ECCENTRICITY, SPEED = "eccentricity", "speed_Hz"
+
+
+@dataclass(frozen=True)
+class RunTrack:
+    """label: of the run and its direction; rising: whether the speed rises; speed_Hz: (n,); largest: (n,) eccentricity
+    of each film by its name."""
+
+    label: str
+    rising: bool
+    speed_Hz: Array
+    largest: Mapping[str, Array]
+
+
+def run_tracks(run: Run, name: str) -> tuple[RunTrack, ...]:
+    """The way up of a run, and the way down if the speed falls after its largest."""
+    signals = [signal for signal in run.signals if signal == ECCENTRICITY or signal.startswith(f"{ECCENTRICITY}_")]
+    span = max(1, len(run) // SPANS)
+    speeds: list[float] = []
+    largest: dict[str, list[float]] = {signal: [] for signal in signals}
+    for start, stop in pieces(0, len(run)):
+        speed = run.read(SPEED, start, stop)
+        firsts = np.arange(0, stop - start, span)
+        speeds += speed[firsts].tolist()
+        for signal in signals:
+            largest[signal] += np.maximum.reduceat(run.read(signal, start, stop), firsts).tolist()
+    over = np.array(speeds)
+    top = int(np.argmax(over))
+    tracks = []
+    for rising, part in ((True, slice(0, top + 1)), (False, slice(top, None))):
+        if len(over[part]) > 2 and np.ptp(over[part]) > 0.0:
+            label = f"{name}, {'up' if rising else 'down'}"
+            films = {signal[len(ECCENTRICITY) + 1 :]: np.array(values)[part] for signal, values in largest.items()}
+            tracks.append(RunTrack(label, rising, over[part], films))
+    return tuple(tracks)

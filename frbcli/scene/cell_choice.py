@@ -1,0 +1,103 @@
+"""Cells of finite-volume films: what their number makes of the error of a run, and the fewest that hold a target.
+
+The error of the eccentricities before a whirl grows is that of the cells around plus that of the cells along, measured
+on the shipped cases and some changes of them against 144 x 10 or 192 x 6 cells (docs/accuracy.md).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.films import FilmPlace, film_places, is_plain
+
+USUAL = (48, 6)  # cells around and along that the errors are told for
+FEWEST = (12, 3)
+AROUND = (32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 144, 160, 192)
+# Lengths of columns that have a fast elimination (film/cells/ring_solver.py), but that of too few cells.
+ALONG = (4, 5, 6, 8, 10)
+FEWER_AROUND = (12, 16, 20, 24, 28)  # to compare with
+COARSER, FEWER = 1.5, (0.5, 0.85)  # by how much at least; share of the cells in each direction
+FAST, SLOW = (3, *ALONG), 3.0  # what others cost more
+CELLS_DOUBLE = 16.0  # cells along that double the time of a cell
+MOST_STATES, FEWEST_STATES = 8, 2
+BEYOND = 2.0  # order of the cells along outside of what was measured
+
+
+@dataclass(frozen=True)
+class CellError:
+    """Of films of one kind. around: error of USUAL cells around, of an order; along: error by the cells along; least:
+    cells around, below which the error is a matter of chance."""
+
+    around: float
+    order: float
+    along: Mapping[int, float]
+    least: int = AROUND[0]
+
+    def of(self, cells: tuple[int, int]) -> float:
+        """Error of the eccentricities with cells (around, along)."""
+        return float(self.around * (USUAL[0] / cells[0]) ** self.order) + self._along(cells[1])
+
+    def _along(self, k: int) -> float:
+        known = sorted(self.along)
+        if not known[0] <= k <= known[-1]:
+            end = known[0] if k < known[0] else known[-1]
+            return float(self.along[end] * (end / k) ** BEYOND)
+        below, above = max(n for n in known if n <= k), min(n for n in known if n >= k)
+        share = 0.0 if below == above else math.log(k / below) / math.log(above / below)
+        return float(self.along[below] ** (1.0 - share) * self.along[above] ** share)
+
+
+# Without openings, with grooves across or lobes, with bores or pockets; films that keep their oil are carried on by
+# cells that turn with it where there are no openings, by cells at rest else.
+PLAIN = CellError(3.5e-4, 2.0, {4: 4.8e-3, 5: 2.2e-3, 6: 1.1e-3, 8: 5e-4, 10: 3e-4})
+GROOVES = CellError(4e-4, 2.0, {4: 3e-4, 6: 1e-4, 8: 5e-5})
+GROOVES_OIL = CellError(1.2e-3, 1.5, {4: 1.5e-4, 6: 1e-4, 8: 5e-5})
+BORES = CellError(2e-3, 3.0, {4: 1.2e-2, 5: 3.3e-3, 6: 1.8e-3, 8: 9e-4, 10: 4e-4}, least=40)
+BORES_OIL = CellError(3.5e-3, 2.0, {4: 1.4e-2, 5: 6e-3, 6: 3e-3, 8: 1.4e-3, 10: 9e-4}, least=40)
+
+
+def cell_error(case: Case, cells: tuple[int, int]) -> float:
+    """Expected error of the eccentricities by cells (around, along): that of the worst film."""
+    return max(_kind(case, place).of(cells) for place in film_places(case))
+
+
+def fewest_cells(case: Case, allowed: float) -> tuple[int, int]:
+    """The cheapest cells (around, along) with no more than the allowed error, or if there are none the most exact."""
+    least = max(_kind(case, place).least for place in film_places(case))
+    choices = sorted(((m, k) for m in AROUND if m >= least for k in ALONG), key=lambda cells: cells_time(*cells))
+    errors = {cells: cell_error(case, cells) for cells in choices}
+    return next((cells for cells in choices if errors[cells] <= allowed), min(choices, key=lambda cells: errors[cells]))
+
+
+def cells_time(around: int, along: int) -> float:
+    """Time of a film solve by its cells, in any unit."""
+    return around * along * (1.0 + (along / CELLS_DOUBLE) ** 2) * (1.0 if along in FAST else SLOW)
+
+
+def coarser_cells(case: Case, cells: tuple[int, int]) -> tuple[int, int] | None:
+    """The most exact cells that are FEWER in both directions, with at least COARSER times the error; None if there are
+    none."""
+    least, (low, high) = COARSER * cell_error(case, cells), FEWER
+    around = [m for m in (*FEWER_AROUND, *AROUND) if low * cells[0] <= m <= high * cells[0]]
+    choices = [(m, k) for m in around for k in FAST if low * cells[1] <= k <= high * cells[1]]
+    errors = {choice: cell_error(case, choice) for choice in choices}
+    coarser = (choice for choice in choices if errors[choice] >= least)
+    return min(coarser, key=lambda choice: errors[choice], default=None)
+
+
+def compared_states(cells: tuple[int, int]) -> int:
+    """At how many states of a run the forces are solved again on finer cells: fewer where that takes long."""
+    return max(FEWEST_STATES, round(MOST_STATES * cells_time(*USUAL) / max(cells_time(*cells), cells_time(*USUAL))))
+
+
+def _kind(case: Case, place: FilmPlace) -> CellError:
+    keeps = law_named(case.cavitation(place.geometry)).keeps_oil
+    if place.feed_holes is not None or place.geometry.supply.kind in ("bores", "pocket"):
+        return BORES_OIL if keeps else BORES
+    if is_plain(place.geometry):
+        return PLAIN
+    return GROOVES_OIL if keeps else GROOVES

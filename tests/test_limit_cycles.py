@@ -1,0 +1,415 @@
+"""Limit cycles: continuation, Hopf points with their criticality, harmonic balance, multipliers, the command.
+
+The rigid rotor in short bearings without supply has two numbers, the speed w = omega sqrt(C/g) and
+Gamma = mu R L^3 omega / (W C^2) / w with the load W of a bearing.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+from scipy.optimize import fsolve
+
+import frbcli
+from frbcli.case.shipped import find_shipped
+from frbcli.cli.main import run
+from frbcli.cycles.balance import Balance, packed
+from frbcli.cycles.continuation import Place, Strides, corrected, fold_between, follow, step_from
+from frbcli.cycles.equilibria import resting_curve
+from frbcli.cycles.explain import explanations
+from frbcli.cycles.films import smooth_films
+from frbcli.cycles.floquet import multipliers
+from frbcli.cycles.linearised import state_space
+from frbcli.cycles.machine import Machine, film_loads, make_machine, transfer
+from frbcli.cycles.result import LimitCycles
+from frbcli.cycles.threshold import threshold_kind
+from frbcli.film.cells.frame import turned
+from frbcli.film.cells.steady_force import steady_force
+from frbcli.film.rectangles.film import evaluate
+from frbcli.film.rectangles.film_force import film_force
+from frbcli.linear.stability import stability
+from frbcli.plot.run_track import run_tracks
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_system
+
+GRAVITY, CLEARANCE, MASS, WIDTH, RADIUS = 9.81, 50e-6, 6.0, 10e-3, 25e-3
+UNIT_Hz = math.sqrt(GRAVITY / CLEARANCE) / (2.0 * math.pi)  # w = 1
+
+
+def rigid(gamma: float, low: float, high: float, **more: float) -> frbcli.Case:
+    """The rigid rotor from w = low to high."""
+    viscosity = gamma * 0.5 * MASS * GRAVITY * CLEARANCE**2 / (RADIUS * WIDTH**3) / math.sqrt(GRAVITY / CLEARANCE)
+    rotor = {"kind": "rigid", "mass": MASS, "gravity": GRAVITY, **more}
+    bearing = {"kind": "single-film", "width": WIDTH, "diameter": 2.0 * RADIUS, "clearance": CLEARANCE}
+    return frbcli.case_from_dict(
+        {
+            "rotor": rotor,
+            "bearing": {**bearing, "supply": {"kind": "none"}},
+            "oil": {"viscosity": viscosity},
+            "film": {"theory": "short", "cavitation": "half-sommerfeld"},
+            "speed": {"from": low * UNIT_Hz, "to": high * UNIT_Hz, "duration": 1.0},
+        }
+    )
+
+
+@cache
+def diagram(gamma: float, low: float, high: float) -> LimitCycles:
+    return frbcli.limit_cycles(rigid(gamma, low, high))
+
+
+def machine_of(case: frbcli.Case) -> Machine:
+    return make_machine(make_system(case, make_plan(case)), 2.0 * math.pi * case.speed.end)
+
+
+def ring_case() -> frbcli.Case:
+    """A floating ring without openings."""
+    case = tomllib.loads(find_shipped("floating-ring"))
+    case["bearing"]["inner"]["supply"] = {"kind": "none"}
+    case["film"] = {"theory": "short", "cavitation": "half-sommerfeld"}
+    case["bearing"]["outer"]["supply"] = {"kind": "none"}
+    return frbcli.case_from_dict(case)
+
+
+def test_a_curve_is_followed_through_its_fold() -> None:
+    """x^2 + p^2 = 1 from (1, 0): p has its largest value 1 at x = 0, and the curve comes back."""
+
+    def circle(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return np.array([y @ y - 1.0]), 2.0 * y[None]
+
+    start = Place(np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+    steps = list(follow(circle, start, Strides(0.05, 1e-6, 0.2, 60)))
+    assert max(abs(place.y @ place.y - 1.0) for place, _ in steps) < 1e-12
+    assert min(place.y[0] for place, _ in steps) < -0.9
+    before = start
+    for place, length in steps:
+        if before.tangent[-1] * place.tangent[-1] < 0.0:
+            fold = fold_between(circle, before, length)
+            assert fold is not None
+            np.testing.assert_allclose(fold.y, [0.0, 1.0], atol=1e-8)
+            break
+        before = place
+    else:
+        pytest.fail("no fold on the way")
+
+
+@pytest.mark.parametrize("name", ["rigid", "ring", "turbocharger"])
+def test_the_rotor_behind_its_films_is_the_whole_rotor(name: str) -> None:
+    """T_k and the springs beside the films give what (Z - P^T m dF) q = P^T m f gives with all degrees of freedom."""
+    case = {"rigid": lambda: rigid(2.0, 1.0, 3.0), "ring": ring_case, "turbocharger": turbocharger}[name]()
+    machine = machine_of(case)
+    nu, omega, c = 0.45 * machine.pace, 0.9 * machine.pace, machine.size
+    loads = np.random.default_rng(1).standard_normal(c)
+    passing, space = transfer(machine, 3, nu, omega), state_space(machine)
+    for k in (1, 2, 3):
+        kept = np.linalg.solve(np.eye(c) - passing.values[k] * passing.kappa[k], passing.values[k] @ loads)
+        whole = 1j * k * nu * np.eye(len(space.still)) - space.still - omega * space.by_speed
+        np.testing.assert_allclose(kept, space.read @ np.linalg.solve(whole, space.given @ loads), rtol=1e-8)
+
+
+def turbocharger() -> frbcli.Case:
+    case = tomllib.loads(find_shipped("turbocharger-heavy"))
+    for bearing in case["bearing"]:
+        bearing["inner"]["supply"] = {"kind": "none"}
+    case["film"] = {"theory": "short", "cavitation": "half-sommerfeld"}
+    return frbcli.case_from_dict(case)
+
+
+@pytest.mark.parametrize("make", [lambda: rigid(2.0, 1.0, 3.0), ring_case], ids=["rigid", "ring"])
+def test_derivatives_are_those_of_the_residual(make) -> None:  # type: ignore[no-untyped-def]
+    machine = machine_of(make())
+    random = np.random.default_rng(0)
+    motion = 0.02 * (random.standard_normal((4, machine.size)) + 1j * random.standard_normal((4, machine.size)))
+    motion[0] = motion[0].real + 0.1
+    motion[1, :2] += 0.2 * np.array([1.0, -1.0j])
+    y = np.concatenate([packed(motion), [0.4, 0.8]])
+    balance = Balance(machine, motion + 0.1)
+    _, slope = balance(y)
+    step = 1e-6
+    columns = [(balance(y + step * unit)[0] - balance(y - step * unit)[0]) / (2.0 * step) for unit in np.eye(len(y))]
+    np.testing.assert_allclose(slope, np.transpose(columns), atol=1e-7 * np.abs(slope).max())
+
+
+@pytest.mark.parametrize(
+    ("gamma", "speed", "eccentricity", "ratio", "criticality"),
+    [(4.538, 2.7413, 0.1, 0.5029, "subcritical"), (1.313, 2.6058, 0.3, 0.5194, "supercritical")],
+)
+def test_hopf_points_of_the_rigid_rotor(
+    gamma: float, speed: float, eccentricity: float, ratio: float, criticality: str
+) -> None:
+    """Known values, to the digits given."""
+    (hopf,) = diagram(gamma, 2.4, 2.9).of("hopf")
+    assert hopf.speed_Hz / UNIT_Hz == pytest.approx(speed, abs=1e-4)
+    assert hopf.eccentricity_max[0] == pytest.approx(eccentricity, abs=1e-4)
+    assert hopf.frequency_Hz / hopf.speed_Hz == pytest.approx(ratio, abs=1e-4)
+    assert hopf.criticality == criticality
+
+
+def test_the_threshold_is_that_of_stability() -> None:
+    threshold = stability(rigid(1.313, 2.4, 2.9)).threshold
+    (hopf,) = diagram(1.313, 2.4, 2.9).of("hopf")
+    assert threshold is not None
+    assert hopf.speed_Hz == pytest.approx(threshold.speed_Hz, rel=1e-8)
+    assert hopf.frequency_Hz == pytest.approx(threshold.frequency_Hz, rel=1e-8)
+
+
+@pytest.mark.parametrize("gamma", [4.538, 1.313])
+def test_small_cycles_have_the_amplitude_of_the_normal_form(gamma: float) -> None:
+    """sigma'(omega) d_omega + Re c_1 r^2 = 0: the coefficient against cycles that harmonic balance has found."""
+    case, found = rigid(gamma, 2.4, 2.9), diagram(gamma, 2.4, 2.9)
+    (hopf,) = found.of("hopf")
+    machine, step = machine_of(case), 1e-4 * hopf.speed_Hz
+    system = make_system(case, make_plan(case))
+    near = resting_curve(system, machine, *(2.0 * math.pi * (hopf.speed_Hz + side * step) for side in (-1.0, 1.0)))
+    slope = (near.points[-1].growth(0) - near.points[0].growth(0)) / (2.0 * step)
+    ratios = []
+    for cycle in found.branches[0].points[:2]:
+        size = 2.0 * np.abs(cycle.harmonics[1]).max()  # the mode's largest displacement is 1
+        ratios.append((size**2 / 4.0, -slope * (cycle.speed_Hz - hopf.speed_Hz) / (size**2 / 4.0)))
+    (a, first), (b, second) = ratios
+    assert first - (second - first) * a / (b - a) == pytest.approx(hopf.lyapunov, rel=0.02)
+
+
+def test_the_fold_is_where_cycles_end_in_the_time_domain() -> None:
+    """Gamma = 4.538: the stable cycle integrated over 100 periods stays just above the fold and is lost below it."""
+    found = diagram(4.538, 2.4, 2.9)
+    (fold,) = found.of("fold")
+    assert 2.60545 < fold.speed_Hz / UNIT_Hz < 2.6056
+    stable = [point for point in found.branches[0].points if point.stable and not point.kind]
+    lowest = min(stable, key=lambda point: point.speed_Hz)
+    reached = integrated(4.538, lowest.speed_Hz, lowest, 10)
+    assert reached == pytest.approx(lowest.eccentricity_max[0], abs=1e-5)
+    assert integrated(4.538, fold.speed_Hz + 0.005 * UNIT_Hz, lowest, 100) > fold.eccentricity_max[0]
+    assert integrated(4.538, fold.speed_Hz - 0.005 * UNIT_Hz, lowest, 200) < 0.2
+
+
+def integrated(gamma: float, speed_Hz: float, start, periods: int) -> float:  # type: ignore[no-untyped-def]
+    """Largest eccentricity of the last period when the motion begins on a cycle."""
+    case = rigid(gamma, 2.4, 2.9)
+    machine = machine_of(case)
+    (film,), omega, nu = machine.films, 2.0 * math.pi * speed_Hz, 2.0 * math.pi * start.frequency_Hz
+    k = np.arange(len(start.harmonics))[:, None]
+    doubled = np.where(k > 0, 2.0, 1.0) * start.harmonics[:, 0]
+    d, v = doubled.sum(axis=0).real, (1j * k * nu * doubled).sum(axis=0).real
+
+    def rates(_: float, x: np.ndarray) -> list[float]:
+        force = film_force(film, x[0], x[1], x[2], x[3], omega)
+        scale = 2.0 / (MASS * CLEARANCE)
+        return [x[2], x[3], scale * force[0], scale * force[1] - GRAVITY / CLEARANCE]
+
+    period = 1.0 / start.frequency_Hz
+    times = np.linspace((periods - 1.05) * period, periods * period, 400)
+    done = solve_ivp(rates, (0.0, times[-1]), [*d, *v], rtol=1e-8, atol=1e-9, t_eval=times)
+    return float(np.hypot(done.y[0], done.y[1]).max())
+
+
+def test_multipliers_next_to_rest_are_those_of_the_eigenvalues() -> None:
+    """A cycle of almost no size: exp(lambda T) of the eigenvalues at the Hopf point, 1 for the critical pair."""
+    case = rigid(1.313, 2.4, 2.9)
+    machine = machine_of(case)
+    system = make_system(case, make_plan(case))
+    (hopf,) = resting_curve(system, machine, 2.0 * math.pi * case.speed.start, 2.0 * math.pi * case.speed.end).hopf
+    motion = np.zeros((3, 2), dtype=complex)
+    motion[0], motion[1] = hopf.equilibrium.u, 1e-7 * hopf.mode
+    y = np.concatenate([packed(motion), [hopf.nu / machine.pace, hopf.equilibrium.omega / machine.pace]])
+    found = np.sort(np.abs(multipliers(machine, state_space(machine), y).values))
+    expected = np.sort(np.abs(np.exp(2.0 * math.pi / hopf.nu * hopf.equilibrium.eigenvalues)))
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("gamma", [4.538, 1.313])
+def test_the_trivial_multiplier_is_one(gamma: float) -> None:
+    """To 1e-6, but for the fold of the subcritical branch, where two multipliers are 1 and the film all but stands
+    still at one moment; and the number of growing disturbances changes at folds alone."""
+    for point in diagram(gamma, 2.4, 2.9).branches[0].points:
+        assert abs(point.multipliers[0] - 1.0) < (1e-6 if point.kind == "" else 1e-3)
+
+
+@pytest.mark.parametrize("damping", [100.0, 300.0])
+def test_the_circle_without_gravity_solves_its_algebraic_equation(damping: float) -> None:
+    """Of the two equal bearings along and across the line of centres: 2 F_r = -m nu^2 e, 2 F_t = d nu e."""
+    case = rigid(4.538, 2.0, 3.0, gravity=0.0, external_damping=damping)
+    machine = machine_of(case)
+    asked = 2.5 * UNIT_Hz
+    found = frbcli.limit_cycles(case, [asked])
+    assert found.of("hopf") == ()
+    (branch,) = found.branches
+    (cycle,) = [point for point in branch.points if point.kind == "asked"]
+    (film,), omega = machine.films, 2.0 * math.pi * asked
+
+    def unbalanced(unknowns: np.ndarray) -> list[float]:
+        eccentricity, nu = unknowns[0], unknowns[1] * omega
+        radial, tangential = film_force(film, eccentricity, 0.0, 0.0, eccentricity * nu, omega)[:2]
+        pull = MASS * nu**2 * eccentricity * CLEARANCE
+        return [2.0 * radial / pull + 1.0, (2.0 * tangential - damping * nu * eccentricity * CLEARANCE) / pull]
+
+    (eccentricity, ratio), _, ended, _ = fsolve(
+        unbalanced, [cycle.eccentricity_max[0], 0.499], xtol=1e-13, full_output=True
+    )
+    assert ended == 1
+    assert cycle.eccentricity_max[0] == pytest.approx(eccentricity, abs=1e-7)
+    assert cycle.frequency_Hz / asked == pytest.approx(ratio, abs=1e-7)
+    assert np.abs(cycle.harmonics[2:]).max() < 1e-9
+    np.testing.assert_allclose(np.hypot(*cycle.orbit().T), eccentricity, atol=1e-7)
+
+
+@pytest.mark.parametrize("speed_Hz", [190.0, 220.0])
+def test_harmonic_balance_agrees_with_the_time_loop(speed_Hz: float, tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """Jeffcott rotor, half-Sommerfeld, tabulated film: a run at constant speed after its transients."""
+    settings = [f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz", "speed.duration=2 s", "output.step=2e-5 s"]
+    settings += ["accuracy.tolerance=1e-8", "accuracy.steps_per_revolution=400", "start.displacement=[0.3, -0.3]"]
+    signals = frbcli.runup(
+        frbcli.load_case("jeffcott", ["rotor.unbalance=0 g*mm", *settings]), tmp_path / "r.h5"
+    ).signals
+    last = slice(-8000, None)
+    time, y = np.asarray(signals["time_s"])[last], np.asarray(signals["journal_y_m"])[last]
+    motion = CubicSpline(time, y - y.mean())
+    rising = [t for t in motion.roots(extrapolate=False) if motion(t, 1) > 0.0]
+    largest = CubicSpline(time, np.asarray(signals["eccentricity"])[last])
+    case = frbcli.load_case("jeffcott", ["rotor.unbalance=0 g*mm"])
+    (cycle,) = [p for p in frbcli.limit_cycles(case, [speed_Hz]).branches[0].points if p.kind == "asked"]
+    assert cycle.stable
+    assert cycle.frequency_Hz == pytest.approx((len(rising) - 1) / (rising[-1] - rising[0]), rel=1e-6)
+    top = largest(largest.derivative().roots(extrapolate=False)).max()
+    assert cycle.eccentricity_max[0] == pytest.approx(top, abs=1e-6)
+
+
+def test_half_of_the_drive_is_dissipated_at_rest() -> None:
+    """Couette's torque on a journal in the centre of a film: eta R^3 B / C times 2 pi times the slip."""
+    machine = machine_of(ring_case())
+    u = np.zeros((1, machine.size))
+    u[0, -1] = 0.25
+    loads = film_loads(machine, u, np.zeros_like(u), machine.pace)
+    expected = 2.0 * math.pi * machine.drags[0] * 0.75 * machine.pace
+    assert loads.drive[0] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("film", [0, 1], ids=["bores that turn", "groove"])
+def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
+    """Against the steady films of the same cells with their bores at six angles, forces within the error of the cells
+    up to an eccentricity of 0.6; and the derivatives are those of the force."""
+    case = frbcli.load_case("floating-ring", ["film.cavitation=half-sommerfeld"])
+    system = make_system(case, make_plan(case))
+    mean, volume = smooth_films(system)[film]._replace(drop=0.0), system.volumes[film]
+    c, omega, bores = volume.section.clearance, 2000.0, len(volume.section.holes)
+    for eccentricity, v in ((0.2, (0.0, 0.0)), (0.6, (100.0, 50.0))):
+        d = (eccentricity * math.cos(0.3), eccentricity * math.sin(0.3))
+        found = evaluate(mean, c, np.multiply(d, c), np.multiply(v, c), omega)
+        forces = []
+        for j in range(6 if bores else 1):
+            angle = 2.0 * math.pi / 6.0 * j / 6.0
+            place, rate = (np.multiply(turned(vector, -angle), c) for vector in (d, v))
+            forces.append(turned(tuple(steady_force(volume, place, rate, omega).force), angle))
+        expected = np.mean(forces, axis=0)
+        assert np.linalg.norm(found.force - expected) < 0.01 * np.linalg.norm(expected)
+        step = 1e-6 * c
+        columns = []
+        for unit in step * np.eye(2):
+            ends = [
+                evaluate(mean, c, np.multiply(d, c) + side * unit, np.multiply(v, c), omega).force for side in (1, -1)
+            ]
+            columns.append((ends[0] - ends[1]) / (2.0 * step))
+        by_d = found.by_displacement
+        np.testing.assert_allclose(by_d, np.transpose(columns), atol=1e-6 * np.abs(by_d).max())
+
+
+def test_a_step_does_not_change_to_a_part_of_the_curve_that_passes_close_by() -> None:
+    """Two straight lines p = x and p = x + 0.02: a guess that is nearer to the other one is not taken for it."""
+
+    def lines(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        a = y[1] - y[0]
+        return np.array([a * (a - 0.02)]), np.array([[-(2.0 * a - 0.02), 2.0 * a - 0.02]])
+
+    start = corrected(lines, np.array([0.0, 0.0]), np.array([0.6, 0.8]))
+    assert start is not None
+    astray = Place(start.y, np.array([0.0, 1.0]), side=start.side)
+    assert step_from(lines, astray, 0.03) is None
+    assert step_from(lines, start, 0.03) is not None
+
+
+def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[str]) -> None:
+    words = [
+        "limit-cycles",
+        "jeffcott",
+        "--set",
+        "film.theory=short",
+        "--set",
+        "speed.to=100 Hz",
+        "--no-picture",
+        "--json",
+    ]
+    assert run(words) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["branches"] == document["special"] == []
+    assert "every small motion decays" in document["notes"][0]
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        (["film.cavitation=two-phase", "oil.cavitation_pressure=0.9 bar"], "mass-conserving"),
+        (["film.cavitation=reynolds"], "no continuous derivative"),
+        (["speed.to=0 Hz"], "no range of speeds"),
+    ],
+)
+def test_what_has_no_limit_cycles_is_told(settings: list[str], told: str) -> None:
+    with pytest.raises(frbcli.InputError, match=told):
+        frbcli.limit_cycles(frbcli.load_case("jeffcott", settings))
+
+
+def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.chdir(tmp_path)
+    assert run(["limit-cycles", "jeffcott", "--set", "film.theory=short", "--json", "--csv", "table.csv"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert set(document["equilibria"][0]) >= {"speed_Hz", "displacement", "stable"}
+    (branch,) = document["branches"]
+    assert set(branch["points"][0]) >= {"speed_Hz", "frequency_Hz", "eccentricity_max", "stable", "multipliers"}
+    assert [point["kind"] for point in document["special"]] == ["hopf", "fold"]
+    assert document["special"][0]["criticality"] == "subcritical"
+    assert document["special"][1]["speed_Hz"] < document["special"][0]["speed_Hz"]
+    assert (tmp_path / "jeffcott-limit-cycles.png").exists()
+    assert (tmp_path / "table.csv").read_text().startswith("branch,speed_Hz,frequency_Hz,stable")
+
+
+@pytest.mark.parametrize(("gamma", "criticality"), [(4.538, "subcritical"), (1.313, "supercritical")])
+def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality: str) -> None:
+    case, found = rigid(gamma, 2.4, 2.9), diagram(gamma, 2.4, 2.9)
+    kind = threshold_kind(case, found.of("hopf")[0].speed_Hz)
+    assert kind is not None
+    assert kind.criticality == criticality
+    if criticality == "subcritical":
+        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=1e-6)
+    else:
+        assert kind.fold_Hz is None
+    assert threshold_kind(frbcli.load_case("jeffcott", ["film.cavitation=reynolds"]), 170.0) is None
+
+
+def test_onset_and_offset_are_explained() -> None:
+    found = diagram(4.538, 2.4, 2.9)
+    (hopf,), (fold,) = found.of("hopf"), found.of("fold")
+    seen = [("onset", hopf.speed_Hz + 20.0, hopf.frequency_Hz), ("offset", fold.speed_Hz - 3.0, fold.frequency_Hz)]
+    events = [{"kind": kind, "speed_Hz": speed, "frequency_Hz": frequency} for kind, speed, frequency in seen]
+    onset, offset = explanations(found, [*events, {"kind": "contact", "speed_Hz": 1.0, "frequency_Hz": None}])
+    assert "hard Hopf point" in onset
+    assert "20.0 Hz later" in onset
+    assert "end in the fold" in offset
+    assert "3.0 Hz away" in offset
+
+
+def test_runs_are_drawn_over_the_diagram(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.chdir(tmp_path)
+    short = ["--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
+    assert run(["rundown", "jeffcott", *short, "--no-picture", "-o", "down.h5", "--explain", "--quiet"]) == 0
+    up, down = run_tracks(frbcli.read_run("down.h5"), "down")
+    assert up.rising
+    assert not down.rising
+    whole = frbcli.read_run("down.h5").signals["eccentricity"][:].max()
+    assert max(up.largest[""].max(), down.largest[""].max()) == pytest.approx(whole)
+    assert run(["limit-cycles", "jeffcott", *short, "--runs", "down.h5", "-o", "all.svg", "--quiet"]) == 0
+    assert "down, up" in (tmp_path / "all.svg").read_text()
