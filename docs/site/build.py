@@ -42,6 +42,7 @@ SHOWN: dict[str, tuple[list[str], str]] = {
     "bearing": (["bearing", "jeffcott"], "jeffcott-bearing.png"),
     "fit": (["fit", "jeffcott", *SHORT, "--set", "bearing.clearance=37 um", *FIT], "jeffcott-fit.png"),
     "stability": (["stability", "jeffcott", *SHORT], "jeffcott-campbell.png"),
+    "limit-cycles": (["limit-cycles", "jeffcott", *SHORT], "jeffcott-limit-cycles.png"),
     "response": (["response", "jeffcott", *SHORT], "jeffcott-response.png"),
     "accuracy": (["accuracy", "jeffcott", "--theory", "short", "--until", "1 s"], "jeffcott-accuracy.png"),
     "sweep": (["sweep", "jeffcott", *SHORT, "--stability", "--jobs", "1", "--set",
@@ -212,7 +213,7 @@ def configuration(source: Path, target: Path) -> str:
     """Of MkDocs: no fonts and scripts from elsewhere."""
     commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
     guides = ("case-file", "cases", "command-line", "conventions", "measurements", "report", "bearing-sheet", "rotors",
-              "floating-rings", "couplings", "sweeps")  # fmt: skip
+              "floating-rings", "limit-cycles", "couplings", "sweeps")  # fmt: skip
     science = ("theory", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
 
     def entries(names: tuple[str, ...]) -> str:

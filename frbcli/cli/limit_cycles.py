@@ -12,6 +12,7 @@ import click
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import live_lines
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -34,6 +35,7 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
+@picture_options
 @output_options
 def command(
     case: Case,
