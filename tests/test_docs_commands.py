@@ -22,7 +22,9 @@ from frbcli.errors import InputError
 
 ROOT = Path(__file__).parent.parent
 OWN_TEST = ("command-line.md",)  # its lines are run by test_command_line.py
-PLACEHOLDERS = {"CASE": "my.toml", "RUN.h5": "run.h5", "NAME": "jeffcott", "FILE": "out.txt", "DIR": "study"}
+PLACEHOLDERS = {
+    "CASE": "my.toml", "RUN.h5": "run.h5", "NAME": "jeffcott", "FILE": "out.txt", "DIR": "study",
+}
 WRONG_ON_PURPOSE = ("bearing.clearnce",)
 NO_LINE = ("...", "KEY=")  # shows a form, not a line
 LONGEST_s = 60.0
@@ -60,9 +62,22 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     settings = ["film.theory=short", "speed.duration=50 ms"]
     case = frbcli.load_case("jeffcott", settings)
     (folder / "my.toml").write_text(case.source_text, encoding="utf-8")
+    page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    text = "\n".join(re.findall(r"```toml\n(.*?)```", page, re.DOTALL))
+    (folder / "turbo.toml").write_text(text, encoding="utf-8")
     frbcli.runup(case, folder / "run.h5")
+    run = frbcli.runup(frbcli.load_case("jeffcott", [settings[0], "speed.duration=3 s"]), folder / "jeffcott.h5")
+    table = run.to_pandas()[["time_s", "speed_Hz", "journal_x_m", "journal_y_m"]]
+    table[["journal_x_m", "journal_y_m"]] *= 1e6
+    table = table.set_axis(["t", "n", "x", "y"], axis=1)
+    turns = (table.n.cumsum() * (table.t[1] - table.t[0])) % 1.0
+    more = {"t_s": table.t, "x_um": table.x, "y_um": table.y, "key": 5.0 * (turns < 0.2)}
+    table.assign(**more).to_csv(folder / "measured.csv", index=False)
+    rings = frbcli.load_case_text(text, ["speed.duration=20 ms", "speed.to=100 Hz"], name="turbo")
+    ringed = frbcli.runup(rings, folder / "turbo.h5").path
+    shutil.copy(ringed, folder / "ring.h5")
     named = {word for line in shown() for word in words_of(line) if word.endswith(".h5")}
-    for name in named - {"run.h5"}:
+    for name in named - {"run.h5", "jeffcott.h5", "turbo.h5", "ring.h5"}:
         shutil.copy(folder / "run.h5", folder / name)
     return folder
 

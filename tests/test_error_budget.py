@@ -74,7 +74,7 @@ def test_stated_error_bounds_the_true_one(settings: tuple[str, ...], tmp_path: P
         assert run.error["displacement"] < 20.0 * apart.signals["disk_y_m"]
 
 
-STARVING = ("speed.duration=0.2 s", "speed.from=20 Hz", "speed.to=40 Hz", "output.step=1e-3 s")
+STARVING = ("accuracy.target=1e-3", "speed.duration=0.2 s", "speed.from=20 Hz", "speed.to=40 Hz", "output.step=1e-3 s")
 
 
 @pytest.mark.parametrize("settings", [(), ("accuracy.mesh=[4, 32]",), ("accuracy.mesh=[8, 64]",)])

@@ -26,7 +26,7 @@ from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run
 
 DRAWING = ("runup", "rundown", "waterfall", "plot", "compare", "bearing", "stability", "response", "accuracy", "sweep",
-           "rotation", "squeeze", "whirl")  # fmt: skip
+           "rotation", "squeeze", "whirl", "limit-cycles")  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""How commands tell how far they are, with the time left, on a terminal and without one."""
+"""How commands tell how far they are, with the time left, on a terminal and without one; tables of whole words."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import time
 import pytest
 
 import frbcli
-from frbcli.cli import live
+from frbcli.cli import common, live
 from frbcli.cli.common import Terminal
 from frbcli.cli.live import counting, of_runs
+from frbcli.cli.main import run
 from frbcli.runs.march import Progress
 
 PROGRESS = Progress(0.5, 1.0, 30.0, 0.4, 100, 40.0, 1e6, 3.0)
@@ -66,3 +67,22 @@ def test_rungs_are_counted() -> None:
     numbers = list(dict.fromkeys(number for number, _ in seen))
     assert numbers == list(range(1, len(numbers) + 1))
     assert {count for _, count in seen} == {len(numbers)}
+
+
+@pytest.mark.parametrize("words", [
+    ["check", "turbocharger-car"], ["check", "jeffcott-two-phase"], ["check", "floating-ring", "--all"],
+    ["check", "axial-groove"], ["cases"], ["cases", "--hard"], ["stability", "turbocharger-heavy", "--speed", "500 Hz"],
+])  # fmt: skip
+def test_tables_break_no_words(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """On 80 columns: every word of a cell stands in one piece, as on a very wide table."""
+    given = ["--no-picture"] if words[0] == "stability" else []
+    run([*words, *given])
+    narrow = capsys.readouterr().out
+    assert max(len(line) for line in narrow.splitlines() if line.startswith("  ")) <= 80
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(common, "PIPE_WIDTH", 400)
+        run([*words, *given])
+    wide = capsys.readouterr().out
+    told = re.compile(r"[A-Za-z][A-Za-z_.-]{3,}")  # numbers of a cost change from run to run
+    missing = set(told.findall(wide)) - set(told.findall(narrow))
+    assert missing == set()

@@ -37,6 +37,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 RUN_SUFFIX = ".h5"
 DEFAULT_LOOK = Look()
 PIPE_WIDTH = 80  # columns of a table in a pipe or a file
+BETWEEN = 3  # blanks between its columns; one more at both edges together
 
 _JSON = "frbcli.json"
 _SETTINGS = "frbcli.settings"
@@ -77,12 +78,14 @@ class Terminal:
         from rich.text import Text
 
         table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
-        for column in columns:
-            table.add_column(column, overflow="fold")
-        for row in rows:
-            table.add_row(*(Text(printable(str(cell))) for cell in row))
+        cells = [[printable(str(cell)) for cell in row] for row in rows]
+        console = _console(self._results)
+        for column, width in zip(columns, _widths(columns, cells, console.width), strict=True):
+            table.add_column(column, overflow="fold", width=width)
+        for row in cells:
+            table.add_row(*map(Text, row))
         with suppress(OutputLost):
-            _console(self._results).print(table)
+            console.print(table)
 
     def remark(self, text: str) -> None:
         """Print progress or advice."""
@@ -110,6 +113,22 @@ class Terminal:
     @property
     def _results(self) -> TextIO:
         return sys.stderr if self.json else sys.stdout
+
+
+def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[int | None]:
+    """Of the columns of a table that would be wider than `width`: at least their longest words; the rest of the room
+    goes to those first that need little more. None where all fits, or where not even the words do."""
+    cells = list(zip(columns, *rows, strict=True))
+    whole = [max(len(line) for cell in column for line in cell.split("\n")) for column in cells]
+    found = [max((len(word) for cell in column for word in cell.split()), default=1) for column in cells]
+    room = width - BETWEEN * len(columns) - 1
+    if sum(whole) <= room or sum(found) > room:
+        return [None] * len(columns)
+    room -= sum(found)
+    for number in sorted(range(len(found)), key=lambda number: whole[number] - found[number]):
+        more = min(whole[number] - found[number], room)
+        found[number], room = found[number] + more, room - more
+    return list(found)
 
 
 def _write(stream: TextIO, text: str) -> None:

@@ -12,6 +12,7 @@ import click
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.live import counting, live_lines
+from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, here
@@ -41,6 +42,7 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
+@picture_options
 @output_options
 def command(
     case: Case,
@@ -109,7 +111,7 @@ def _map(
     from frbcli.scene.films import film_places
 
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = stability_map(case, *over, counting(show))
+        found = stability_map(case, *over, counting(terminal, show))
     rows = [
         (f"{row.value:.4g} {found.unit}".strip(), point.kind, f"{point.speed_Hz:.2f}", f"{point.frequency_Hz:.2f}",
          point.criticality or "")
