@@ -437,6 +437,13 @@ def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture
     assert run(words) == 2
 
 
+def test_speeds_without_a_cycle_are_told() -> None:
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm"])
+    assert frbcli.limit_cycles(case, [100.0, 200.0]).notes == ("No limit cycle at 100 Hz.",)
+    with pytest.raises(frbcli.InputError, match="outside of the range"):
+        frbcli.limit_cycles(case, [400.0])
+
+
 def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     assert run(["limit-cycles", "jeffcott", "--set", "film.theory=short", "--json", "--csv", "table.csv"]) == 0

@@ -61,23 +61,15 @@ def command(
     _report(found, terminal)
     reference = _document(found.reference) | {"compared_with": _rung(found.coarser)}
     reference["change"] = reference.pop("error")
-    terminal.emit(
-        {
-            "command": "accuracy",
-            "case": case.name,
-            **({} if found.complete else {"status": "interrupted"}),
-            "until_s": found.until_s,
-            "reference": reference,
-            "ladder": [
-                _document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder
-            ],
-            **(
-                {"failed": [_rung(rung) | {"message": problem} for rung, problem in found.failed]}
-                if found.failed
-                else {}
-            ),
-        }
-    )
+    terminal.emit({
+        "command": "accuracy",
+        "case": case.name,
+        **({} if found.complete else {"status": "interrupted"}),
+        "until_s": found.until_s,
+        "reference": reference,
+        "ladder": [_document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder],
+        **({"failed": [_rung(rung) | {"message": problem} for rung, problem in found.failed]} if found.failed else {}),
+    })
     if picture and found.ladder:
         from frbcli.plot.accuracy import accuracy_figure
 

@@ -73,9 +73,8 @@ def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Arra
     weights = _weights()
     linear = space.still + omega * space.by_speed
     # x_j = x_0 + h sum of a_jl (A_0 x_l + B g_l)
-    inverse = np.linalg.inv(np.eye(s * size) - h * np.kron(weights, linear))
-    by_start = inverse @ np.tile(np.eye(size), (s, 1))
-    by_loads = inverse @ (h * np.kron(weights, space.given))
+    right = np.hstack([np.tile(np.eye(size), (s, 1)), h * np.kron(weights, space.given)])
+    by_start, by_loads = np.hsplit(np.linalg.solve(np.eye(s * size) - h * np.kron(weights, linear), right), [size])
     reads, rates = np.kron(np.eye(s), space.read), np.kron(np.eye(s), space.read_rate)
     by_u, by_v = _diagonal(loads.by_u, count, s), _diagonal(loads.by_v, count, s)
     matrix = np.eye(s * c) - by_u @ (reads @ by_loads) - by_v @ (rates @ by_loads)

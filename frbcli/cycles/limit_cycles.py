@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
@@ -15,7 +16,7 @@ from frbcli.cycles.faults import check
 from frbcli.cycles.machine import make_machine
 from frbcli.cycles.result import SPEED, LimitCycles
 from frbcli.cycles.synchronous import synchronous_response
-from frbcli.errors import NotConverged
+from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
 from frbcli.scene.system import make_system
@@ -26,20 +27,25 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
 
     speeds_Hz: at which cycles are computed exactly, of the kind "asked", for their orbits;
     observe: called with the number of cycles so far and the speed in Hz and the largest eccentricity of the latest one.
-    Raises InputError if the films have no force that follows from the motion alone, or without a speed range;
+    Raises InputError if the films have no force that follows from the motion alone, without a speed range, or for a
+    speed outside of it;
     NotConverged without a resting position at the highest speed.
     """
     begun = time.process_time()
     slowest, fastest = check(case)
+    asked = [2.0 * math.pi * speed for speed in speeds_Hz]
+    if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
+        problem = f"lies outside of the range, {_hertz(slowest):.4g} to {_hertz(fastest):.4g} Hz."
+        remedy = "Ask for a speed within it, or set speed.from and speed.to."
+        faults = tuple(Fault("speed", f"{_hertz(speed):g} Hz", None, problem, remedy) for speed in outside)
+        raise InputError(case.name or "case", faults)
     system = make_system(case, make_plan(case))
     machine = make_machine(system, fastest)
     try:
         with advised(case):
             resting = resting_curve(system, machine, slowest, fastest)
     except Unreachable:
-        raise NotConverged(
-            f"The resting positions could not be followed down from {fastest / (2.0 * math.pi):.4g} Hz."
-        ) from None
+        raise NotConverged(f"The resting positions could not be followed down from {_hertz(fastest):.4g} Hz.") from None
     walk = Walk(
         over=SPEED,
         unit="Hz",
@@ -47,11 +53,18 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
         course=OverSpeed(machine),
         resting=resting,
         scale=1.0 / (2.0 * math.pi),
-        follower=Follower(machine, slowest, fastest, [2.0 * math.pi * speed for speed in speeds_Hz]),
+        follower=Follower(machine, slowest, fastest, asked),
         branch_scale=machine.pace / (2.0 * math.pi),
     )
     found = diagram(case, walk, observe, lambda: time.process_time() - begun)
+    met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
+    missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
+    found = replace(found, notes=(*found.notes, *missing))
     if not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
         return found
     response = synchronous_response(machine, resting.points[-1], slowest)
     return with_response(found, walk, response, time.process_time() - begun)
+
+
+def _hertz(omega: float) -> float:
+    return omega / (2.0 * math.pi)
