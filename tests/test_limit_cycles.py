@@ -190,6 +190,25 @@ def test_the_fold_is_where_cycles_end_in_the_time_domain() -> None:
     assert integrated(4.538, fold.speed_Hz - 0.005 * UNIT_Hz, lowest, 200) < 0.2
 
 
+def test_the_force_there_is_the_integral_of_the_short_bearing() -> None:
+    """p = 3 eta / (C^2 H^3) (z^2 - L^2 / 4) (omega dH/dphi + 2 dH/dt) over the half where it is positive, by quadrature; so
+    that the fold does not rest on the closed form of the program alone."""
+    case = rigid(4.538, 2.4, 2.9)
+    (film,), omega = machine_of(case).films, 2.0 * math.pi * 2.6 * UNIT_Hz
+    nodes, weights = np.polynomial.legendre.leggauss(80)
+    viscosity = case.oil.viscosity
+    assert isinstance(viscosity, float)
+    scale = viscosity * RADIUS * WIDTH**3 / (2.0 * CLEARANCE**2)
+    for x, y, u, v in np.random.default_rng(3).uniform(-0.48, 0.48, (20, 4)) * [1.0, 1.0, 0.5 * omega, 0.5 * omega]:
+        a, b = omega * y + 2.0 * u, -omega * x + 2.0 * v
+        phi = math.atan2(b, a) + 0.5 * math.pi * nodes
+        gap = 1.0 - x * np.cos(phi) - y * np.sin(phi)
+        pressed = 0.5 * math.pi * weights * (a * np.cos(phi) + b * np.sin(phi)) / gap**3
+        expected = -scale * np.array([pressed @ np.cos(phi), pressed @ np.sin(phi)])
+        found = np.array(film_force(film, x, y, u, v, omega)[:2])
+        assert found == pytest.approx(expected, abs=1e-9 * float(np.hypot(*expected)))
+
+
 def integrated(gamma: float, speed_Hz: float, start, periods: int) -> float:  # type: ignore[no-untyped-def]
     """Largest eccentricity of the last period when the motion begins on a cycle."""
     case = rigid(gamma, 2.4, 2.9)
