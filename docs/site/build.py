@@ -214,7 +214,7 @@ def configuration(source: Path, target: Path) -> str:
     commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
     guides = ("case-file", "cases", "command-line", "conventions", "measurements", "report", "bearing-sheet", "rotors",
               "floating-rings", "limit-cycles", "couplings", "sweeps")  # fmt: skip
-    science = ("theory", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
+    science = ("theory", "heat", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
 
     def entries(names: tuple[str, ...]) -> str:
         return "\n".join(f"      - {name.replace('-', ' ')}: {name}.md" for name in names)
