@@ -152,7 +152,7 @@ def test_narrow_finite_bearing_is_a_short_one(cavitation: str, eccentricity: flo
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
 
 
-# Raimondi and Boyd, A Solution for the Finite Journal Bearing III, ASLE Trans. 1 (1958): full bearing, Reynolds'
+# Raimondi and Boyd, ASLE Transactions 1 (1958), as others quote their tables from Shigley: full bearing, Reynolds'
 # condition. L/D: eps: S = (R/C)^2 eta N / P, attitude angle in degrees; So of (3.14) is 1 / (2 pi S).
 RAIMONDI_BOYD = {
     1.0: {0.1: (1.33, 79.5), 0.2: (0.631, 74.02), 0.4: (0.264, 63.10), 0.6: (0.121, 50.58), 0.8: (0.0446, 36.24)},

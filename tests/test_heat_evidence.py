@@ -80,8 +80,8 @@ def _by_pressure(film, d: tuple[float, float], p: np.ndarray) -> tuple[float, fl
     return float(dissipated), float(pumped)
 
 
-# Raimondi and Boyd, ASLE Transactions 1 (1958), bearings of 360 degrees: eccentricity, S, attitude in degrees,
-# (R/C) f, Q / (R C N B), side flow over Q, by B/D.
+# Raimondi and Boyd, ASLE Transactions 1 (1958), as others quote their tables from Shigley, bearings of 360 degrees:
+# eccentricity, S, attitude in degrees, (R/C) f, Q / (R C N B), side flow over Q, by B/D.
 RAIMONDI_BOYD = {
     1.0: [
         (0.1, 1.33, 79.5, 26.4, 3.37, 0.150),

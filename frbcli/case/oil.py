@@ -45,7 +45,7 @@ class Vogel(Model):
 class Grade(Model):
     """An oil of the library: viscosity over temperature, density, heat capacity and conductivity."""
 
-    grade: GradeName = Field(description="SAE or ISO VG grade; docs/heat.md lists the figures and their sources")
+    grade: GradeName = Field(description="SAE or ISO VG grade; docs/heat.md lists the figures and where they are from")
 
 
 def _viscosity_form(given: object) -> str:

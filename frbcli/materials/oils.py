@@ -1,7 +1,8 @@
-"""Oils by grade: viscosity, density, heat capacity and conductivity over temperature, each figure with its source.
+"""Oils by grade: viscosity, density, heat capacity and conductivity over temperature, each figure with its origin.
 
 An oil of a grade varies: SAE J300 leaves 12.5 to 16.3 mm^2/s at 100 degC to a grade 40, ISO 3448 10 % either way at 40
 degC. The figures here are typical ones; a data sheet of the oil in use is better, as Vogel's coefficients in the case.
+docs/heat.md tells which figures were compared with a source and which are a choice.
 """
 
 from __future__ import annotations
@@ -13,21 +14,25 @@ from functools import cached_property
 from frbcli.materials.viscosity import ZERO_CELSIUS, VogelLaw, through_three, walther
 
 TEMPERATURES = (40.0, 100.0, 150.0)  # degC of the viscosities of a grade
-EXPANSION = 7.0e-4  # 1/K, of the volume: Incropera and DeWitt, table A.5, engine oil
+EXPANSION = 7.0e-4  # 1/K, of the volume: engine oil of Incropera and DeWitt, table A.5
 DENSITY_AT = 15.0 + ZERO_CELSIUS  # K
 
 
 def heat_capacity(density_15: float, temperature: float) -> float:
     """J/(kg K) of a petroleum oil of a density in kg/m^3 at 15 degC, at a temperature in K.
 
-    Cragoe, NBS Miscellaneous Publication 97 (1929): c = (1.685 + 0.0034 t)/sqrt(s) kJ/(kg K), t in degC, s the specific
-    gravity; within 4 %.
+    c = (1.685 + 0.0034 t)/sqrt(s) kJ/(kg K), t in degC, s the specific gravity; (0.388 + 0.00045 t)/sqrt(s)
+    Btu/(lb degF) with t in degF, as others quote it from Cragoe (1929) or Gambill (1957). 1 to 5 % below table A.5 of
+    Incropera and DeWitt for engine oil from 280 to 430 K.
     """
     return (1685.0 + 3.4 * (temperature - ZERO_CELSIUS)) / math.sqrt(1e-3 * density_15)
 
 
 def conductivity(density_15: float, temperature: float) -> float:
-    """W/(m K) of a petroleum oil; Cragoe 1929: k = 0.117 (1 - 0.00054 t)/s, t in degC; within 10 %."""
+    """W/(m K) of a petroleum oil: k = 0.117 (1 - 0.00054 t)/s, t in degC, as others quote it from Cragoe (1929).
+
+    9 to 11 % below table A.5 of Incropera and DeWitt for engine oil from 280 to 430 K.
+    """
     return 0.117 * (1.0 - 0.00054 * (temperature - ZERO_CELSIUS)) / (1e-3 * density_15)
 
 
@@ -38,8 +43,8 @@ def density(density_15: float, temperature: float) -> float:
 
 @dataclass(frozen=True)
 class OilGrade:
-    """An oil of the library. viscosities: dynamic, Pa s, at TEMPERATURES; density_15: kg/m^3 at 15 degC; source: of
-    viscosities and density."""
+    """An oil of the library. viscosities: dynamic, Pa s, at TEMPERATURES; density_15: kg/m^3 at 15 degC; source: where
+    viscosities and density are from."""
 
     name: str
     viscosities: tuple[float, float, float]
@@ -72,15 +77,16 @@ REYN = 6894.757  # Pa s
 def _seireg(name: str, micro_reyn: float, degrees: float) -> OilGrade:
     """By mu = mu_0 exp(b / (t + 95)), t in degF, mu_0 in micro-reyn, b in degF: a Vogel's law with C = 95 degF."""
     at = [1e-6 * micro_reyn * REYN * math.exp(degrees / (1.8 * t + 32.0 + 95.0)) for t in TEMPERATURES]
-    source = "Seireg and Dandage, J. Lubr. Technol. 104 (1982), mu_0 exp(b / (t + 95)); density assumed"
+    source = "mu_0 exp(b / (t + 95)) of Seireg and Dandage, as others quote it from Shigley; density: own choice"
     return OilGrade(name, (at[0], at[1], at[2]), 880.0, source)
 
 
-_PQIA = "within what PQIA measured of five oils (2016), 96 to 113 and 14.4 to 15.9 mm^2/s at 40 and 100 degC"
-_ROSS = "lubricants of the package ROSS"
+_MULTIGRADE = "typical values, not from a single source; density: own choice"
+_PQIA = "1 % below the thinnest of five oils that PQIA measured in 2016"
+_ROSS = "lubricants of the package ROSS, its density taken as that at 15 degC"
 _GRADES = (
-    _three("SAE 10W-40", 870.0, 81.5, 11.7, 4.65, f"typical of the grade, {_PQIA}; density assumed"),
-    _three("SAE 5W-30", 860.0, 55.2, 9.2, 3.85, "typical of the grade, within SAE J300; density assumed"),
+    _three("SAE 10W-40", 870.0, 81.5, 11.7, 4.65, f"{_MULTIGRADE}; {_PQIA}"),
+    _three("SAE 5W-30", 860.0, 55.2, 9.2, 3.85, f"{_MULTIGRADE}; within SAE J300 at 100 degC"),
     _seireg("SAE 10", 0.0158, 1157.5),
     _seireg("SAE 20", 0.0136, 1271.6),
     _seireg("SAE 30", 0.0141, 1360.0),

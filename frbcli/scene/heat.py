@@ -17,7 +17,7 @@ from frbcli.scene.films import film_places, turning_rings
 from frbcli.thermal.model import FROM_SUPPLY, HeatModel
 
 OIL_AT = 353.15, 393.15  # K between which the heat capacity of the oil is taken as linear
-BORES_SHARE = 0.6  # beta of the flow of a concentric film: bores feed less than a groove around the film
+BORES_SHARE = 0.6  # beta of the flow of a concentric film: bores feed less than a groove; own choice
 
 
 @dataclass(frozen=True)
