@@ -26,7 +26,7 @@ from frbcli.solve.time_loop import NEWTON_SHARE
 
 # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films (ERROR_MEMORY):
 # that is 2 to 29 times the true error of the journals, where it was measured (docs/accuracy.md); 5 to 14 times with
-# finite-volume films.
+# finite-volume films of rotors without rings.
 COUNTED, COUNTED_CELLS = 0.5, 0.25
 # A disk oscillates longer than its journals, which the films damp: its true error is 0.2 to 2.5 times the sum of all
 # local errors.
@@ -125,7 +125,7 @@ def quick_budget(system: System, state: State, angle: float) -> dict[str, float 
 
 
 def _counted(system: System) -> float:
-    return COUNTED_CELLS if system.volumes else COUNTED
+    return COUNTED_CELLS if system.volumes and not system.ring_count else COUNTED
 
 
 def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:
