@@ -42,6 +42,9 @@ Columns:
   the two, which assumes an order of 0.66 in the mesh; for other films it is the difference.
 - **stated error**: error that the run or the test reports, of the eccentricity or the force.
 
+Figures of finite-volume films are those of 48 x 6 cells at rest with the oil carried upwind, before the plan chose the
+cells by the target ([accuracy](accuracy.md)), where a case does not set its mesh.
+
 There is no reference for cases that whirl from the start or end early, for `pressed-into-the-shell`, and for squeeze
 and whirl.
 """

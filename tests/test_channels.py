@@ -238,7 +238,7 @@ def test_a_groove_around_the_feed_holes_holds_their_pressure(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(("settings", "words"), [
-    (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no bores"),
+    (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no feed holes"),
     (("bearing.inner.supply.on=journal",), "in the journal"),
     (('bearing.outer.supply={kind="none"}',), "without a supply"),
     (("bearing.inner.supply.axial_position=0.3",), "beside a central groove"),

@@ -118,7 +118,7 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     turning = 0.0
     if isinstance(bearing.supply, Bores) and bearing.supply.on == "journal":
         turning = TWO_PI * (case.motion.speed or 0.0)
-        decisions.append(Decision("frame", "of the journal", "the bores turn with it and stand still there"))
+        decisions.append(Decision("frame", "of the journal", "the feed holes turn with it and are at rest there"))
     ramp = getattr(bearing.supply, "ramp", 0.0)
     return KinematicPlan(
         test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning, ramp,

@@ -47,7 +47,7 @@ def resting_displacement(case: Case, plan: KinematicPlan, load: float, omega: fl
             f"no resting position under {load:g} N: in the long run {plan.law.label}'s film carries 0 N, at any "
             "eccentricity. Where its pressure is above the cavitation pressure it loses oil at its edges, and none "
             f"comes in: neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
-            "Raise the supply pressure, or supply it through axial grooves or bores."
+            "Raise the supply pressure, or supply it through axial grooves or feed holes."
         )
     target = np.array([0.0, load])
     side = math.copysign(1.0, omega)  # the journal gives way in the sense of rotation

@@ -47,7 +47,7 @@ Ramp = Annotated[
 class NoSupply(Model):
     """No supply: oil enters at the ends only."""
 
-    kind: Literal["none"] = Field(default="none", description="no groove, bore or pocket")
+    kind: Literal["none"] = Field(default="none", description="no groove, feed hole or pocket")
 
 
 class CircumferentialGroove(Model):

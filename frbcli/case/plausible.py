@@ -16,7 +16,7 @@ from frbcli.materials.solids import BRASS, STEEL
 from frbcli.units import SPEED, display, readable
 
 FASTEST_SURFACE = 500.0  # m/s; limit of the strength of steel shafts
-LARGEST_GROWTH = 0.5  # of the clearance; centrifugal growth is not modelled
+LARGEST_GROWTH = 0.5  # of the clearance, by centrifugal growth
 THINNEST_FILM = 1e-6  # m; the roughness of surfaces
 THICKEST_FILM = 0.1  # of the radius; the Reynolds equation is for thin films
 

@@ -31,12 +31,12 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
 @click.option("--over", default="speed", metavar="KEY",
-              help="Speed, or a number of the case, at the one --speed, default speed.to. [speed]")  # fmt: skip
+              help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
 @click.option("--and", "key", metavar="KEY",
               help="Hopf points and folds over speed and this key, e.g. bearing.clearance.")  # fmt: skip
-@click.option("--from", "low", metavar="VALUE", help="Of --over or --and, with its unit, e.g. '30 um'.")
-@click.option("--to", "high", metavar="VALUE", help="The same.")
-@click.option("--points", type=click.IntRange(2, 500), default=9, help="Values of --and. [9]")
+@click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
+@click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
+@click.option("--points", type=click.IntRange(2, 500), default=9, help="Number of values of --and. [9]")
 @click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
@@ -58,9 +58,9 @@ def command(
     csv: Path | None,
     terminal: Terminal,
 ) -> None:
-    """Resting positions of CASE over its speed, the Hopf points where a whirl is born, and the limit cycles from there.
+    """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
 
-    Branches of cycles, stable or not, are followed through folds; unbalance is left out.
+    Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them.
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over

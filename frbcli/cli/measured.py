@@ -21,19 +21,19 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def measured_options(function: Function) -> Function:
     """Give a command the options of a measurement; it receives `measurement: Measurement | None`."""
     named: dict[str, tuple[dict[str, Any], str]] = {
-        "x": ({"metavar": "COLUMN"}, "Of a measurement: the displacement in x."),
-        "y": ({"metavar": "COLUMN"}, "The displacement in y; events need it."),
-        "time": ({"metavar": "COLUMN"}, "The times in s."),
-        "rate": ({"type": click.FloatRange(min=0.0, min_open=True)}, "Samples per second."),
-        "speed": ({"metavar": "COLUMN"}, "The rotor speed in Hz."),
+        "x": ({"metavar": "COLUMN"}, "Of a measurement: column of the displacement in x."),
+        "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; events need it."),
+        "time": ({"metavar": "COLUMN"}, "Column of the times in s."),
+        "rate": ({"type": click.FloatRange(min=0.0, min_open=True)}, "Samples per second, without a column of times."),
+        "speed": ({"metavar": "COLUMN"}, "Column of the rotor speed in Hz."),
         "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
-        "tacho": ({"metavar": "COLUMN"}, "A signal with a pulse per revolution, in place of the speed."),
-        "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Per revolution."),
-        "unit": ({"type": LENGTH_OPTION, "default": "1 um", "show_default": True}, "What 1 in x and y is."),
+        "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
+        "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Pulses per revolution."),
+        "unit": ({"type": LENGTH_OPTION, "default": "1 um", "show_default": True}, "Unit of the displacements."),
     }
     told: Any = function
     told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
-                        help='0 dB, and that of the bearing, e.g. "35 um".')(told)  # fmt: skip
+                        help='Of the bearing, to which levels and events refer, e.g. "35 um".')(told)  # fmt: skip
     for name, (kind, meaning) in reversed(named.items()):  # read before the clearance, which makes one of all
         kind |= {"is_eager": True, "expose_value": False, "callback": _remember}
         told = click.option(f"--{name}", help=meaning, **kind)(told)

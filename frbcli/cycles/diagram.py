@@ -111,19 +111,19 @@ def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s
 
 
 def _notes(case: Case, walk: Walk) -> list[str]:
-    """What is to be said of bores, and where no whirl is born."""
+    """What is to be said of feed holes, and where no whirl begins."""
     points, notes = walk.resting.points, []
     if any(isinstance(place.geometry.supply, Bores) for place in film_places(case)):
-        notes.append("Bores that turn enter by their mean over the angle.")
+        notes.append("Feed holes that turn with a ring enter by their mean over the angle.")
     between = f"{points[0].value * walk.scale:.4g} and {points[-1].value * walk.scale:.4g} {walk.unit}".rstrip()
     if walk.resting.hopf:
         return notes
     if all(point.stable for point in points):
-        notes.append(f"No whirl is born between {between}: every small motion decays there.")
+        notes.append(f"No whirl begins between {between}: every small motion decays there.")
     elif not any(point.stable for point in points):
-        notes.append(f"Unstable at rest between {between}: the whirl is born outside of the range.")
+        notes.append(f"The resting position is unstable between {between}: the whirl begins outside of the range.")
     else:
-        notes.append(f"No whirl is born between {between}.")
+        notes.append(f"No whirl begins between {between}.")
     return notes
 
 

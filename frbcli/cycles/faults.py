@@ -53,5 +53,5 @@ def _films(case: Case) -> tuple[Fault, ...]:
     if not needs_cells(case) or turning_openings(case):
         return ()
     problem = "is solved on cells, where the force has no continuous derivative."
-    remedy = "Take half-sommerfeld, and no openings but grooves around the film and bores that turn."
+    remedy = "Take half-sommerfeld, and no openings but circumferential grooves and feed holes that turn."
     return tuple(Fault(key, name, None, problem, remedy) for key, name in named.items())

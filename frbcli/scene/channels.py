@@ -87,16 +87,16 @@ def channel_faults(case: Case) -> Iterator[Fault]:
 def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:
     supply, outer = bearing.inner.supply, bearing.outer
     if not isinstance(supply, Bores):
-        return "needs channels, and the inner film has no bores.", 'Write inner.supply.kind = "bores".'
+        return "needs channels, and the inner film has no feed holes.", 'Write inner.supply.kind = "bores".'
     if supply.on == "journal":
-        return "needs channels through the ring, and the bores are in the journal.", 'Write inner.supply.on = "shell".'
+        return "needs channels through the ring; the feed holes are in the journal.", 'Write inner.supply.on = "shell".'
     if outer.supply.kind == "none" and not {"oil-bath"} & {bearing.inner.ends, outer.ends}:
         return "leaves the bearing without a supply from outside.", f"Give it {INLETS}."
     if outer.supply.kind == "circumferential-groove":
         middle = _groove_position(outer) == MIDDLE
         if middle and supply.axial_position != MIDDLE:
             problem = "asks for feed holes beside a central groove, which makes two different outer films."
-            return problem, "Put the bores in the middle, or the groove at an end of the outer film."
+            return problem, "Put the feed holes in the middle, or the groove at an end of the outer film."
         if middle:
             return "", ""
     elif bearing.ring.spin == "free" and outer.supply.kind != "none":

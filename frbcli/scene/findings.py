@@ -87,7 +87,7 @@ def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) 
 
 def _supply(film: FilmGeometry) -> str:
     supply = film.supply
-    words = supply.kind.replace("-", " ")
+    words = supply.kind.replace("-", " ").replace("bores", "feed holes")
     count = getattr(supply, "count", 1)
     at = getattr(supply, "pressure", None)
     told = f"{count} {words}" if count > 1 else words

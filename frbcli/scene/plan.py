@@ -169,7 +169,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     for decided in clearance_decisions(case):
         decide(*decided)
     if case.heat is not None:
-        gap = "follows the temperatures" if case.heat.clearance == "follows" else "stays as given"
+        gap = "follows the temperatures" if case.heat.clearance == "follows" else "does not follow it"
         decide("heat", "lumped", f"set in the case; viscosity follows the temperature of each film, the gap {gap}")
 
 

@@ -113,7 +113,7 @@ def _changes(case: Case, plan: Plan, onset: float, disturbed_from: float) -> Ite
     if plan.cells is not None:
         around, along = (max(least, round(OTHER_CELLS * n)) for n, least in zip(plan.cells, (4, 2), strict=True))
         yield f"{around} x {along} cells", end, (*ramp(start), f"accuracy.mesh=[{along},{around}]")
-    yield f"turning at once with {disturbed_from:.4g} Hz", end, (*ramp(disturbed_from), "start.position=resting")
+    yield f"started at {disturbed_from:.4g} Hz", end, (*ramp(disturbed_from), "start.position=resting")
 
 
 def _run(
