@@ -191,7 +191,7 @@ def test_the_fold_is_where_cycles_end_in_the_time_domain() -> None:
 
 
 def test_the_force_there_is_the_integral_of_the_short_bearing() -> None:
-    """p = 3 eta / (C^2 H^3) (z^2 - L^2 / 4) (omega dH/dphi + 2 dH/dt) over the half where it is positive, by quadrature:
+    """p = 3 eta / (C^2 H^3) (z^2 - L^2 / 4) (omega dH/dphi + 2 dH/dt) where it is positive, by quadrature:
     the fold does not rest on the closed form of the program alone."""
     case = rigid(4.538, 2.4, 2.9)
     (film,), omega = machine_of(case).films, 2.0 * math.pi * 2.6 * UNIT_Hz

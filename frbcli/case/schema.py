@@ -183,8 +183,8 @@ class Output(Model):
     signals: tuple[FilmSignal, ...] = Field(
         default=(),
         description="what a run records of each film beside its eccentricity: the force on the journal, the smallest "
-        "film thickness, the power that goes into the film, its torque on the journal, the oil that leaves it (of "
-        "films on cells)",
+        "film thickness, the power that goes into the film, its torque on the journal, the oil that leaves "
+        "it through its open ends",
     )
 
 

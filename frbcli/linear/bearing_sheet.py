@@ -22,6 +22,7 @@ from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import estimate, force, loads
 from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import sommerfeld_number
@@ -60,8 +61,8 @@ class FilmState:
     by one bearing; displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the
     displacement, positive counter-clockwise; film_thickness_min in m; stiffness, damping: (2, 2) N/m and N s/m, -dF/dD
     and -dF/dD', of films that keep oil when this has settled; sommerfeld_number: (3.14), with omega_J + omega_S;
-    torque: on the journal, N m; power: that journal and shell put into the film, W; side_flow: what leaves at the ends,
-    m^3/s, of a film with openings less what it draws in there; p_max: absolute, Pa; temperature_rise: of the oil that
+    torque: on the journal, N m; power: that journal and shell put into the film, W; side_flow: what leaves at the open
+    ends, m^3/s, without what flows back into a groove; p_max: absolute, Pa; temperature_rise: of the oil that
     leaves, K, if it took all of the power; force_error: estimated, relative; problem: why there is no state, then the
     numbers are NaN.
     """
@@ -289,7 +290,7 @@ def _state(
     if carried.any() and d.any():
         attitude = math.degrees(math.atan2(load[0] * d[1] - load[1] * d[0], load @ d))
     power = -found.torque.journal * journal + found.torque.shell * shell
-    flow = found.oil.ends_m3_s if section.grooves or section.holes else found.oil.out_m3_s
+    flow = outflow(at, motion.d, at.pressure(solution.state))
     size, width = float(np.hypot(*carried)), section.bearing_width
     other = coarse.film_force(i, place, np.zeros(2), total).force
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)

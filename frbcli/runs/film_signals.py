@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.film.gap import Section, gap_height
+from frbcli.film.rectangles.end_flow import EndFlow, TableEndFlow, chain_end_flows, table_end_flows
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
@@ -38,19 +40,25 @@ class Samples:
 
 
 def film_signals(
-    system: System, control: Control, profile: SpeedProfile, samples: Samples, kinds: Sequence[str]
+    system: System,
+    control: Control,
+    profile: SpeedProfile,
+    samples: Samples,
+    kinds: Sequence[str],
+    ends: Sequence[EndFlow] = (),
 ) -> dict[str, Array]:
     """The signals (k,) of all films by their names.
 
     force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
     by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
-    the film, m^3/s.
+    the film through its open ends, m^3/s. ends: the flows of tabulated films (end_flows of linear/film_heat.py), if
+    these are asked for their oil.
     """
     found = dict[str, Array]()
     if any(kind in OF_THE_STEPS for kind in kinds):
         forces = film_forces(system.rotor, profile, samples)
         torques, powers = _torques(system, profile, samples, forces)
-        flows = _flows(system, samples)
+        flows = _flows_of_motions(system, control, profile, samples, ends) if ends else _flows(system, samples)
     for i, name in enumerate(system.names):
         for kind in kinds:
             if kind == FORCE:
@@ -78,8 +86,7 @@ def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> 
 def _torques(system: System, profile: SpeedProfile, samples: Samples, forces: Array) -> tuple[Array, Array]:
     """(k, films) torque on the journals in N m, as spin_up of solve/ring_spin.py has it, and power in W."""
     n, count = system.rotor.size, len(system.names)
-    bodies = np.column_stack([profile.speed(samples.times), samples.v[:, list(system.spins)]])
-    total, slip = (bodies @ system.turning[:, row].T for row in (SUM, SLIP))
+    total, slip = (_speeds(system, profile, samples, row) for row in (SUM, SLIP))
     drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]
     place, rate = (np.einsum("fij,kj->kfi", system.rotor.journals, each) for each in (samples.q, samples.v))
     couette = -np.array(system.drags) * drag * slip
@@ -90,8 +97,31 @@ def _torques(system: System, profile: SpeedProfile, samples: Samples, forces: Ar
     return couette + poiseuille, power
 
 
+def _speeds(system: System, profile: SpeedProfile, samples: Samples, row: int) -> Array:
+    """(k, films) rad/s: SUM or SLIP of the bodies of each film, see RotorData."""
+    bodies = np.column_stack([profile.speed(samples.times), samples.v[:, list(system.spins)]])
+    return np.asarray(bodies @ system.turning[:, row].T)
+
+
+def _flows_of_motions(
+    system: System, control: Control, profile: SpeedProfile, samples: Samples, ends: Sequence[EndFlow]
+) -> Array:
+    """(k, films) m^3/s of oil that leaves tabulated films: it follows from how their journals move."""
+    found = np.empty((len(samples.times), len(ends)))
+    total = _speeds(system, profile, samples, SUM)
+    for i, (end, clearance) in enumerate(zip(ends, system.clearances, strict=True)):
+        d, v = (each @ system.rotor.journals[i].T / clearance for each in (samples.q, samples.v))
+        for k in _touching(control, d):
+            d[k], v[k] = felt_motion(control, d[k], v[k])
+        w = v + 0.5 * total[:, i : i + 1] * np.column_stack([d[:, 1], -d[:, 0]])
+        motions = np.column_stack([d, w])
+        flows = table_end_flows(end, motions) if isinstance(end, TableEndFlow) else chain_end_flows(end, motions)
+        found[:, i] = clearance * flows
+    return found
+
+
 def _flows(system: System, samples: Samples) -> Array:
-    """(k, films) m^3/s of oil that leaves."""
+    """(k, films) m^3/s of oil that leaves, as it is noted."""
     n, count = system.rotor.size, len(system.names)
     leaves: Array = samples.noted[:, n + LEAVES * count : n + NOTES * count]
     if not isinstance(system.films, VolumeFilms):
@@ -105,14 +135,18 @@ def _thickness(system: System, control: Control, i: int, q: Array) -> Array:
     """(k,) m: the smallest gap of film i; in contact that which surfaces keep."""
     clearance = system.clearances[i]
     d = q @ system.rotor.journals[i].T / clearance
-    eccentricity = np.hypot(d[:, 0], d[:, 1])
-    limits = control.contact_eccentricity, control.contact_stiffness
-    for sample in np.flatnonzero([touches(float(each), *limits) for each in eccentricity]):
+    for sample in _touching(control, d):
         d[sample] = felt_motion(control, d[sample], np.zeros(2))[0]
     section = system.volumes[i].section if system.volumes else None
     if section is None or section.lobes is None:
         return np.asarray(clearance * (1.0 - np.hypot(d[:, 0], d[:, 1])))
     return _lobed(section, d)
+
+
+def _touching(control: Control, d: Array) -> NDArray[np.int64]:
+    """The samples at which the film feels less than its displacement d (k, 2) over the clearance."""
+    limits = control.contact_eccentricity, control.contact_stiffness
+    return np.flatnonzero([touches(float(each), *limits) for each in np.hypot(d[:, 0], d[:, 1])])
 
 
 def _lobed(section: Section, d: Array) -> Array:

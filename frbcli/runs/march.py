@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.film.cells.side_flow import opens_far
+from frbcli.linear.film_heat import end_flows
 from frbcli.results.store import Run
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.cell_errors import FewerCells
@@ -20,7 +22,7 @@ from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.error_budget import budget_of_segments, quick_budget, summed
 from frbcli.runs.film_error import sample_count
 from frbcli.runs.film_signals import OF_THE_STEPS, Samples, film_signals
-from frbcli.runs.header import named, ring_names
+from frbcli.runs.header import FLOW, named, ring_names
 from frbcli.runs.heat import RunHeat
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
 from frbcli.runs.restored import array, check_samples, restored
@@ -118,6 +120,9 @@ class March:
         """Make a segment the current one; the time loop sees the profile up to its end."""
         self._current, self._system = number, self._segments[number].system
         ends = [segment.start for segment in self._segments[number + 1 :]]
+        tabulated = self._system.bearings and FLOW in self._case.output.signals
+        self._ends = end_flows(self._system) if tabulated else ()
+        self._far_open = np.array([opens_far(film) for film in self._system.volumes], dtype=np.float64)
         self._rotor = rotor_data(self._system, self._profile.until(ends[0] if ends else self._profile.end))
 
     def _change(self) -> int:
@@ -176,7 +181,7 @@ class March:
         given = self._rotor, films, self._tableau, self._control, self._state, budget
         outputs = self._q, self._v, self._oil
         if self._watches:
-            return advance_watched(*given, *outputs, self._noted, self._out_noted)
+            return advance_watched(*given, *outputs, self._noted, self._out_noted, self._far_open)
         status, rows = self._advance(*given, *outputs, *self._extra)
         return status, rows
 
@@ -217,7 +222,8 @@ class March:
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
-        return signals | film_signals(system, self._control, self._profile, samples, self._case.output.signals)
+        kinds = self._case.output.signals
+        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends)
 
     def snapshot(self) -> dict[str, Array]:
         """The checkpoint, from which the run continues with the same result."""

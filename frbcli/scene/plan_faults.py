@@ -42,12 +42,12 @@ def plan_faults(case: Case) -> list[Fault]:
     faults += channel_faults(case)
     faults += clearance_faults(case)
     if case.film.bearing_model:
-        return faults or _bearing_faults(case)
+        return faults + signal_faults(case, False) or _bearing_faults(case)
     chained = any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case))
     told = solution_fault(case, all_clipped(case), not (chained or needs_cells(case)))
     faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
     faults += published_faults(case)
-    faults += signal_faults(case, needs_cells(case))
+    faults += signal_faults(case, needs_cells(case) or all_clipped(case))
     may_turn = needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
         missing("film.grid", "half-speed", ("auto; it is for films on cells without openings and lobes",))
@@ -64,16 +64,18 @@ def plan_faults(case: Case) -> list[Fault]:
     return faults or _bearing_faults(case)
 
 
-def signal_faults(case: Case, with_cells: bool) -> list[Fault]:
-    """Signals of the films that a run of the case cannot record."""
+def signal_faults(case: Case, flow_known: bool) -> list[Fault]:
+    """Signals of the films that a run of the case cannot record. flow_known: whether the films tell their oil flow."""
     told, apart = case.output.signals, chosen_coupling(case.film.coupling, case.film.cavitation) == APART
     faults = []
     if apart and any(kind != "film-thickness" for kind in told):
         problem = "are not known in a co-simulation, but for film-thickness."
         faults.append(Fault("output.signals", ", ".join(told), None, problem, "Choose another film.coupling."))
-    if "oil-flow" in told and not with_cells:
-        problem = "is not told by tabulated films."
-        remedy = "Choose a mass-conserving film.cavitation, or ask `frb bearing` for the flow at rest."
+    if "oil-flow" in told and not flow_known:
+        if case.film.bearing_model:
+            problem, remedy = "is not told by a bearing model.", "Write finite, short or auto for film.theory."
+        else:
+            problem, remedy = "is not told by the tables of the penalty model.", 'Write film.solution = "cells".'
         faults.append(Fault("output.signals", "oil-flow", None, problem, remedy))
     return faults
 

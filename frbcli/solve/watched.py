@@ -12,7 +12,8 @@ import numpy as np
 from numba.extending import overload
 
 from frbcli.compiled import compiled
-from frbcli.film.cells.balances import OUTFLOW
+from frbcli.film.cells.side_flow import side_flow
+from frbcli.solve.cell_films import GRID_X, GRID_Y
 from frbcli.solve.element_films import LEFT
 from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.films import have_cells, have_elements, make_work
@@ -27,10 +28,11 @@ DRAG, LEAVES, NOTES = range(3)  # rows that are noted of each film: drag_integra
 
 def advance_watched(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
-    out_v: Array, out_oil: Array, noted: Array, out_noted: Array,
+    out_v: Array, out_oil: Array, noted: Array, out_noted: Array, far_open: Array,
 ) -> tuple[int, int]:  # fmt: skip
     """As advance of time_loop.py. noted (n + NOTES films,) the rotor's accelerations and what is noted of its films, at
-    the end of the last step, not a number before the first one; out_noted (rows, the same): at the output times."""
+    the end of the last step, not a number before the first one; out_noted (rows, the same): at the output times;
+    far_open (films,): whether the end z = 1 of the sections of films on cells is open."""
     stages, m, bodies = tableau.times.shape[0], 2 * rotor.clearances.shape[0], 1 + rotor.spins.shape[0]
     own = Own(
         np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros_like(state.q), np.zeros(bodies),
@@ -39,28 +41,33 @@ def advance_watched(
     scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
     status, rows = _advance_watched(
         rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil, noted, out_noted,
-        NO_HEAT, np.zeros((len(out_q), 0)),
+        NO_HEAT, np.zeros((len(out_q), 0)), far_open,
     )  # fmt: skip
     return int(status), int(rows)
 
 
-def oil_leaving(films: Any, work: Any, flows: Array, f: int) -> float:
-    """Oil that leaves film f now: of cells over its scale, of the published form in m^3/s; 0 of a film that
-    does not tell it."""
+def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) -> float:
+    """Oil that leaves film f now: of cells over its scale, through the open ends; of the published form in m^3/s; 0 of
+    a film whose motion tells it."""
     raise NotImplementedError
 
 
 @overload(oil_leaving)
-def _oil_leaving(films, work, flows, f):  # type: ignore[no-untyped-def]
+def _oil_leaving(films, work, flows, f, far_open):  # type: ignore[no-untyped-def]
     if have_elements(films):
-        return lambda films, work, flows, f: flows[NOW, f, LEFT]
+        return lambda films, work, flows, f, far_open: flows[NOW, f, LEFT]
     if have_cells(films):
-        return lambda films, work, flows, f: work.stage_flows[work.stage_flows.shape[0] - 1, f, OUTFLOW]
-    return lambda films, work, flows, f: 0.0
+        return lambda films, work, flows, f, far_open: side_flow(
+            films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[GRID_X, f],
+            work.grids[GRID_Y, f], far_open[f] != 0.0,
+        )  # fmt: skip
+    return lambda films, work, flows, f, far_open: 0.0
 
 
 @compiled()
-def _note(rotor: RotorData, films: Any, work: Any, q: Array, a: Array, flows: Array, noted: Array) -> None:
+def _note(
+    rotor: RotorData, films: Any, work: Any, q: Array, a: Array, flows: Array, far_open: Array, noted: Array,
+) -> None:  # fmt: skip
     n, count = q.shape[0], rotor.clearances.shape[0]
     for i in range(n):
         noted[i] = a[i]
@@ -70,14 +77,14 @@ def _note(rotor: RotorData, films: Any, work: Any, q: Array, a: Array, flows: Ar
             d_x += rotor.journals[f, 0, i] * q[i] / rotor.clearances[f]
             d_y += rotor.journals[f, 1, i] * q[i] / rotor.clearances[f]
         noted[n + DRAG * count + f] = drag_integral(films, work, f, d_x, d_y, rotor.torque_terms[1])
-        noted[n + LEAVES * count + f] = oil_leaving(films, work, flows, f)
+        noted[n + LEAVES * count + f] = oil_leaving(films, work, flows, f, far_open)
 
 
 @compiled()
 def _advance_watched(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
     own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array, noted: Array, out_noted: Array, heat: Any,
-    out_heat: Array,
+    out_heat: Array, far_open: Array,
 ) -> tuple[int, int]:  # fmt: skip
     numbers, q, a, flows = state.numbers, state.q, state.a, state.flows
     status, written, now = RUNNING, 0, np.empty_like(noted)
@@ -89,7 +96,7 @@ def _advance_watched(
         )  # fmt: skip
         step = numbers[TIME] - t
         if step > 0.0:
-            _note(rotor, films, work, q, a, flows, now)
+            _note(rotor, films, work, q, a, flows, far_open, now)
             for row in range(written, written + rows):
                 share = min(max(((first + row) * control.output_step - t) / step, 0.0), 1.0)
                 for i in range(now.shape[0]):

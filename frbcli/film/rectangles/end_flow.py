@@ -147,6 +147,15 @@ def table_end_flow(flow: TableEndFlow, d_x: float, d_y: float, w_x: float, w_y: 
 
 
 @compiled()
+def table_end_flows(flow: TableEndFlow, motions: Array) -> Array:
+    """(k,) of table_end_flow in motions (k, 4) of d and w, with the pressures of the film."""
+    found = np.empty(motions.shape[0])
+    for i in range(motions.shape[0]):
+        found[i] = table_end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
+    return found
+
+
+@compiled()
 def chain_end_flow(flow: ChainEndFlow, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
     """The same of a film between axial grooves, which stand still; the ends of the grooves themselves are left out."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
@@ -177,3 +186,12 @@ def chain_end_flow(flow: ChainEndFlow, d_x: float, d_y: float, w_x: float, w_y: 
                 at = grid[START, e] + edge * grid[ELEMENT_LENGTH, e]
                 total += flow.corner / scale * (1.0 + d_x * math.sin(at) - d_y * math.cos(at)) ** 3
     return flow.unit * total
+
+
+@compiled()
+def chain_end_flows(flow: ChainEndFlow, motions: Array) -> Array:
+    """(k,) of chain_end_flow in motions (k, 4) of d and w, with the pressures of the film."""
+    found = np.empty(motions.shape[0])
+    for i in range(motions.shape[0]):
+        found[i] = chain_end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
+    return found
