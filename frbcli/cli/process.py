@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 from _thread import interrupt_main
+from contextlib import suppress
 from threading import Timer
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn
@@ -71,4 +72,10 @@ def main() -> NoReturn:
         code = INTERRUPTED
     for number in SIGNALS:  # nothing is left to be kept
         signal.signal(number, signal.SIG_IGN)
-    sys.exit(closing_code(code, out, err, only_json="--json" in sys.argv))
+    ended = closing_code(code, out, err, only_json="--json" in sys.argv)
+    if interruption.asked:  # what a library has in half, such as a compiler, may not survive its own destruction
+        with suppress(OutputLost):
+            out.flush()
+            err.flush()
+        os._exit(ended)
+    sys.exit(ended)
