@@ -65,7 +65,6 @@ def waterfall(
     overlap: float = 0.9,
     max_frequency_Hz: float | None = None,
     direction: Direction = "x",
-    apart_Hz: float | None = None,
     most: int | None = None,
 ) -> Spectrogram:
     """Short-time spectra of a motion x, y (n,) in m, sampled evenly at time_s (n,), with rotor speed speed_Hz (n,):
@@ -73,9 +72,9 @@ def waterfall(
 
     A steady sinusoid of amplitude A shows as A. direction: "x" and "y" give the one-sided spectrum of one coordinate,
     "forward" the part of x + iy that turns with the rotor. window_s: length of the Hann windows, whose mean is taken
-    off; None takes that of window_length, which parts lines apart_Hz from each other (None: the rotor speed and its
-    half). overlap: the share of a window that the next one sees again; most: so many spectra, each of them the largest
-    of neighbouring ones where there are more; clearance: the length in m that is 0 dB.
+    off; None takes that of window_length, which parts the rotor speed and its half. overlap: the share of a window
+    that the next one sees again; most: so many spectra, each of them the largest of neighbouring ones where there are
+    more; clearance: the length in m that is 0 dB.
 
     Raises InputError if the window or the overlap does not fit the samples, or these are not evenly spaced.
     """
@@ -85,7 +84,7 @@ def waterfall(
         raise _fault("overlap", overlap, "is not a share of the window.", "Use 0 to 0.99.")
     count, step = len(time_s), _step(time_s)
     if window_s is None:
-        window_s = max(window_length(time_s, speed_Hz, apart_Hz), FEWEST * step)
+        window_s = max(window_length(time_s, speed_Hz), FEWEST * step)
     length = round(window_s / step) if np.isfinite(window_s) else 0
     if not FEWEST <= length <= count:
         limits = f"Use more than {FEWEST * step:g} s, up to {step * count:g} s."
