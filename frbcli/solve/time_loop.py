@@ -73,6 +73,14 @@ def _largest_eccentricity(clearances: Array, selection: Array, q: Array) -> floa
     return largest
 
 
+@compiled(inline=True)
+def _smallest(clearances: Array) -> float:
+    least = clearances[0]
+    for f in range(clearances.shape[0]):
+        least = min(least, clearances[f])
+    return least
+
+
 def advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
     out_v: Array, out_oil: Array, heat: Any = NO_HEAT, out_heat: Array | None = None,
@@ -111,7 +119,6 @@ def _advance(
     tolerance, contact_at, contact_stiffness = (
         control.tolerance, control.contact_eccentricity, control.contact_stiffness)
     m, stages = 2 * clearances.shape[0], moments.shape[0]
-    smallest = clearances.min()
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
     newton, past, q_new, rings = own
@@ -150,7 +157,7 @@ def _advance(
                 left = left_over(films, work, left, moved, unsettled, NEWTON_SHARE * tolerance)
                 if share == 1.0:
                     late = accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
-                    left = max(left, g * late / smallest)
+                    left = max(left, g * late / _smallest(clearances))
                     if spins.shape[0] > 0:
                         left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                         set_speeds(turning, bodies, angles_now, film, grids)
