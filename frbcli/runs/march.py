@@ -181,7 +181,7 @@ class March:
         given = self._rotor, films, self._tableau, self._control, self._state, budget
         outputs = self._q, self._v, self._oil
         if self._watches:
-            return advance_watched(*given, *outputs, self._noted, self._out_noted, self._far_open)
+            return advance_watched(*given, *outputs, self._noted, self._out_noted, self._far_open, *self._extra)
         status, rows = self._advance(*given, *outputs, *self._extra)
         return status, rows
 
@@ -222,8 +222,8 @@ class March:
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
-        kinds = self._case.output.signals
-        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends)
+        kinds, warm = self._case.output.signals, self._heat.numbers(len(times))
+        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
 
     def snapshot(self) -> dict[str, Array]:
         """The checkpoint, from which the run continues with the same result."""

@@ -17,18 +17,20 @@ from frbcli.solve.cell_films import GRID_X, GRID_Y
 from frbcli.solve.element_films import LEFT
 from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.films import have_cells, have_elements, make_work
-from frbcli.solve.heat import NO_HEAT
+from frbcli.solve.heat import NO_HEAT, LumpedHeat, begin_heat
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.state import HISTORY, NOW, OUTPUTS, RUNNING, TIME, Array, Control, RotorData, State
 from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import Own, _advance
+from frbcli.thermal.exchange import SCALE
 
 DRAG, LEAVES, NOTES = range(3)  # rows that are noted of each film: drag_integral, and the oil that leaves it
 
 
 def advance_watched(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
-    out_v: Array, out_oil: Array, noted: Array, out_noted: Array, far_open: Array,
+    out_v: Array, out_oil: Array, noted: Array, out_noted: Array, far_open: Array, heat: Any = NO_HEAT,
+    out_heat: Array | None = None,
 ) -> tuple[int, int]:  # fmt: skip
     """As advance of time_loop.py. noted (n + NOTES films,) the rotor's accelerations and what is noted of its films, at
     the end of the last step, not a number before the first one; out_noted (rows, the same): at the output times;
@@ -38,10 +40,12 @@ def advance_watched(
         np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros_like(state.q), np.zeros(bodies),
         np.zeros(bodies), np.zeros(bodies - 1),
     )  # fmt: skip
-    scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
+    scratch = make_scratch(rotor, state.numbers, stages)
+    work = make_work(films, state.wet, stages, heat.now[SCALE] if isinstance(heat, LumpedHeat) else None)
+    begin_heat(heat, films, rotor, state.wet)
     status, rows = _advance_watched(
         rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil, noted, out_noted,
-        NO_HEAT, np.zeros((len(out_q), 0)), far_open,
+        heat, np.zeros((len(out_q), 0)) if out_heat is None else out_heat, far_open,
     )  # fmt: skip
     return int(status), int(rows)
 
@@ -92,7 +96,7 @@ def _advance_watched(
         t, first = numbers[TIME], numbers[OUTPUTS] - written
         status, rows = _advance(
             rotor, films, tableau, control, state, scratch, work, own, 1, out_q[written:], out_v[written:],
-            out_oil[written:], heat, out_heat,
+            out_oil[written:], heat, out_heat[written:],
         )  # fmt: skip
         step = numbers[TIME] - t
         if step > 0.0:
