@@ -34,6 +34,7 @@ from frbcli.thermal.exchange import (
     GIVEN,
     POWER,
     SHARE,
+    arrays_of,
     heat_step,
     viscosity_at,
     write_clearances,
@@ -61,14 +62,17 @@ def test_kernels_of_the_balance_are_their_plain_forms() -> None:
     rng = np.random.default_rng(4)
     t = heat.start + 60.0 * rng.random(len(heat.start))
     power, flow, speeds = np.array([300.0, 80.0]), np.array([8e-7, 2e-6]), np.array([4000.0, 800.0])
-    clearances, gain = np.empty(2), np.empty(len(t))
-    write_clearances(model, t, speeds, clearances)
+    now, gain = np.zeros((FILM_ROWS, 2)), np.empty(len(t))
+    now[POWER], now[FLOW] = power, flow
+    capacity, links, films, numbers, expansion, growth = arrays_of(model)
+    write_clearances(films, expansion, growth, t, speeds, now)
+    clearances = now[CLEARANCE]
     assert clearances == pytest.approx(clearances_at(model, t, speeds), rel=1e-12)
-    carried, given = write_rates(model, t, power, flow, clearances, gain)
+    carried, given = write_rates(capacity, links, films, numbers, now, t, gain)
     assert gain == pytest.approx(rates(model, t, power, flow, clearances), rel=1e-9, abs=1e-9)
     assert float(gain.sum()) == pytest.approx(380.0 - carried, rel=1e-9)
     assert given == pytest.approx(float(gain[np.isinf(model.capacity)].sum()), rel=1e-12)
-    assert [viscosity_at(model.viscosity, x) for x in t[:2]] == pytest.approx(viscosities_at(model, t), rel=1e-12)
+    assert [viscosity_at(numbers, x) for x in t[:2]] == pytest.approx(viscosities_at(model, t), rel=1e-12)
 
 
 def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:
@@ -78,11 +82,11 @@ def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:
     now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
     t, gain, books = heat.start.copy(), np.zeros(count), np.zeros(BOOKS)
     step = 1e-7
-    heat_step(model, now, step, t, gain, books)
+    heat_step(*arrays_of(model)[:4], now, step, t, gain, books)
     expected = step * rates(model, heat.start, now[POWER], now[FLOW], now[CLEARANCE]) / model.capacity
     assert t - heat.start == pytest.approx(expected, rel=1e-6, abs=1e-12)
     for _ in range(200):
-        heat_step(model, now, 1e-2, t, gain, books)  # longer than the films' time constants
+        heat_step(*arrays_of(model)[:4], now, 1e-2, t, gain, books)  # longer than the films' time constants
     free = np.isfinite(model.capacity)
     kept = float(model.capacity[free] @ (t - heat.start)[free])
     assert books[DISSIPATED] == pytest.approx(380.0 * (2.0 + step), rel=1e-12)
@@ -143,6 +147,34 @@ def test_ring_settles_at_the_steady_temperatures(tmp_path: Path) -> None:
 def _outer(warm: object) -> np.ndarray:
     system = warm.system  # type: ignore[attr-defined]
     return np.asarray(system.rotor.journals[1] @ warm.resting / system.clearances[1])  # type: ignore[attr-defined]
+
+
+SIGNALS = 'output.signals=["force", "film-thickness", "power", "torque", "oil-flow"]'
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [[], ["film.cavitation=penalty"], ["film.cavitation=two-phase"]],
+    ids=["tabulated", "cells", "mass-conserving"],
+)
+def test_chosen_signals_are_those_of_the_warm_films(settings: list[str], tmp_path: Path) -> None:
+    """At rest: the weight on the film, power as torque times speed, flow and gap as the heat of the run has them."""
+    given = ["rotor.gravity=9.81", "film.theory=auto", *STILL, *at_speed(40.0, 0.2), "thermal.clearance=follows",
+             "thermal.housing=120 degC", *settings]  # fmt: skip
+    plain, run = (runup(single(*given, *more), tmp_path / "run.h5", force=True) for more in ([], [SIGNALS]))
+    for name in plain.signals:
+        np.testing.assert_array_equal(plain[name], run[name])
+    later, omega = slice(len(run["time_s"]) // 2, None), 2.0 * math.pi * 40.0
+    force = np.column_stack([run["film_force_x_N"], run["film_force_y_N"]])[later]
+    assert run["viscosity_Pa_s"][-1] < 0.8 * run["viscosity_Pa_s"][0]
+    assert np.abs(run["clearance_m"][-1] - run["clearance_m"][0]) > 2e-6
+    np.testing.assert_allclose(force, [[0.0, 6.1 * 9.81 / 2.0]] * len(force), atol=0.15)  # the oil still settles
+    np.testing.assert_allclose(-run["torque_N_m"][later] * omega, run["power_W"][later], rtol=4e-3)  # one for a step
+    gap = (1.0 - run["eccentricity"]) * run["clearance_m"]
+    np.testing.assert_allclose(run["film_thickness_m"], gap, rtol=1e-4)
+    flow = run["flow_m3_s"][later]
+    np.testing.assert_allclose(run["oil_flow_m3_s"][later], flow, rtol=5e-2 if "oil_fraction" in run.signals else 4e-3)
+    assert np.mean(run["oil_flow_m3_s"][later]) == pytest.approx(np.mean(flow), rel=2e-3)  # cells that turn ripple
 
 
 # --- the balance of a run --------------------------------------------------------------------------------------------

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -46,10 +45,11 @@ from frbcli.solve.state import (
     TIME,
     TURNS,
     Array,
+    Output,
 )
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
-from frbcli.solve.watched import NOTES, advance_watched
+from frbcli.solve.watched import NOTES, Notes, advance_watched
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
@@ -98,12 +98,10 @@ class March:
         self._apart = plan.coupling == "co-simulation"
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))
-        self._advance: Callable[..., Any] = advance_in_turn if self._apart else advance
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
-        # what the loop takes beside the rest, nothing without heat
-        self._extra = self._heat.buffers(rows)
+        self._output = Output(self._q, self._v, self._oil, self._heat.buffer(rows))
         # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
         self._watches = any(kind in OF_THE_STEPS for kind in case.output.signals)
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
@@ -179,11 +177,12 @@ class March:
         """At most `budget` steps. Returns (status, rows of the output written)."""
         films = self._heat.films or self._system.films
         given = self._rotor, films, self._tableau, self._control, self._state, budget
-        outputs = self._q, self._v, self._oil
+        if self._apart:
+            return advance_in_turn(*given, self._output)
         if self._watches:
-            return advance_watched(*given, *outputs, self._noted, self._out_noted, self._far_open)
-        status, rows = self._advance(*given, *outputs, *self._extra)
-        return status, rows
+            notes = Notes(self._noted, self._out_noted, self._far_open)
+            return advance_watched(*given, self._output, self._heat.kind, notes)
+        return advance(*given, self._output, self._heat.kind)
 
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
@@ -222,8 +221,8 @@ class March:
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
-        kinds = self._case.output.signals
-        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends)
+        kinds, warm = self._case.output.signals, self._heat.numbers(len(times))
+        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
 
     def snapshot(self) -> dict[str, Array]:
         """The checkpoint, from which the run continues with the same result."""

@@ -47,14 +47,16 @@ from frbcli.thermal.exchange import (
     ETA,
     FLOW,
     HOT,
+    HOTTEST,
     POWER,
+    REFERENCE,
     SCALE,
     SHARE,
+    HeatArrays,
     heat_step,
     viscosity_at,
     write_clearances,
 )
-from frbcli.thermal.model import HeatModel
 
 TOLD = 5  # columns of a film in the output: temperature, viscosity, clearance, power, flow; then all other nodes
 NARROWEST = 0.02  # of its reference: a clearance below this share has closed
@@ -81,12 +83,12 @@ class CellEnds(NamedTuple):
 
 
 class LumpedHeat(NamedTuple):
-    """model: see HeatModel; ends: of each film its EndFlow, or CellEnds; concentric (F,): Q eta / C^3 of a formula in
+    """model: see HeatArrays; ends: of each film its EndFlow, or CellEnds; concentric (F,): Q eta / C^3 of a formula in
     their place, where by_formula; viscosity (F,) Pa s, drag (F,) N m s: those that films were made for; state (BOOKS +
     bodies + n,): what a run carries on: books, speeds of rotor and rings, temperatures; now (FILM_ROWS, F); gain
     (n,)."""
 
-    model: HeatModel
+    model: HeatArrays
     ends: Any
     concentric: Array
     by_formula: bool
@@ -157,7 +159,7 @@ def _write_heat(heat, out_heat, first, last):  # type: ignore[no-untyped-def]
     return lambda heat, out_heat, first, last: _write(heat, out_heat, first, last)
 
 
-@compiled(inline=True)
+@compiled()
 def _carry(
     heat: LumpedHeat, films: Any, work: Any, turning: Array, terms: Indices, film: Array, bodies: Array, wet: Array,
     contact_at: float, contact_stiffness: float, g: float, step: float, clearances: Array, drag: Array,
@@ -183,7 +185,10 @@ def _carry(
             w_x, w_y = r_x + 0.5 * total * d_y, r_y - 0.5 * total * d_x
             now[FLOW, f] = c * leaving(heat.ends, films, work, f, d_x, d_y, w_x, w_y, now[SCALE, f])
         now[SHARE, f] = oil_share(films, work, f)
-    heat_step(model, now, step, heat.state[BOOKS + bodies.shape[0] :], heat.gain, heat.state)
+    heat_step(
+        model.capacity, model.links, model.films, model.numbers, now, step, heat.state[BOOKS + bodies.shape[0] :],
+        heat.gain, heat.state,
+    )  # fmt: skip
     return int(_follow(heat, films, drag, clearances, wet, True))
 
 
@@ -196,13 +201,14 @@ def _follow(
     model, now, count = heat.model, heat.now, clearances.shape[0]
     bodies = heat.state.shape[0] - BOOKS - model.capacity.shape[0]
     temperatures = heat.state[BOOKS + bodies :]
-    write_clearances(model, temperatures, heat.state[BOOKS : BOOKS + bodies], now[CLEARANCE])
+    made, numbers = model.films, model.numbers
+    write_clearances(made, model.expansion, model.growth, temperatures, heat.state[BOOKS : BOOKS + bodies], now)
     for f in range(count):
-        temperature, c, reference = temperatures[f], now[CLEARANCE, f], model.reference[f]
-        if not (temperature < model.hottest and c > NARROWEST * reference):
+        temperature, c, reference = temperatures[f], now[CLEARANCE, f], made[REFERENCE, f]
+        if not (temperature < numbers[HOTTEST] and c > NARROWEST * reference):
             heat.state[HOT] = 1.0 + f
             return OVERHEATED
-        thicker, narrower = viscosity_at(model.viscosity, temperature) / heat.viscosity[f], reference / c
+        thicker, narrower = viscosity_at(numbers, temperature) / heat.viscosity[f], reference / c
         now[ETA, f], now[SCALE, f] = thicker * heat.viscosity[f], thicker * narrower * narrower
         drag[f] = heat.drag[f] * thicker * narrower
         if moved and wet.shape[1] > f and clearances[f] != c:
