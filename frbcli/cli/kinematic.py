@@ -11,6 +11,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.heat import film_document, tell_film
 from frbcli.cli.live import counting, live_lines
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
@@ -97,6 +98,9 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
     terminal.table(f"{title}: {found.test}", FORCES, map(_forces, found.results))
     terminal.table("", OIL, map(_oil, found.results))
     terminal.result(EXPLANATION)
+    for result in found.results:
+        if result.heat is not None:
+            tell_film(terminal, result.heat, f"{result.name}: the film when it is warm")
     if found.test != "rotation":
         terminal.result(LARGEST)
     for result in found.results:
@@ -180,6 +184,8 @@ def result_document(result: KinematicResult) -> dict[str, Any]:
             "newton_iterations": result.newton_iterations,
         },
     }
+    if result.heat is not None:
+        document["thermal"] = film_document(result.heat)
     if result.plan.test != "rotation":
         document |= {
             "t_s": None if history is None else history.time_s,

@@ -28,11 +28,14 @@ from frbcli.thermal.exchange import (
     CARRIED,
     CLEARANCE,
     DISSIPATED,
+    DRAG,
     FILM_ROWS,
     GIVEN,
     HOT,
     IN_FILMS,
+    REFERENCE,
     SHARE,
+    VISCOSITY,
     arrays_of,
 )
 from frbcli.thermal.model import clearances_at, viscosities_at
@@ -84,8 +87,9 @@ class RunHeat:
         if self._loop is None or self._heat is None:
             return None
         viscosities, clearances = (self._rows[:rows, each : TOLD * len(self._names) : TOLD] for each in (1, 2))
-        thicker, narrower = viscosities / self._loop.viscosity, self._heat.model.reference / clearances
-        return FilmNumbers(clearances.copy(), self._loop.drag * thicker * narrower, thicker * narrower**2)
+        made = self._loop.model.films
+        thicker, narrower = viscosities / made[VISCOSITY], made[REFERENCE] / clearances
+        return FilmNumbers(clearances.copy(), made[DRAG] * thicker * narrower, thicker * narrower**2)
 
     def snapshot(self) -> dict[str, Array]:
         """What a checkpoint holds of it."""
@@ -167,13 +171,11 @@ def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
     state[BOOKS + bodies :] = heat.start
     now = np.zeros((FILM_ROWS, count))
     now[SHARE], now[CLEARANCE] = 1.0, system.clearances
+    viscosity = np.array([case.viscosity(place.geometry) for place in places])
+    by_formula = case.heat is not None and case.heat.side_flow == "concentric"
     return LumpedHeat(
-        model=arrays_of(model),
+        model=arrays_of(model, viscosity, np.array(system.drags), heat.concentric, by_formula),
         ends=_cell_ends(case, system) if system.volumes else end_flows(system),
-        concentric=heat.concentric,
-        by_formula=case.heat is not None and case.heat.side_flow == "concentric",
-        viscosity=np.array([case.viscosity(place.geometry) for place in places]),
-        drag=np.array(system.drags),
         state=state,
         now=now,
         gain=np.zeros(n),

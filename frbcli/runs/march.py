@@ -108,7 +108,8 @@ class March:
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
-        self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
+        warm = 2 * len(system.names) if case.heat is not None else 0
+        self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering) + warm))
         self._expected, self._course = expected_cost(case, plan, profile), expected_course(case, plan, profile)
         self._cpu_s = self._wall_s = 0.0
         self._budget = FIRST_BUDGET
@@ -156,7 +157,7 @@ class March:
     @property
     def samples(self) -> Array:
         """(k, 2 n + 1 + films) states so far at the fixed output times: see film_force_errors, and the mean oil
-        fraction of each film, which is of no meaning where it keeps none."""
+        fraction of each film, which is of no meaning where it keeps none; with heat clearances and scales behind."""
         return self._samples
 
     @property
@@ -196,7 +197,9 @@ class March:
         times: Array = self._control.output_step * (first + np.arange(rows, dtype=np.float64))
         speeds = self._profile.speed(times)
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
-        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept]])
+        warm = self._heat.numbers(rows)
+        changed = () if warm is None else (warm.clearances[kept], warm.scales[kept])
+        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept], *changed])
         self._samples = np.concatenate([self._samples, fresh])
         signals = self._signals(times, speeds, self._q[:rows], self._v[:rows]) | self._heat.signals(rows)
         if status == FINISHED and self._current + 1 < len(self._segments):

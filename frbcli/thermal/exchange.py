@@ -15,11 +15,12 @@ from frbcli.thermal.model import AT_ZERO, SLOPE, HeatModel
 
 # Rows of the links: two nodes, conductance at the reference clearance W/K, the film whose clearance divides it or -1.
 FIRST, SECOND, CONDUCTANCE, OF_FILM = range(4)
-# Rows of the films: temperature of the supply K, film that feeds it or -1, clearance of the conductances m, clearance
-# at no temperature and speed m.
-SUPPLY, INLET, REFERENCE, BASE = range(4)
-# Numbers: volumetric heat capacity of the oil at 0 K and its slope, m, hottest film K, Vogel's law (3.12).
-HEAT_AT_ZERO, HEAT_SLOPE, MIXING, HOTTEST, ETA_0, A, C = range(7)
+# Rows of the films: temperature of the supply K, film that feeds it or -1, clearance at no temperature and speed m; as
+# they were made: clearance m, viscosity Pa s, Couette's resistance N m s; Q eta / C^3 of the formula m Pa s / s.
+SUPPLY, INLET, BASE, REFERENCE, VISCOSITY, DRAG, FORMULA = range(7)
+# Numbers: volumetric heat capacity of the oil at 0 K and its slope, m, hottest film K, Vogel's law (3.12); 1 where the
+# side flow is that of the formula; 1 where films are in balance at each instant.
+HEAT_AT_ZERO, HEAT_SLOPE, MIXING, HOTTEST, ETA_0, A, C, BY_FORMULA, BALANCED = range(9)
 # What a run has gone through so far, in J: dissipated by the films, carried away by the oil, taken by nodes of given
 # temperature, kept by the films; and 1 + the film that became too hot, 0 if none.
 DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
@@ -27,27 +28,29 @@ DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
 # table, share of its gap that is oil.
 POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, FILM_ROWS = range(7)
 LONGEST = 0.2  # of a time constant: explicit steps between nodes
+ITERATIONS, FURTHEST, SETTLED = 30, 30.0, 1e-9  # of a film in balance: the steps of Newton's method and its end, K
 
 
 class HeatArrays(NamedTuple):
-    """A HeatModel of n nodes, the first F of them films: capacity (n,) J/K; links (4, l), films (4, F), numbers (7,)
-    with the rows above; expansion (F, n) m/K, growth (F, bodies) m s^2."""
+    """A HeatModel of n nodes, the first F of them films: capacity (n,) J/K; links (4, l), films (7, F), numbers (9,)
+    with the rows above; growth (F, bodies + n) m s^2 and m/K of the clearances, see write_clearances."""
 
     capacity: Array
     links: Array
     films: Array
     numbers: Array
-    expansion: Array
     growth: Array
 
 
-def arrays_of(model: HeatModel) -> HeatArrays:
-    """The model as the kernels take it."""
+def arrays_of(model: HeatModel, viscosity: Array, drag: Array, formula: Array, by_formula: bool) -> HeatArrays:
+    """The model as the kernels take it. viscosity (F,) Pa s, drag (F,) N m s: of the films as they were made; formula
+    (F,): Q eta / C^3 of a concentric film, the side flow where by_formula."""
     links = np.vstack([model.links.T, model.conductance, model.of_film]).astype(np.float64)
-    films = np.vstack([model.supply, model.inlet, model.reference, model.clearance]).astype(np.float64)
+    made = (model.reference, viscosity, drag, formula)
+    films = np.vstack([model.supply, model.inlet, model.clearance, *made]).astype(np.float64)
     oil = (model.oil_heat[AT_ZERO], model.oil_heat[SLOPE])
-    numbers = np.array([*oil, model.mixing, model.hottest, *model.viscosity])
-    return HeatArrays(model.capacity, links, films, numbers, model.expansion, model.growth)
+    numbers = np.array([*oil, model.mixing, model.hottest, *model.viscosity, float(by_formula), float(model.balanced)])
+    return HeatArrays(model.capacity, links, films, numbers, np.hstack([model.growth, model.expansion]))
 
 
 @compiled(inline=True)
@@ -56,22 +59,19 @@ def viscosity_at(numbers: Array, temperature: float) -> float:
     return float(numbers[ETA_0]) * math.exp(float(numbers[A]) / (temperature + float(numbers[C])))
 
 
-@compiled()
-def write_clearances(
-    films: Array, expansion: Array, growth: Array, temperatures: Array, speeds: Array, now: Array
-) -> None:
-    """Clearances of now (FILM_ROWS, F) <- (4.24) with the temperatures (n,) in K, and the growth of bodies with the
-    speeds in rad/s."""
+@compiled(inline=True)
+def write_clearances(films: Array, growth: Array, bodies: int, state: Array, now: Array) -> None:
+    """Clearances of now (FILM_ROWS, F) <- (4.24) with temperatures in K, and the growth of bodies with their speeds in
+    rad/s. state: after the books it has the speeds of `bodies` bodies, then the temperatures."""
     for f in range(films.shape[1]):
         total = films[BASE, f]
-        for i in range(temperatures.shape[0]):
-            total += expansion[f, i] * temperatures[i]
-        for b in range(speeds.shape[0]):
-            total += growth[f, b] * speeds[b] * speeds[b]
+        for i in range(growth.shape[1]):
+            at = state[BOOKS + i]
+            total += growth[f, i] * (at * at if i < bodies else at)
         now[CLEARANCE, f] = total
 
 
-@compiled()
+@compiled(inline=True)
 def write_rates(
     capacity: Array, links: Array, films: Array, numbers: Array, now: Array, temperatures: Array, gain: Array
 ) -> tuple[float, float]:
@@ -106,7 +106,7 @@ def write_rates(
     return carried, given
 
 
-@compiled()
+@compiled(inline=True)
 def fastest(capacity: Array, links: Array, films: Array, numbers: Array, now: Array, total: Array) -> float:
     """An upper bound of the rates at which nodes follow each other, 1/s. now: (FILM_ROWS, F); total: (n,) scratch."""
     largest, count = 0.0, films.shape[1]
@@ -119,7 +119,7 @@ def fastest(capacity: Array, links: Array, films: Array, numbers: Array, now: Ar
             passed *= films[REFERENCE, film] / now[CLEARANCE, film]
         total[int(links[FIRST, k])] += passed
         total[int(links[SECOND, k])] += passed
-    for i in range(total.shape[0]):
+    for i in range(count if numbers[BALANCED] != 0.0 else 0, total.shape[0]):
         share = held_share(films, now, i) if i < count else 1.0
         largest = max(largest, total[i] / (share * capacity[i]))
     return largest
@@ -132,6 +132,42 @@ def held_share(films: Array, now: Array, f: int) -> float:
 
 
 @compiled()
+def balance_films(links: Array, films: Array, numbers: Array, now: Array, temperatures: Array) -> None:
+    """The films of temperatures (n,) <- those at which they gain nothing from what they do now (FILM_ROWS, F), by
+    Newton's method, with the power proportional to the viscosity and the flow to its inverse."""
+    for f in range(films.shape[1] - 1, -1, -1):  # a film that feeds another one comes behind it
+        source, t = int(films[INLET, f]), temperatures[f]
+        at = temperatures[source] if source >= 0 else films[SUPPLY, f]
+        held = given = 0.0  # W/K to all that keeps its temperature here, and W from it
+        for k in range(links.shape[1]):
+            i, j, film = int(links[FIRST, k]), int(links[SECOND, k]), int(links[OF_FILM, k])
+            if f in (i, j):
+                passed = links[CONDUCTANCE, k]
+                if film >= 0:
+                    passed *= films[REFERENCE, film] / now[CLEARANCE, film]
+                held += passed
+                given += passed * temperatures[i + j - f]
+        for i in range(films.shape[1]):
+            if int(films[INLET, i]) == f:  # oil that it hands on
+                passed = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * films[SUPPLY, f]) * now[FLOW, i]
+                held += passed
+                given += passed * films[SUPPLY, f]
+        for _ in range(ITERATIONS):
+            rise, below = (t - at) / numbers[MIXING], t + numbers[C]
+            thicker = viscosity_at(numbers, t) / now[ETA, f]
+            flow, slope = now[FLOW, f] / thicker, -numbers[A] / (below * below)  # slope: of the logarithm of thicker
+            heat = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * (at + 0.5 * rise)) * flow
+            left = now[POWER, f] * thicker - heat * rise - held * t + given
+            by_t = (now[POWER, f] * thicker + heat * rise) * slope - held
+            by_t -= (heat + 0.5 * numbers[HEAT_SLOPE] * flow * rise) / numbers[MIXING]
+            change = FURTHEST if by_t >= 0.0 else min(max(-left / by_t, -FURTHEST), FURTHEST)
+            t = min(t + change, numbers[HOTTEST])
+            if abs(change) < SETTLED or t == numbers[HOTTEST]:
+                break
+        temperatures[f] = t
+
+
+@compiled(inline=True)
 def heat_step(
     capacity: Array, links: Array, films: Array, numbers: Array, now: Array, step: float, temperatures: Array,
     gain: Array, books: Array,
@@ -141,6 +177,9 @@ def heat_step(
 
     Explicit steps, a share of the shortest time constant each: what one node loses is what others gain, to round-off.
     """
+    balanced = numbers[BALANCED] != 0.0
+    if balanced:
+        balance_films(links, films, numbers, now, temperatures)
     count = 1 + int(step * fastest(capacity, links, films, numbers, now, gain) / LONGEST)
     part = step / count
     for _ in range(count):
@@ -150,7 +189,8 @@ def heat_step(
         for i in range(temperatures.shape[0]):
             if i < films.shape[1]:
                 books[DISSIPATED] += part * now[POWER, i]
-                books[IN_FILMS] += part * gain[i]
-                temperatures[i] += part * gain[i] / (held_share(films, now, i) * capacity[i])
+                if not balanced:
+                    books[IN_FILMS] += part * gain[i]
+                    temperatures[i] += part * gain[i] / (held_share(films, now, i) * capacity[i])
             elif capacity[i] != math.inf:
                 temperatures[i] += part * gain[i] / capacity[i]
