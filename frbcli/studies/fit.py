@@ -256,9 +256,8 @@ def _scatter(measured: Ridges, run: Run) -> list[Scatter]:
         rough = float(np.sqrt(np.mean(second**2) / SECOND)) if second.size else FIRST_SHARE * _largest(group)
         found.append(max(rough, LEAST_SHARE * _largest(group)))
     grown = _groups(measured)[-1]
-    if len(grown) > 1:
-        speed = measured.speed_Hz[_compared(measured)[1]]
-        found[-1] = np.hypot(found[-1], reach * np.gradient(grown, speed))
+    earlier = np.interp(measured.speed_Hz[_compared(measured)[1]] - reach, measured.speed_Hz, measured.whirl)
+    found[-1] = np.hypot(found[-1], grown - earlier)
     return [*found, reach]
 
 
