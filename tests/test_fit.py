@@ -181,3 +181,8 @@ def test_what_cannot_be_fitted_is_refused_before_a_run(
 ) -> None:
     with pytest.raises(InputError, match=re.escape(words)):
         fit(frbcli.load_case("jeffcott"), make_run(Rotor()), keys, bounds)
+
+
+def test_a_measurement_at_a_constant_speed_is_refused() -> None:
+    with pytest.raises(InputError, match="1 speeds in common"):
+        fit(frbcli.load_case("jeffcott"), make_run(Rotor(speeds_Hz=(100.0, 100.0))), ["bearing.clearance"])
