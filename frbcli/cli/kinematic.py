@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
 
 BAR = 1e5
-FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.", "CPU")
-OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance")
+FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.")
+OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance", "CPU")
 EXPLANATION = (
     "Forces of the whole bearing on the journal in N; angle: of the force from the\n"
     "x-axis; So: Sommerfeld number (3.14); p: absolute, in bar; err.: relative error\n"
-    "of the force, from half the cells; CPU: time in s; torque: on the journal, N m;\n"
-    "oil: mean oil fraction; in, out: flow in mm^3/s; balance: oil that is lost, or\n"
-    "created (negative), over the flow."
+    "of the force, from half the cells; torque: on the journal, N m; oil: mean oil\n"
+    "fraction; in, out: flow in mm^3/s; balance: oil that is lost, or created\n"
+    "(negative), over the flow; CPU: time in s."
 )
 LARGEST = "Values are those of the moment of the largest force."
 
@@ -113,7 +113,7 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
 def _forces(result: KinematicResult) -> tuple[str, ...]:
     loads = result.loads
     if loads is None:
-        return (result.name, "none", *[""] * (len(FORCES) - 3), f"{result.cpu_s:.1f}")
+        return (result.name, "none", *[""] * (len(FORCES) - 2))
     x, y = loads.force
     size = math.hypot(x, y)
     error = result.force_error
@@ -127,7 +127,6 @@ def _forces(result: KinematicResult) -> tuple[str, ...]:
         f"{math.degrees(math.atan2(y, x)):.0f}°",
         _told(loads.p_max / BAR, ".4g"),
         _told(error, ".0e").replace("e-0", "e-"),
-        f"{result.cpu_s:.1f}",
     )
 
 
@@ -145,15 +144,16 @@ def _number(value: float, size: float) -> str:
 def _oil(result: KinematicResult) -> tuple[str, ...]:
     loads = result.loads
     if loads is None:
-        return (result.name, *[""] * (len(OIL) - 1))
+        return (result.name, *[""] * (len(OIL) - 2), f"{result.cpu_s:.1f}")
     return (
         result.name,
         _told(loads.p_min / BAR, ".4g"),
-        _told(loads.torque.journal, ".4g"),
+        _told(loads.torque.journal, ".3g"),
         _told(loads.oil_fraction, ".3f"),
         _told(loads.oil.in_m3_s * 1e9, ".4g"),
         _told(loads.oil.out_m3_s * 1e9, ".4g"),
-        _told(loads.oil.defect_relative, ".0e"),
+        _told(loads.oil.defect_relative, ".0e").replace("e-0", "e-"),
+        f"{result.cpu_s:.1f}",
     )
 
 
