@@ -15,6 +15,7 @@ from frbcli.case.load import load_case, load_case_text
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.linear.bearing_sheet import BearingSheet, bearing_sheet, sommerfeld_chart
+from frbcli.linear.heat import warm_machine
 from frbcli.linear.stability import stability
 
 Row = dict[str, float]
@@ -211,3 +212,49 @@ def test_what_cannot_be_computed_is_said(
 def test_no_load_is_a_fault_of_the_case() -> None:
     with pytest.raises(InputError, match="--load"):
         bearing_sheet(load_case("squeeze"), [20.0])
+
+
+WARM = [
+    "film.cavitation=half-sommerfeld", "bearing.supply.pressure=2 bar", "oil.density=830 kg/m^3",
+    "oil.heat_capacity=2100 J/(kg*K)", 'oil.viscosity={ grade = "SAE 10W-40" }', "thermal.model=lumped",
+    "thermal.supply_temperature=50 degC", "thermal.mixing=0.5",
+]  # fmt: skip
+
+
+def test_with_heat_every_speed_has_its_warm_film() -> None:
+    """An adiabatic film warms by mixing times what its power makes of its oil; with more speed more."""
+    case = load_case("jeffcott", WARM)
+    points = bearing_sheet(case, [50.0, 200.0]).points
+    for point in points:
+        (film,) = warm_machine(case, point.speed_Hz).films
+        assert point.temperature == pytest.approx(film.temperature, abs=1e-3)
+        assert point.viscosity == pytest.approx(film.viscosity, rel=1e-5)
+        assert point.power == pytest.approx(film.power, rel=1e-3)
+        assert point.side_flow == pytest.approx(film.flow, rel=2e-3)
+        rise = point.power / (830.0 * 2100.0 * point.side_flow)
+        assert point.temperature_rise == pytest.approx(rise)
+        assert point.temperature - 323.15 == pytest.approx(0.5 * rise, rel=3e-3)
+    assert points[1].temperature > points[0].temperature + 1.0
+    assert points[1].viscosity < points[0].viscosity
+
+
+def test_with_heat_the_load_is_that_of_the_rotor() -> None:
+    case = load_case("jeffcott", WARM)
+    with pytest.raises(InputError, match="takes no other"):
+        bearing_sheet(case, [50.0], load=30.0)
+    with pytest.raises(InputError, match="over eccentricity"):
+        sommerfeld_chart(case, [0.5])
+
+
+def test_the_command_tells_film_temperatures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sets = [word for setting in WARM for word in ("--set", setting)]
+    table = tmp_path / "sheet.csv"
+    code = frb(["bearing", "jeffcott", *sets, "--speed", "50 Hz", "--no-picture", "--csv", str(table), "--json"])
+    document = json.loads(capsys.readouterr().out)
+    assert code == 0
+    (point,) = document["points"]
+    (row,) = csv.DictReader(table.read_text(encoding="utf-8").splitlines())
+    for name in ("temperature_K", "viscosity_Pa_s", "clearance_m"):
+        assert float(row[name]) == pytest.approx(point[name])
+    assert point["temperature_K"] > 323.15
+    assert (document["oil_density_kg_m3"], document["oil_heat_capacity_J_kg_K"]) == (830.0, 2100.0)

@@ -18,7 +18,7 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.table import SHIPPED
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balances import FLOWS, SIDES, balances
+from frbcli.film.cells.balances import FLOWS, SIDES, GridMotion, balances
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.carried import before_upstream, limited, limited_at
 from frbcli.film.cells.data import volume_films
@@ -157,7 +157,8 @@ def test_balances_are_the_plain_ones(law: Law, omega: float, ends: tuple[str, st
     follow_law(parts[0], *motion.d, 0.0, 0.0, omega, numbers)
     cell_states(parts[0], parts[3], numbers, 0.0, w, states)
     states[BEFORE_UPSTREAM] = before
-    balances(*parts, states, *motion.d, omega, rate, past, 1e-4, 0.0, 0.0, 0.0, stencil, fields, flows)
+    at = GridMotion(*motion.d, omega, g=1e-4, rate=rate)
+    balances(*parts, states, at, past, stencil, fields, flows)
     size = np.max(np.abs(residual))
     assert np.allclose(-fields[:, :, K], residual, rtol=1e-10, atol=1e-11 * size)
     for entry, name in enumerate(("centre", "before", "behind", "below", "above")):
@@ -234,7 +235,6 @@ def test_derivatives_by_the_journals_velocity(name: str, remembers: bool) -> Non
     law = LAWS[name]
     film = film_of(law, "free-to-air", "groove")
     data = volume_films([film])
-    parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
     random = np.random.default_rng(3)
     g, spin, rate = 1e-4, 150.0, 1e4 if remembers else 0.0
     past = random.uniform(0.5, 1.0, (M, K)) * rate
@@ -248,7 +248,7 @@ def test_derivatives_by_the_journals_velocity(name: str, remembers: bool) -> Non
         for _ in range(60):
             states, stencil, blocks, fields, flows = arrays()
             loads = film_newton(
-                *parts, w, d[0], d[1], 250.0, rate, past, g, against[0], against[1], spin,
+                data, 0, w, GridMotion(d[0], d[1], 250.0, against[0], against[1], spin, g, rate), past,
                 states, stencil, blocks, fields, flows,
             )  # fmt: skip
             w = w + fields[:, :, K]

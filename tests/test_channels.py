@@ -193,7 +193,8 @@ def test_bores_too_small_for_the_mesh_are_closed(tmp_path: Path) -> None:
 def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> None:
     """Against differences: of the force of one film by the journal of the other, too."""
     case = ringed(*model, *AT_END, "speed.from=100 Hz", "start.displacement=[0.3,-0.4]")
-    system, g = make_system(case, make_plan(case)), 1e-5
+    plan = make_plan(case)
+    system, g, control = make_system(case, plan), 1e-5, control_of(case, plan)
     state = first_state(case.start, system, run_up_profile(case))
     clearances = np.array(system.clearances)
     place = (system.rotor.journals @ state.q).ravel()
@@ -207,7 +208,7 @@ def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> No
         film[U], film[X_0] = u, place
         film[OMEGA] = np.repeat([2 * math.pi * 100.0 + 150.0, 150.0], 2)
         for _ in range(2):  # the derivatives are those of the second time, where all has settled
-            assert _solve_films(system.films, work, clearances, 1.0, 0.0, g, 1, film) > 0
+            assert _solve_films(system.films, work, clearances, control, g, 1, film) > 0
         own = np.zeros((4, 4))
         for f in (0, 2):
             own[f : f + 2, f], own[f : f + 2, f + 1] = film[BY_X, f : f + 2], film[BY_Y, f : f + 2]

@@ -370,6 +370,23 @@ def test_three_whirls_of_a_turbocharger_have_their_names() -> None:
     assert named["onset", "Sub 3"].t_s == pytest.approx(2.5, abs=0.05)
 
 
+@pytest.mark.parametrize("faster", [1.0, 4.0, 16.0])
+def test_whirls_are_found_in_a_run_of_any_length(faster: float) -> None:
+    """All speeds and frequencies so many times as high: r T^2 is the same, and so are the events."""
+    slow = ring_run(RingWhirl("inner", 0.5, 2.0, 150.0), RingWhirl("outer", 2.3, 9.0, 1e3))
+    columns = {name: slow[name] for name in slow.signals}
+    columns["time_s"] = columns["time_s"] / faster
+    for name in ("speed_Hz", "ring_speed_Hz"):
+        columns[name] = columns[name] * faster
+    events = find_events(replace(as_run(columns), references=slow.references))
+    expected = [event for event in find_events(slow) if event.kind != "critical-speed"]
+    found = [event for event in events if event.kind != "critical-speed"]
+    assert kinds(tuple(found)) == kinds(tuple(expected))
+    for event, other in zip(found, expected, strict=True):
+        assert faster * event.t_s == pytest.approx(other.t_s, abs=0.011)  # a window further, at most
+        assert event.frequency_Hz == pytest.approx(faster * other.frequency_Hz, rel=0.02)
+
+
 def test_combinations_of_two_whirls_are_no_whirls() -> None:
     two = ring_run(RingWhirl("inner", 0.3, 9.0, 100.0), RingWhirl("inner", 1.2, 9.0, 1e3, 0.5))
     difference = two["journal_x_m"] + 1j * two["journal_y_m"]

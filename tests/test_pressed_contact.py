@@ -30,13 +30,13 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System, make_system
-from frbcli.solve.cell_films import BALANCE, EMPTY, LAW, OPEN, cell_numbers, move_cells
+from frbcli.solve.cell_films import BALANCE, EMPTY, LAW, OPEN, STAGE, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work
 from frbcli.solve.films import make_work
 from frbcli.solve.journal_newton import correct, forces
-from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
-from frbcli.solve.state import FINISHED, RUNNING, WET
+from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, FilmMotion, U
+from frbcli.solve.state import FINISHED, RUNNING, WET, Control
 
 Array = NDArray[np.float64]
 BASE = "axial-groove-two-phase"
@@ -119,6 +119,11 @@ def rows_of(system: System, d: Array, v: Array, omega: float, g: float) -> Array
     return rows
 
 
+def contact_at(eccentricity: float, stiffness: float) -> Control:
+    """Of shells that give way; the rest is of no meaning here."""
+    return Control(1e-4, 24.0, 1e-3, 1e-3, eccentricity, stiffness)
+
+
 def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float = SOFT) -> Pressed:
     """A film with a shell that gives way, ready for stages with this g; films with cells go on from call to call."""
     system = system_of(kind)
@@ -134,7 +139,7 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
     def ask(d: Array, v: Array) -> Array:
         rows = rows_of(system, d, v, omega, g)
         for iteration in range(24):
-            forces(data, work, clearances, touches, stiffness, g, 1, iteration, rows)
+            forces(data, work, clearances, contact_at(touches, stiffness), g, 1, iteration, rows)
             if not cells or work.grids[BALANCE, 0] != OPEN:
                 return rows
             move_cells(work.w[0], work.fields[0], work.grids[:, 0], 0.0, 0.0, g, np.zeros(0))
@@ -153,11 +158,13 @@ def _published(
     work.w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
     work.past[:] = start.fraction / g
 
+    control = contact_at(touches, stiffness)
+
     def ask(d: Array, v: Array) -> Array:
         rows, held = rows_of(system, d, v, omega, g), np.zeros((2, 2))  # a journal that no force moves
         for iteration in range(MOST_ITERATIONS):
-            forces(data, work, clearances, touches, stiffness, g, 1, iteration, rows)
-            share, _, _, unsettled = correct(data, work, held, clearances, touches, stiffness, g, rows, held.copy())
+            forces(data, work, clearances, control, g, 1, iteration, rows)
+            share, _, _, unsettled = correct(data, work, held, clearances, control, g, rows, held.copy())
             if share == 1.0 and unsettled == 0:
                 return rows
         raise AssertionError(f"the film did not settle at {d}")
@@ -270,14 +277,12 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
     past: oil at the start over g; leaps: cells may leap over their transition."""
     data: object = system.films
     work = make_work(data, np.zeros((4, 1, *w.shape)), 2)
-    work.w[0], grid = w, work.grids[:, 0]
+    work.w[0], work.past[0], grid = w, past, work.grids[:, 0]
+    grid[STAGE] = 1
     force, states, iteration = np.zeros(2), work.states[0], 0
+    at = FilmMotion(felt[0], felt[1], 0.0, 0.0, 1700.0)
     for iteration in range(24):
-        force = np.array(cell_numbers(
-            data.numbers[0], data.ring[0], data.width[0], data.cells[0], work.w[0], past, states,  # type: ignore[attr-defined]
-            work.stencil, work.blocks, work.fields[0], work.stage_oil[1, 0], work.stage_flows[1, 0], grid,
-            work.slopes[0], work.w[0], felt[0], felt[1], 0.0, 0.0, 1700.0, g, iteration,
-        )[:2])  # fmt: skip
+        force = np.array(cell_numbers(data, work, 0, at, g, iteration)[:2])  # type: ignore[arg-type]
         if grid[BALANCE] != OPEN:
             return iteration, force, states[FRACTION]
         if leaps:

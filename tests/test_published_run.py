@@ -146,10 +146,10 @@ def solve_stage(
     compliance: Array, rows: Array,
 ) -> int:  # fmt: skip
     """Newton's method of a stage until the film has settled; the iterations."""
-    clearances, newton = np.array([clearance]), np.zeros((2, 2))
+    clearances, newton, control = np.array([clearance]), np.zeros((2, 2)), Control(1e-4, 24.0, 1e-3, 1e-3, *contact)
     for iteration in range(MOST_ITERATIONS):
-        forces(data, work, clearances, *contact, g, 1, iteration, rows)
-        share, _, moved, unsettled = correct(data, work, compliance, clearances, *contact, g, rows, newton)
+        forces(data, work, clearances, control, g, 1, iteration, rows)
+        share, _, moved, unsettled = correct(data, work, compliance, clearances, control, g, rows, newton)
         if share == 1.0 and unsettled == 0 and moved < 1e-7:
             return iteration + 1
     raise AssertionError("the stage did not settle")

@@ -22,7 +22,7 @@ from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balances import FLOWS, SIDES
+from frbcli.film.cells.balances import FLOWS, SIDES, GridMotion
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import COS, GAP, SIN, volume_films
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
@@ -40,24 +40,24 @@ SETTLED, MOST_ITERATIONS = 1e-6, 12  # change of w that ends a step
 
 @njit
 def iterate(  # type: ignore[no-untyped-def]
-    numbers, ring, width, cells, w, d_x, d_y, omega, g, nothing, states, stencil, blocks, fields, flows, count
+    films, w, motion, nothing, states, stencil, blocks, fields, flows, count
 ):
     """Iterations of a steady film from the same w; returns the last force."""
     force = 0.0
     for _ in range(count):
         force = film_newton(
-            numbers, ring, width, cells, w, d_x, d_y, omega, 0.0, nothing, g, 0.0, 0.0, 0.0,
-            states, stencil, blocks, fields, flows,
+            films, 0, w, motion, nothing, states, stencil, blocks, fields, flows
         )[0]  # fmt: skip
     return force
 
 
 @njit
 def circle(  # type: ignore[no-untyped-def]
-    numbers, ring, width, cells, w, content, past, dt, omega, speed, states, stencil, blocks, fields, flows, count
+    films, w, content, past, dt, omega, speed, states, stencil, blocks, fields, flows, count
 ):
     """Euler steps of a whirl with eps 0.6; returns the number of iterations."""
     m, k = w.shape
+    numbers, ring, cells = films.numbers[0], films.ring[0], films.cells[0]
     law = np.empty(LAW_NUMBERS)
     iterations = 0
     for n in range(count):
@@ -65,7 +65,7 @@ def circle(  # type: ignore[no-untyped-def]
         past[:] = content / dt
         for _ in range(MOST_ITERATIONS):
             film_newton(
-                numbers, ring, width, cells, w, d_x, d_y, omega, 1.0 / dt, past, dt, 0.0, 0.0, 0.0,
+                films, 0, w, GridMotion(d_x, d_y, omega, 0.0, 0.0, 0.0, dt, 1.0 / dt), past,
                 states, stencil, blocks, fields, flows,
             )  # fmt: skip
             iterations += 1
@@ -110,11 +110,10 @@ def iteration_seconds(along: int) -> float:
     film = film_of(TwoPhase(0.99), 40, along)
     w = FilmSolver(film).steady(ROTATION).w
     data = volume_films([film])
-    parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
+    at = GridMotion(*ROTATION.d, ROTATION.omega, g=1e-4)
 
     def job() -> None:
-        nothing = np.zeros(w.shape)
-        iterate(*parts, w, *ROTATION.d, ROTATION.omega, 1e-4, nothing, *scratch(*w.shape), ITERATIONS)
+        iterate(data, w, at, np.zeros(w.shape), *scratch(*w.shape), ITERATIONS)
 
     job()  # compiles
     return seconds(job, ITERATIONS)
@@ -137,13 +136,12 @@ def step_figures(along: int) -> tuple[float, float]:
     """(CPU seconds, iterations) of one warm step of Elrod's film."""
     film = film_of(Elrod(), 100, along)
     data = volume_films([film])
-    parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
     m, k = film.grid.shape
     begun = film.full(), film.gap((0.6, 0.0), film.grid.centre)[:, None] * np.ones((m, k))
 
     def job() -> int:
         w, content = (array.copy() for array in begun)
-        total: int = circle(*parts, w, content, np.zeros((m, k)), STEP_s, OMEGA, WHIRL, *scratch(m, k), STEPS)
+        total: int = circle(data, w, content, np.zeros((m, k)), STEP_s, OMEGA, WHIRL, *scratch(m, k), STEPS)
         assert np.all(np.isfinite(w))
         return total
 

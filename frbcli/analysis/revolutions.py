@@ -28,7 +28,9 @@ from frbcli.analysis.windows import fast_length, hann
 
 CELLS = 32  # per revolution
 STEPS = 8  # angles per revolution at which orders are known
-START_s = 0.3  # the rotor falls from its starting position to its place in the first tenths of a second
+START_s = 0.3  # the rotor falls from its starting position to its place in the first tenths of a second ...
+START_SWEEP = 27.0  # ... and in a ramp of r Hz/s in a time T with r T^2 of so much: small rotors run up fast
+START_CORNERS = 21  # moments between which the ramp is taken
 START_REVOLUTIONS = 5.0
 
 
@@ -44,9 +46,14 @@ class Revolutions:
     @property
     def settled(self) -> int:
         """The first step after the start of the run."""
+        if len(self.time_s) < 2:
+            return len(self.time_s)
+        corners = np.linspace(self.time_s[0], self.time_s[-1], START_CORNERS)  # few: a measured speed scatters
+        speed = np.interp(corners, self.time_s, self.speed_Hz)
+        ramp = float(np.max(np.abs(np.diff(speed)))) / float(corners[1] - corners[0])
+        start_s = min(START_s, (START_SWEEP / ramp) ** 0.5) if ramp > 0.0 else START_s
         by_angle = np.searchsorted(self.revolution, START_REVOLUTIONS)
-        by_time = np.searchsorted(self.time_s, (self.time_s[0] if len(self.time_s) else 0.0) + START_s)
-        return int(max(by_angle, by_time))
+        return int(max(by_angle, np.searchsorted(self.time_s, self.time_s[0] + start_s)))
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ Motion = NDArray[np.complex128]
 
 END = "_x_m"
 PIECE = 2**17  # samples of a signal that are looked at together: 1 MB
+CORNERS = 400  # intervals of a run in which its ramp is determined
 
 
 class Column(Protocol):
@@ -85,6 +86,19 @@ def samples(column: Column, places: NDArray[np.int64]) -> Values:
             begin = int(here[0])
             found.append(column[begin : int(here[-1]) + 1][here - begin])
     return np.concatenate(found)
+
+
+def course(time_s: Column, speed_Hz: Column) -> tuple[Values, Values]:
+    """Time in s and rotor speed in Hz at the ends of CORNERS intervals of a run (n,)."""
+    count = len(time_s)
+    places = np.unique(np.linspace(0, count - 1, CORNERS + 1).round().astype(np.int64))
+    return samples(time_s, places), samples(speed_Hz, places)
+
+
+def steepest_ramp(time_s: Column, speed_Hz: Column) -> float:
+    """The largest change of the rotor speed of a run (n,) in Hz/s, 0 at a constant speed."""
+    time, speed = course(time_s, speed_Hz)
+    return float(np.max(np.abs(np.diff(speed) / np.diff(time)), initial=0.0)) if time[-1] > time[0] else 0.0
 
 
 def pieces(count: int) -> Iterator[tuple[int, int]]:

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import PIECE, Column, Motion, Values, samples
+from frbcli.analysis.signals import PIECE, Column, Motion, Values, course, steepest_ramp
 from frbcli.analysis.smear import chirp_height
 from frbcli.analysis.windows import fast_length, hann
 from frbcli.errors import Fault, InputError
@@ -33,7 +33,6 @@ PADDING = 4  # a sinusoid between two lines of the padded spectrum loses less th
 BLOCK = 2**20  # values of padded windows that are in memory at a time
 FLOOR_dB = -200.0  # level of no motion
 UNEVEN = 1e-3  # relative deviation of a sample's time that is more than round-off
-CORNERS = 400  # intervals of a run in which its ramp is determined
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,6 @@ def waterfall(
     overlap: float = 0.9,
     max_frequency_Hz: float | None = None,
     direction: Direction = "x",
-    apart_Hz: float | None = None,
     most: int | None = None,
 ) -> Spectrogram:
     """Short-time spectra of a motion x, y (n,) in m, sampled evenly at time_s (n,), with rotor speed speed_Hz (n,):
@@ -73,9 +71,9 @@ def waterfall(
 
     A steady sinusoid of amplitude A shows as A. direction: "x" and "y" give the one-sided spectrum of one coordinate,
     "forward" the part of x + iy that turns with the rotor. window_s: length of the Hann windows, whose mean is taken
-    off; None takes that of window_length, which parts lines apart_Hz from each other (None: the rotor speed and its
-    half). overlap: the share of a window that the next one sees again; most: so many spectra, each of them the largest
-    of neighbouring ones where there are more; clearance: the length in m that is 0 dB.
+    off; None takes that of window_length, which parts the rotor speed and its half. overlap: the share of a window
+    that the next one sees again; most: so many spectra, each of them the largest of neighbouring ones where there are
+    more; clearance: the length in m that is 0 dB.
 
     Raises InputError if the window or the overlap does not fit the samples, or these are not evenly spaced.
     """
@@ -85,7 +83,7 @@ def waterfall(
         raise _fault("overlap", overlap, "is not a share of the window.", "Use 0 to 0.99.")
     count, step = len(time_s), _step(time_s)
     if window_s is None:
-        window_s = max(window_length(time_s, speed_Hz, apart_Hz), FEWEST * step)
+        window_s = max(window_length(time_s, speed_Hz), FEWEST * step)
     length = round(window_s / step) if np.isfinite(window_s) else 0
     if not FEWEST <= length <= count:
         limits = f"Use more than {FEWEST * step:g} s, up to {step * count:g} s."
@@ -121,11 +119,8 @@ def window_length(time_s: Column, speed_Hz: Column, apart_Hz: float | None = Non
 
     apart_Hz: by default between the rotor speed and its half, from a quarter of the highest speed upwards.
     """
-    count = len(time_s)
-    places = np.unique(np.linspace(0, count - 1, CORNERS + 1).round().astype(np.int64))
-    time, speed = samples(time_s, places), samples(speed_Hz, places)
-    duration, top = float(time[-1] - time[0]), float(np.max(np.abs(speed)))
-    ramp = float(np.max(np.abs(np.diff(speed) / np.diff(time)), initial=0.0)) if duration > 0.0 else 0.0
+    time, speed = course(time_s, speed_Hz)
+    duration, top, ramp = float(time[-1] - time[0]), float(np.max(np.abs(speed))), steepest_ramp(time_s, speed_Hz)
     length = min(LONGEST_s, (SWEEP / ramp) ** 0.5) if ramp > 0.0 else LONGEST_s
     apart = HALF * FROM_SPEED * top if apart_Hz is None else apart_Hz
     return min(max(length, PARTED / apart if apart > 0.0 else 0.0), duration / WINDOWS)

@@ -17,13 +17,14 @@ import numpy as np
 
 from frbcli.analysis import signals
 from frbcli.analysis.peaks import local_maxima
-from frbcli.analysis.signals import PIECE, Motion, RingSpeed, RunLike, SignalOf, Values
+from frbcli.analysis.signals import PIECE, Motion, RingSpeed, RunLike, SignalOf, Values, steepest_ramp
 from frbcli.analysis.windows import fast_length, hann
 
 Side = Literal["inner", "outer"]
 
-WINDOW_s = 0.1  # separates frequencies 20 Hz apart, and is short against a run-up of some seconds
-HOP_s = 0.01
+LONGEST_s = 0.1  # of a window: separates frequencies 20 Hz apart, and is short against a run-up of some seconds
+SWEEP = 3.0  # r T^2 of the window T in a ramp of r Hz/s, in which a whirl moves by its width at most
+HOPS = 10  # steps from window to window in the length of one
 PADDING = 4
 SLOWEST = 2.0  # periods per window: what is slower is the journal that moves to its place
 SYNCHRONOUS = 0.8  # share of the rotor speed above which motion is synchronous
@@ -35,7 +36,7 @@ PAUSE = 5  # windows that a ridge may miss
 BEGINNING = 20  # windows in which a combination of two whirls shows what it is
 FAINT = 0.12  # share of all others that a whirl exceeds at some time: nonlinear films also cause small lines
 SAME_LINE = 0.5  # lines of the spectrum between two frequencies that are taken for one
-SHORTEST_s = 0.15  # a shorter ridge is a transient
+SHORTEST = 1.5  # windows; a shorter ridge is a transient
 SHORTEST_REVOLUTIONS = 20.0
 
 OUTER_UP_TO = 1.4  # times omega_F/2: inner films whirl with a multiple of it, whips included
@@ -44,9 +45,9 @@ LEAVES_LINE = 0.95  # share of the frequency of a free whirl below which it is l
 
 @dataclass(frozen=True)
 class Whirl:
-    """A sub-synchronous motion; the film that drives it. time_s, frequency_Hz, amplitude (k,): in steps of HOP_s, the
-    amplitude over the room of the journal. lasts: up to the end of the run; lock_in: where it locks, None if it does
-    not."""
+    """A sub-synchronous motion; the film that drives it. time_s, frequency_Hz, amplitude (k,): in steps of a tenth of
+    the windows, the amplitude over the room of the journal. lasts: up to the end of the run; lock_in: where it locks,
+    None if it does not."""
 
     side: Side
     time_s: Values
@@ -78,19 +79,21 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
     count, cut_short = len(run), run.status == "contact"
     ends = [signals.piece(run, "time_s", place, place + 1) for place in (0, count - 1)] if count > 1 else []
     step = float(ends[1][0] - ends[0][0]) / (count - 1) if ends else 0.0
-    width, hop = (round(length / step) if step > 0.0 else 0 for length in (WINDOW_s, HOP_s))
+    window_s = _window_length(run)
+    width, hop = (round(length / step) if step > 0.0 else 0 for length in (window_s, window_s / HOPS))
     if hop < 1 or count < 2 * width:
         return ()
     middle = np.arange(0, count - width + 1, hop) + width // 2
     columns = (SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"), RingSpeed(run, name))
     time, speed, ring = (signals.samples(column, middle) for column in columns)
     seen = _windows(run, name, room, width, hop)
-    ridges = [r for r in _follow(_peaks(seen, width, step, SYNCHRONOUS * speed)) if max(r.amplitudes) >= BEGINS]
+    followed = _follow(_peaks(seen, width, step, SYNCHRONOUS * speed), window_s)
+    ridges = [ridge for ridge in followed if max(ridge.amplitudes) >= BEGINS]
     frequencies, amplitudes = _table(ridges, len(middle))
     sides = [_side(row, ring) for row in frequencies]
     whirls = []
     for index, side in enumerate(sides):
-        if _combination(index, frequencies, amplitudes):
+        if _combination(index, frequencies, amplitudes, window_s):
             continue
         strongest = amplitudes[[other == side for other in sides]].max(axis=0)
         leads = np.flatnonzero((amplitudes[index] > 0.0) & (amplitudes[index] >= strongest))
@@ -99,13 +102,19 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
         first, last = int(np.argmax(amplitudes[index] >= BEGINS)), int(leads[-1])
         at = first + np.flatnonzero(amplitudes[index, first : last + 1])
         lasts = last >= len(middle) - 1 - PAUSE
-        shortest = max(SHORTEST_s, SHORTEST_REVOLUTIONS / max(float(speed[first]), 1e-9))
+        shortest = max(SHORTEST * window_s, SHORTEST_REVOLUTIONS / max(float(speed[first]), 1e-9))
         if time[last] - max(time[first], settled_s) < shortest and not (lasts and cut_short and len(at)):
             continue
         free = 0.5 * (ring[at] if side == "outer" else speed[at] + ring[at])
         frequency = frequencies[index, at]
         whirls.append(Whirl(side, time[at], frequency, amplitudes[index, at], lasts, _lock_in(frequency, free)))
     return tuple(sorted(whirls, key=lambda whirl: float(whirl.time_s[0])))
+
+
+def _window_length(run: RunLike) -> float:
+    """Length in s of the windows: a steep ramp asks for short ones."""
+    ramp = steepest_ramp(SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"))
+    return min(LONGEST_s, (SWEEP / ramp) ** 0.5) if ramp > 0.0 else LONGEST_s
 
 
 def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Values, Values]:
@@ -122,14 +131,14 @@ def _side(frequency: Values, ring: Values) -> Side:
     return "outer" if np.median(frequency[there]) <= OUTER_UP_TO * np.median(0.5 * ring[there]) else "inner"
 
 
-def _combination(index: int, frequencies: Values, amplitudes: Values) -> bool:
+def _combination(index: int, frequencies: Values, amplitudes: Values, window_s: float) -> bool:
     """Whether a ridge begins as 2 f_1, f_1 - f_2 or 2 f_1 - f_2 of one or two stronger ones."""
     begins = np.flatnonzero(frequencies[index])[:BEGINNING]
     f, a = frequencies[:, begins], amplitudes[:, begins]
     stronger = [k for k in range(len(f)) if k != index and np.median(a[k]) > np.median(a[index])]
     made = [2 * f[one] for one in stronger]
     made += [factor * f[one] - f[other] for one in stronger for other in stronger if one != other for factor in (1, 2)]
-    return any(np.median(np.abs(line - f[index])) < SAME_LINE / WINDOW_s for line in made)
+    return any(np.median(np.abs(line - f[index])) < SAME_LINE / window_s for line in made)
 
 
 def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -184,14 +193,14 @@ def _peaks(
         yield sorted(peaks, key=lambda peak: -peak[1])
 
 
-def _follow(spectra: Iterator[list[tuple[float, float]]]) -> list[_Ridge]:
+def _follow(spectra: Iterator[list[tuple[float, float]]], window_s: float) -> list[_Ridge]:
     """Peaks of neighbouring spectra that are one motion; a stronger peak takes its ridge first."""
     ridges: list[_Ridge] = []
     active: list[_Ridge] = []
     for column, peaks in enumerate(spectra):
         active = [ridge for ridge in active if column - ridge.columns[-1] <= PAUSE]
         for frequency, amplitude in peaks:
-            near = _nearest(active, column, frequency)
+            near = _nearest(active, column, frequency, window_s)
             if near is None:
                 near = _Ridge()
                 ridges.append(near)
@@ -200,10 +209,10 @@ def _follow(spectra: Iterator[list[tuple[float, float]]]) -> list[_Ridge]:
     return ridges
 
 
-def _nearest(active: Sequence[_Ridge], column: int, frequency: float) -> _Ridge | None:
+def _nearest(active: Sequence[_Ridge], column: int, frequency: float, window_s: float) -> _Ridge | None:
     free = [ridge for ridge in active if ridge.columns[-1] < column]
     nearest = min(free, key=lambda ridge: abs(ridge.frequencies[-1] - frequency), default=None)
-    if nearest is None or abs(nearest.frequencies[-1] - frequency) > DRIFT / WINDOW_s:
+    if nearest is None or abs(nearest.frequencies[-1] - frequency) > DRIFT / window_s:
         return None
     return nearest
 

@@ -24,11 +24,14 @@ if TYPE_CHECKING:
 
 COLUMNS = 80
 NUMBERS = ("Hz", "eps", "att.", "So", "h", "p", "loss", "flow", "rise", "err.")
+HEAT = ("Hz", "eps", "temperature, degC", "viscosity, mPa s", "clearance, um")
+ZERO_CELSIUS = 273.15
 COEFFICIENTS = ("Hz", "eps", "xx", "xy", "yx", "yy")
 EXPLANATION = (
     "att.: attitude angle; So: Sommerfeld number (3.14); h: smallest film thickness, um; p: largest pressure, "
     "bar, absolute; loss: power, W; flow: oil that leaves at the ends, mm^3/s; rise: of its temperature if it took all "
-    "of the power, K; err.: relative error of the force. All per bearing."
+    "of the power, with {density:.4g} kg/m^3 and {capacity:.4g} J/(kg K), K; err.: relative error of the force. All "
+    "per bearing."
 )
 SETTLED = "Coefficients of mass-conserving films are of oil that has settled; they do not determine stability."
 
@@ -59,7 +62,7 @@ def command(
 ) -> int | None:
     """Resting position, coefficients, power loss, oil flow and pressure of every film of CASE."""
     from frbcli.errors import NotConverged
-    from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
+    from frbcli.linear.bearing_sheet import bearing_sheet, heat_capacity, sommerfeld_chart
     from frbcli.results.place import require_place
 
     _check_options(over, speeds, load, output, no_picture, ross)
@@ -89,6 +92,8 @@ def command(
             "command": "bearing",
             "case": case.name,
             "over": over,
+            "oil_density_kg_m3": case.oil.density,
+            "oil_heat_capacity_J_kg_K": heat_capacity(case),
             "points": [_point(point) for point in found.points],
             "picture": picture,
             "csv": csv,
@@ -111,14 +116,18 @@ def _check_options(
 
 def _tell(terminal: Terminal, found: BearingSheet) -> None:
     from frbcli.film.cavitation.table import law_named
+    from frbcli.linear.bearing_sheet import heat_capacity
 
     for film, law in zip(found.films, found.laws, strict=True):
         states = found.of(film)
         name = " ".join(filter(None, (found.case.title or found.case.name, film)))
         terminal.table(f"{name}, {law_named(law).label}", NUMBERS, map(_numbers, states))
+        if found.case.heat is not None:
+            terminal.table("film when everything is warm", HEAT, map(_heat, states))
         terminal.table("stiffness in N/um", COEFFICIENTS, (_entries(state, state.stiffness, 1e-6) for state in states))
         terminal.table("damping in N s/mm", COEFFICIENTS, (_entries(state, state.damping, 1e-3) for state in states))
-    terminal.result(fill(EXPLANATION, COLUMNS, break_long_words=False))
+    told = EXPLANATION.format(density=found.case.oil.density, capacity=heat_capacity(found.case))
+    terminal.result(fill(told, COLUMNS, break_long_words=False))
     if any(law_named(law).keeps_oil for law in found.laws):
         terminal.result(fill(SETTLED, COLUMNS))
     problems = [point for point in found.points if point.problem]
@@ -138,6 +147,16 @@ def _numbers(state: FilmState) -> tuple[str, ...]:
         f"{1e9 * state.side_flow:.4g}",
         _told(state.temperature_rise, ".3g"),
         f"{state.force_error:.0e}".replace("e-0", "e-"),
+    )
+
+
+def _heat(state: FilmState) -> tuple[str, ...]:
+    return (
+        f"{state.speed_Hz:.3g}",
+        f"{state.eccentricity:.3f}",
+        f"{state.temperature - ZERO_CELSIUS:.2f}",
+        f"{1e3 * state.viscosity:.4g}",
+        f"{1e6 * state.clearance:.4g}",
     )
 
 
@@ -171,5 +190,8 @@ def _point(state: FilmState) -> dict[str, object]:
         "side_flow_m3_s": state.side_flow,
         "p_max_Pa": state.p_max,
         "temperature_rise_K": state.temperature_rise,
+        "viscosity_Pa_s": state.viscosity,
+        "clearance_m": state.clearance,
+        "temperature_K": state.temperature,
         "error": {"force_relative": state.force_error},
     }

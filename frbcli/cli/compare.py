@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ import click
 from frbcli.cli.against import beside_measured
 from frbcli.cli.common import Names, Terminal, case_or_run_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.gathered import gathered
 from frbcli.cli.live import live_lines, of_runs
 from frbcli.cli.measured import measured_options
 from frbcli.cli.picture_options import picture_options
@@ -40,6 +42,16 @@ EXPLANATION = (
 )
 
 
+@dataclass(frozen=True)
+class Models:
+    """What is compared, see the options of the command."""
+
+    cavitation: tuple[str, ...]
+    theory: tuple[str, ...]
+    coupling: tuple[str, ...]
+    thermal: tuple[str, ...]
+
+
 @click.command()
 @case_or_run_argument
 @click.option("--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]")
@@ -57,12 +69,10 @@ EXPLANATION = (
 @measured_options
 @picture_options
 @output_options
+@gathered("models", Models)
 def command(
     case: Case | Path,
-    cavitation: tuple[str, ...],
-    theory: tuple[str, ...],
-    coupling: tuple[str, ...],
-    thermal: tuple[str, ...],
+    models: Models,
     test: str,
     output: Path | None,
     picture: bool,
@@ -81,27 +91,22 @@ def command(
     from frbcli.studies.compare import compare
 
     if isinstance(case, Path) or file is not None:
-        if not isinstance(case, Path) or file is None or cavitation or theory or coupling or test != "runup" or keep:
+        if not isinstance(case, Path) or file is None or any(vars(models).values()) or test != "runup" or keep:
             raise click.UsageError("A measurement stands beside a run: frb compare RUN.h5 --measured FILE --x COLUMN.")
         beside_measured(terminal, case, file, measurement, signal, output if picture else None, picture)
         return 0
     target = output or here(case.name, "-compare.png")
     if test in TESTS:
-        if thermal:
-            problem = f"is not for a {test}, whose film keeps its temperature."
-            raise InputError(case.name, (Fault("--thermal", ",".join(thermal), None, problem, "Leave it out."),))
-        if coupling:
-            problem = f"is not for a {test}, in which no rotor moves."
-            raise InputError(case.name, (Fault("--coupling", ",".join(coupling), None, problem, "Leave it out."),))
-        return _kinematic(case, test, cavitation, theory, target, picture, terminal)
+        return _kinematic(case, test, models, target, picture, terminal)
     check_place(target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         tell = of_runs(terminal, show)
         found = compare(
-            case, cavitation, theory, test, keep, lambda variant, *rest: tell(variant.name, *rest), coupling, thermal
-        )
-    _report(found, bool(coupling), terminal)
-    if thermal:
+            case, models.cavitation, models.theory, test, keep, lambda variant, *rest: tell(variant.name, *rest),
+            models.coupling, models.thermal,
+        )  # fmt: skip
+    _report(found, bool(models.coupling), terminal)
+    if models.thermal:
         _report_heat(found, terminal)
     results = [_document(result) for result in found.results]
     whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
@@ -113,28 +118,24 @@ def command(
     return max(exit_code(status) for status in (found.status, *(result.run.status for result in found.results)))
 
 
-def _kinematic(
-    case: Case,
-    test: str,
-    cavitation: tuple[str, ...],
-    theory: tuple[str, ...],
-    target: Path,
-    picture: bool,
-    terminal: Terminal,
-) -> int:
+def _kinematic(case: Case, test: str, wanted: Models, target: Path, picture: bool, terminal: Terminal) -> int:
     """A kinematic test with several models; their films all have finite length."""
     from frbcli.cli.kinematic import run_test
     from frbcli.film.cavitation.table import laws, names
 
-    if set(theory) - {"finite"}:
-        problem = f"is not for a {test}, which solves the whole film."
-        raise InputError(case.name, (Fault("--theory", ",".join(theory), None, problem, "Leave it out."),))
+    for option, given, problem in (
+        ("--thermal", wanted.thermal, f"is not for a {test}, whose film keeps its temperature."),
+        ("--coupling", wanted.coupling, f"is not for a {test}, in which no rotor moves."),
+        ("--theory", set(wanted.theory) - {"finite"}, f"is not for a {test}, which solves the whole film."),
+    ):
+        if given:
+            raise InputError(case.name, (Fault(option, ",".join(given), None, problem, "Leave it out."),))
     if case.film.bearing_model:
         problem = f"is one model in a {test}: there is nothing to compare it with."
         raise InputError(
             case.name, (Fault("film.theory", case.film.bearing_model, None, problem, f"Call `frb {test}`."),)
         )
-    models = cavitation or names(law for law in laws() if law.cavitates)
+    models = wanted.cavitation or names(law for law in laws() if law.cavitates)
     return run_test(case, test, models, target, picture, terminal, compared=True) or 0
 
 

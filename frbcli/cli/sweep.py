@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.gathered import gathered
 from frbcli.cli.live import live_lines
 from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
@@ -22,6 +24,15 @@ if TYPE_CHECKING:
     from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
 LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Where the points are computed, see the options of the command."""
+
+    jobs: int
+    backend: str
+    scheduler: str
 
 
 @click.command()
@@ -40,6 +51,7 @@ LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
 @click.option("--scheduler", default="", metavar="ADDRESS", help="Of the dask cluster, e.g. tcp://10.0.0.1:8786.")
 @picture_options
 @output_options
+@gathered("pool", Pool)
 def command(
     source: str,
     settings: tuple[str, ...],
@@ -49,9 +61,7 @@ def command(
     no_runs: bool,
     table_format: str,
     picture: bool,
-    jobs: int,
-    backend: str,
-    scheduler: str,
+    pool: Pool,
     terminal: Terminal,
 ) -> int:
     """Compute CASE at many points: one table, one picture, all runs.
@@ -71,7 +81,8 @@ def command(
     method = "stability" if stability else "runup"
     with live_lines(terminal) as show:
         observe = _progress(terminal, show)
-        found = sweep(case, points, folder, method, not no_runs, Workers(backend, jobs, scheduler), observe)
+        workers = Workers(pool.backend, pool.jobs, pool.scheduler)
+        found = sweep(case, points, folder, method, not no_runs, workers, observe)
     _report(found, terminal)
     write_table(found, table, table_format)
     terminal.result(f"table: {table}")

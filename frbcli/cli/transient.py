@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -13,6 +14,7 @@ import click
 from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.events import EVENT_COLUMNS, event_row
+from frbcli.cli.gathered import gathered
 from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, TOLD_EVERY_s, live_lines, progress_line
 from frbcli.cli.onset_spread import spread_shown
 from frbcli.cli.pictures import draw
@@ -36,8 +38,21 @@ TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a 
 SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
 
+@dataclass(frozen=True)
+class RunOptions:
+    """What is asked of a run, see run_options."""
+
+    output: Path | None
+    resume: bool
+    force: bool
+    picture: bool
+    verify: bool
+    explain: bool
+
+
 def run_options(function: Function) -> Function:
-    """Give a command --output, --resume, --force, --no-picture and --verify."""
+    """Give a command --output, --resume, --force, --no-picture, --verify and --explain; it receives
+    `options: RunOptions`."""
     output = click.option(
         "--output", "-o", type=OUTPUT, default=None, metavar="RUN.h5", help="Run file. Default: CASE.h5 here."
     )
@@ -47,38 +62,36 @@ def run_options(function: Function) -> Function:
     verify = click.option(
         "--verify", is_flag=True, help="Run again with half the tolerance and step size, and report the change."
     )
-    return output(resume(force(picture(verify(function)))))
+    explain = click.option(
+        "--explain", is_flag=True, help="Name the Hopf point or fold behind each onset and offset of a whirl."
+    )
+    return output(resume(force(picture(verify(explain(gathered("options", RunOptions)(function)))))))
 
 
 def transient(
     command: str,
     run_case: Transient,
     case: Case,
-    output: Path | None,
-    resume: bool,
-    force: bool,
-    picture: bool,
-    verify: bool,
+    options: RunOptions,
     terminal: Terminal,
     spread: bool = False,
-    explain: bool = False,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.runs.run import run_cost
 
-    path = output or here(case.name, ".h5")
-    if picture:
+    path = options.output or here(case.name, ".h5")
+    if options.picture:
         _check_summary(path)
     cost = run_cost(command, case)
     if cost.total_s > TOLD_s:
         terminal.remark(cost_line(cost))
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        run = run_case(case, path, resume=resume, observe=_watch(terminal, show), force=force)
+        run = run_case(case, path, resume=options.resume, observe=_watch(terminal, show), force=options.force)
     _report(case, run, terminal)
     terminal.result(f"run: {path}")
-    verified = _verified(case, run, terminal) if verify and run.status != "interrupted" else None
+    verified = _verified(case, run, terminal) if options.verify and run.status != "interrupted" else None
     onset = spread_shown(case, run, terminal) if spread and run.status != "interrupted" else None
-    explained = _explained(case, run, terminal) if explain and run.status != "interrupted" else None
+    explained = _explained(case, run, terminal) if options.explain and run.status != "interrupted" else None
     terminal.emit(
         {
             "command": command,
@@ -92,7 +105,7 @@ def transient(
             **({} if explained is None else {"explanations": explained}),
         }
     )
-    if picture and len(run) > 1:
+    if options.picture and len(run) > 1:
         from frbcli.plot.summary import summary_figure
 
         draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +10,7 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.events import EVENT_COLUMNS, event_row
+from frbcli.cli.gathered import gathered
 from frbcli.cli.measured import measured_options, run_of
 from frbcli.cli.picture_options import Span, picture_options
 from frbcli.cli.pictures import draw_wanted
@@ -36,6 +38,20 @@ class Orders(click.ParamType[tuple[float, ...]]):
             return tuple(float(number) for number in str(value).split(","))
         except ValueError:
             self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
+
+
+@dataclass(frozen=True)
+class View:
+    """How a run is looked at, see the options of the command."""
+
+    over: Over | None
+    cascade: bool
+    window: float | None
+    direction: Direction
+    log: bool
+    levels: tuple[float, float] | None
+    linear: bool
+    lines: tuple[float, ...] | None
 
 
 @click.command()
@@ -66,19 +82,13 @@ class Orders(click.ParamType[tuple[float, ...]]):
 @measured_options
 @picture_options
 @output_options
+@gathered("view", View)
 def command(
     run_file: Path,
     output: Path | None,
     signal: str,
     orders: tuple[float, ...] | None,
-    over: Over | None,
-    cascade: bool,
-    window: float | None,
-    direction: Direction,
-    log: bool,
-    levels: tuple[float, float] | None,
-    linear: bool,
-    lines: tuple[float, ...] | None,
+    view: View,
     measurement: Measurement | None,
     terminal: Terminal,
 ) -> None:
@@ -89,9 +99,9 @@ def command(
     """
     from frbcli.plot.style import check_picture
 
-    if orders is not None and (cascade or window is not None):
+    if orders is not None and (view.cascade or view.window is not None):
         raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
-    if orders is not None and (levels is not None or linear or lines is not None):
+    if orders is not None and (view.levels is not None or view.linear or view.lines is not None):
         raise click.UsageError("--levels, --linear and --lines belong to spectra, not to --order.")
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_picture(target)
@@ -100,11 +110,14 @@ def command(
     if orders is None:
         from frbcli.plot.waterfall import LevelScale, reading, run_spectra, waterfall_figure
 
-        axis: Over = over or "time"
-        found, scale = run_spectra(run, signal, window, direction), LevelScale(linear, levels, lines)
+        axis: Over = view.over or "time"
+        found = run_spectra(run, signal, view.window, view.direction)
+        scale = LevelScale(view.linear, view.levels, view.lines)
         draw_wanted(
             terminal,
-            lambda: waterfall_figure(run, axis, signal, cascade, window, direction, log, found, scale),
+            lambda: waterfall_figure(
+                run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale
+            ),
             target,
             "waterfall",
         )
@@ -114,10 +127,10 @@ def command(
         from frbcli.analysis.order_tracking import order_tracks
         from frbcli.plot.orders import orders_figure
 
-        axis = over or "speed"
+        axis = view.over or "speed"
         tracks = order_tracks(run, orders, signal)
-        draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, direction, log), target, "orders")
-        told = {"orders": [_largest(track, direction) for track in tracks]}
+        draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, view.direction, view.log), target, "orders")
+        told = {"orders": [_largest(track, view.direction) for track in tracks]}
         for row in told["orders"]:
             most = f"{MICRO * row['amplitude_max_m']:.3g} um at {row['speed_Hz']:.1f} Hz"
             terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
@@ -126,7 +139,7 @@ def command(
         if run.events:
             terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
-    terminal.emit({**document, "direction": direction, **told})
+    terminal.emit({**document, "direction": view.direction, **told})
 
 
 def _largest(track: OrderTrack, direction: Direction) -> dict[str, float]:

@@ -2,7 +2,8 @@
 
 Over the rotor speed each film rests under its static load, which comes from the rotor of the case or is given; over the
 eccentricity (Sommerfeld's chart) the load is the one that the film carries there. Films are solved on finite volumes,
-finer than those of a run, for every gap and every cavitation model.
+finer than those of a run, for every gap and every cavitation model. With heat every speed has the viscosities and
+clearances at which the heat of the machine balances with the films of a run.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.bearing import SingleFilmBearing
+from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cells.data import volume_films
@@ -27,6 +29,7 @@ from frbcli.film.cells.steady_force import film_at, steady_force, steady_solutio
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import sommerfeld_number
 from frbcli.html import Tabular
+from frbcli.linear.heat import Machine, machine_finder
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
@@ -36,6 +39,7 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.published import is_published
 from frbcli.scene.remedies import advised
 from frbcli.scene.system import System, film_drag, make_system
+from frbcli.scene.warm import warm_case
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -63,8 +67,8 @@ class FilmState:
     and -dF/dD', of films that keep oil when this has settled; sommerfeld_number: (3.14), with omega_J + omega_S;
     torque: on the journal, N m; power: that journal and shell put into the film, W; side_flow: what leaves at the open
     ends, m^3/s, without what flows back into a groove; p_max: absolute, Pa; temperature_rise: of the oil that
-    leaves, K, if it took all of the power; force_error: estimated, relative; problem: why there is no state, then the
-    numbers are NaN.
+    leaves, K, if it took all of the power; force_error: estimated, relative; viscosity: Pa s; clearance: m;
+    temperature: of the film, K, NaN without heat; problem: why there is no state, then the numbers are NaN.
     """
 
     film: str
@@ -84,6 +88,9 @@ class FilmState:
     p_max: float = math.nan
     temperature_rise: float = math.nan
     force_error: float = math.nan
+    viscosity: float = math.nan
+    clearance: float = math.nan
+    temperature: float = math.nan
     problem: str = ""
 
     @property
@@ -122,27 +129,33 @@ def bearing_sheet(
     speeds_Hz (> 0): default SPEEDS over the range of the case, or the speed of its kinematic test; load: N along -y on
     a single film, default that of the rotor or of [motion]; observe: called with each speed's number and their number.
     Floating rings turn as their torques balance (4.17). Raises InputError if the case has no film on cells, no load or
-    no speed.
+    no speed, or heat and a load that is not that of its rotor.
     """
     _check(case)
+    if case.heat is not None and (load is not None or case.given_rotor is None):
+        problem = "needs the load of a [rotor], and takes no other."
+        remedy = 'Leave --load out and add [rotor] and [speed], or write thermal.model = "none".'
+        raise InputError(case.name or "case", (Fault("thermal.model", "lumped", None, problem, remedy),))
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
-    fine, coarse = _systems(case, load, speeds[-1])
-    start: Array | None = None
+    at = _machines(case, load, speeds[-1])
+    start: _Point | None = None
     found: list[list[FilmState]] = []
     for number, speed in enumerate(reversed(speeds)):  # from near the centre, where a fast journal rests, outwards
         omega = 2.0 * math.pi * speed
         try:
             with advised(case):
-                start = resting_position(fine, omega, start)
-            journals = fine.rotor.journals @ start
+                start = at(omega, start)
+            fine, coarse = start.fine, start.coarse
+            journals = fine.rotor.journals @ start.resting
             spins = ring_speeds(fine, held_rotor(fine.rotor), omega, journals)
-            found.append([_state(case, fine, coarse, i, omega, spins, place) for i, place in enumerate(journals)])
+            states = [_state(case, fine, coarse, i, omega, spins, place) for i, place in enumerate(journals)]
+            found.append([replace(state, temperature=t) for state, t in zip(states, start.temperatures, strict=True)])
         except NotConverged as error:
-            found.append([_nothing(name, speed, str(error)) for name in fine.names])
+            found.append([_nothing(place.name, speed, str(error)) for place in film_places(case)])
         if observe is not None:
             observe(number + 1, len(speeds))
     points = tuple(point for states in reversed(found) for point in states)
-    return BearingSheet(case, SPEED, fine.names, fine.laws, points)
+    return BearingSheet(case, SPEED, tuple(place.name for place in film_places(case)), case.cavitations, points)
 
 
 def sommerfeld_chart(
@@ -157,6 +170,10 @@ def sommerfeld_chart(
     as bearing_sheet.
     """
     _check(case)
+    if case.heat is not None:
+        remedy = 'Choose --over speed, or write thermal.model = "none": films then have oil.temperature.'
+        problem = "is not modelled over eccentricity: the temperatures belong to the load of the rotor."
+        raise InputError(case.name or "case", (Fault("thermal.model", "lumped", None, problem, remedy),))
     speed = max(_speeds(case)) if speed_Hz is None else speed_Hz
     fine, coarse = _systems(case, 0.0, speed)
     omega = 2.0 * math.pi * speed
@@ -175,14 +192,47 @@ def sommerfeld_chart(
     return BearingSheet(case, ECCENTRICITY, fine.names, fine.laws, tuple(points))
 
 
+@dataclass(frozen=True)
+class _Point:
+    """The machine at one speed, on fine and coarse cells, at rest in the displacements `resting` (n,) in m.
+
+    temperatures: (films,) K, NaN without heat; warm: the machine on the films of a run whose heat balances."""
+
+    fine: System
+    coarse: System
+    resting: Array
+    temperatures: tuple[float, ...]
+    warm: Machine | None = None
+
+
+def _machines(case: Case, load: float | None, top_Hz: float) -> Callable[[float, _Point | None], _Point]:
+    """A function that finds the machine at omega rad/s from one near it; it raises NotConverged."""
+    if case.heat is None:
+        fine, coarse = _systems(case, load, top_Hz)
+        unknown = (math.nan,) * len(fine.names)
+        return lambda omega, near: _Point(
+            fine, coarse, resting_position(fine, omega, None if near is None else near.resting), unknown
+        )
+    plan = make_plan(case)
+    find = machine_finder(case, plan, make_system(case, plan))
+
+    def warm(omega: float, near: _Point | None) -> _Point:
+        machine = find(omega, None if near is None else near.warm)
+        assert machine.warm is not None
+        films = machine.warm.films
+        viscosities, clearances = (np.array([getattr(film, n) for film in films]) for n in ("viscosity", "clearance"))
+        fine, coarse = _systems(warm_case(case, viscosities, clearances), load, top_Hz)
+        resting = resting_position(fine, omega, machine.resting)
+        return _Point(fine, coarse, resting, tuple(film.temperature for film in films), machine)
+
+    return warm
+
+
 def _check(case: Case) -> None:
     faults = []
     if case.film.bearing_model:
         problem = "is a bearing model: it tells the force, and neither pressures nor oil."
         faults.append(Fault("film.theory", case.film.theory, None, problem, "Write finite or auto."))
-    if case.heat is not None:
-        remedy = 'Write thermal.model = "none": the films then have oil.temperature, or that of the supply.'
-        faults.append(Fault("thermal.model", "lumped", None, "is not modelled in the sheet of a bearing.", remedy))
     if is_published(case):
         problem = "is for run-ups and frb rotation."
         faults.append(Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".'))
@@ -250,6 +300,14 @@ def _single(case: Case, place: FilmPlace, cells: tuple[int, int], load: float, t
     )
 
 
+def heat_capacity(case: Case) -> float:
+    """The specific heat capacity in J/(kg K) of the temperature rise: given, or with heat that of the oil at 80 degC,
+    else HEAT_CAPACITY."""
+    if case.heat is not None:
+        return case.oil.heat_capacity_at(USUAL_TEMPERATURE)
+    return case.oil.heat_capacity or HEAT_CAPACITY
+
+
 def _under_vertical_load(film: VolumeFilm, eccentricity: float, omega: float) -> Array:
     """(2,) displacement over the clearance of this eccentricity at which the film's force points along y."""
     angle = -0.25 * math.pi if omega >= 0.0 else -0.75 * math.pi
@@ -310,8 +368,10 @@ def _state(
         power=power,
         side_flow=flow,
         p_max=found.p_max,
-        temperature_rise=power / (case.oil.density * HEAT_CAPACITY * flow) if flow > 0.0 else math.nan,
+        temperature_rise=power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
         force_error=estimate(found.force, (float(other[0]), float(other[1])), film.law.order),
+        viscosity=section.viscosity,
+        clearance=c,
     )
 
 
@@ -360,6 +420,9 @@ def _row(point: FilmState) -> dict[str, object]:
         "p_max_Pa": point.p_max,
         "temperature_rise_K": point.temperature_rise,
         "force_error_relative": point.force_error,
+        "viscosity_Pa_s": point.viscosity,
+        "clearance_m": point.clearance,
+        "temperature_K": point.temperature,
     }
     for name, unit, matrix in (("k", "N_m", point.stiffness), ("c", "Ns_m", point.damping)):
         for r, x in enumerate("xy"):

@@ -15,16 +15,19 @@ from frbcli.plot.style import COLOURS, legend_beside, new_figure, styled
 
 Reading = Callable[[FilmState], float]
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1, 1, 1)))  # of the films of a machine
+ZERO_CELSIUS = 273.15
 AXES = ("xx", "xy", "yx", "yy")
 
 
 def bearing_figure(sheet: BearingSheet) -> Figure:
-    """Six panels over the rotor speed, or over the eccentricity; films by their dashes, quantities by their colours."""
+    """Six panels over the rotor speed, or over the eccentricity, eight with heat; films by their dashes, quantities by
+    their colours."""
     case, chart = sheet.case, sheet.over == ECCENTRICITY
     laws = ", ".join(dict.fromkeys(law_named(law).label for law in sheet.laws))
     with styled():
-        figure = new_figure(case.title or case.name, f"bearing sheet, {laws}", width=9.6, height=7.4)
-        panels = figure.subplots(3, 2, sharex=True)
+        rows, height = (3, 7.4) if case.heat is None else (4, 9.4)
+        figure = new_figure(case.title or case.name, f"bearing sheet, {laws}", width=9.6, height=height)
+        panels = figure.subplots(rows, 2, sharex=True)
         first: Reading = (lambda s: s.sommerfeld_number) if chart else (lambda s: s.eccentricity)
         _curves(panels[0, 0], sheet, "Sommerfeld number" if chart else "eccentricity", [("", first)])
         _curves(panels[0, 1], sheet, "attitude angle in °", [("", lambda s: s.attitude_deg)])
@@ -34,8 +37,12 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         _curves(panels[2, 0], sheet, "loss and flow", [loss, ("side flow in mm³/s", lambda s: 1e9 * s.side_flow)])
         film: tuple[str, Reading] = ("smallest film in µm", lambda s: 1e6 * s.film_thickness_min)
         _curves(panels[2, 1], sheet, "film and pressure", [film, ("largest pressure in bar", lambda s: 1e-5 * s.p_max)])
-        for panel in panels[2]:
+        if case.heat is not None:
+            _curves(panels[3, 0], sheet, "film temperature in °C", [("", lambda s: s.temperature - ZERO_CELSIUS)])
+            _curves(panels[3, 1], sheet, "viscosity in mPa s", [("", lambda s: 1e3 * s.viscosity)])
+        for panel in panels[-1]:
             panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
+        for panel in panels[2]:
             panel.set_yscale("log")
             panel.yaxis.set_major_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2.0, 0.5)))
             panel.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2.0, 0.5)))

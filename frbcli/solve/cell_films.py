@@ -7,12 +7,23 @@ the journal; the journal's correction then moves the film (Schur's complement: t
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
-from frbcli.film.cells.balances import BY_ITSELF, BY_X, BY_Y, CHANNELS_NET, ENDS_NET, SIDES, SUPPLY_NET, balances
+from frbcli.film.cells.balances import (
+    BY_ITSELF,
+    BY_X,
+    BY_Y,
+    CHANNELS_NET,
+    ENDS_NET,
+    SIDES,
+    SUPPLY_NET,
+    GridMotion,
+    balances,
+)
 from frbcli.film.cells.channel_flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
     AREA,
@@ -25,11 +36,12 @@ from frbcli.film.cells.data import (
     SIN,
     SOLVER_AT,
     UNKNOWN,
+    VolumeFilms,
 )
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.ring_solver import solve_ring_at
 from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, cell_states, follow_law, hold
-from frbcli.solve.stage import lagrange
+from frbcli.solve.stage import FilmMotion, lagrange
 
 # How a film's grid stands, where the journal is in it, whether its cells balance (see OPEN), how far the journals were
 # moved last and over the time before, the stage, and from LAW on its law as follow_law has it.
@@ -108,12 +120,14 @@ def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights:
 
 @compiled()
 def cell_numbers(
-    numbers: Array, ring: Array, width: Array, cells: Array, w: Array, past: Array, states: Array, stencil: Array,
-    blocks: Array, fields: Array, rates: Array, flows: Array, grid: Array, slopes: Array, channel: Array,
-    d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float, iteration: int,
-) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """film_numbers of films.py for a film with cells; grid (GRIDS,) says how its grid stands, channel (m, k) the
-    pressures of the channels over its cells, see channels.py."""
+    films: VolumeFilms, work: Any, f: int, motion: FilmMotion, g: float, iteration: int
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+    """film_numbers of films.py for a film with cells."""
+    numbers, ring, width, cells = films.numbers[f], films.ring[f], films.width[f], films.cells[f]
+    w, past, states, fields = work.w[f], work.past[f], work.states[f], work.fields[f]
+    stencil, grid, slopes = work.stencil, work.grids[:, f], work.slopes[f]
+    flows = work.stage_flows[int(grid[STAGE]), f]
+    d_x, d_y, v_x, v_y, omega = motion
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
     c, s = math.cos(turn), math.sin(turn)
     x, y = c * d_x + s * d_y, c * d_y - s * d_x
@@ -127,19 +141,17 @@ def cell_numbers(
     cell_states(numbers, cells, law_of(grid), drop, w, states)
     if iteration == 0:
         hold(states, omega - 2.0 * spin)
-    balances(
-        numbers, ring, width, cells, states, x, y, omega - 2.0 * spin, rate, past, g, v_f, v_g, spin, stencil, fields,
-        flows,
-    )  # fmt: skip
+    against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
+    balances(numbers, ring, width, cells, states, against, past, stencil, fields, flows)
     slots = fields.shape[2] - fields.shape[1] - SIDES
     if slots > 0:
-        exchange(cells, states, channel, stencil, fields, flows)
+        exchange(cells, states, work.channel[f], stencil, fields, flows)
     mean, largest = imbalance(cells, fields)
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
     left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (numbers[SETTLED] * pace)
     balanced = left < 1.0
     if balanced and remembers:
-        store_rates(ring, cells, states, x, y, g, past, fields, rates)
+        store_rates(ring, cells, states, x, y, g, past, fields, work.stage_oil[int(grid[STAGE]), f])
     if balanced and iteration > 0 and grid[RATIO] < SLOW:
         grid[BALANCE] = HELD
         m, k = w.shape
@@ -156,7 +168,7 @@ def cell_numbers(
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
         if slots > 0:
             ask_of_channels(cells, fields)
-        solve_ring_at(numbers[SOLVER_AT], stencil, blocks, fields)
+        solve_ring_at(numbers[SOLVER_AT], stencil, work.blocks, fields)
         f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, cells, states, fields)
         m, k = w.shape
         for i in range(m):
@@ -207,15 +219,15 @@ def move_cells(w: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: 
 
 @compiled()
 def store_ahead(
-    ring: Array, cells: Array, states: Array, past: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: float,
-    rates: Array, flows: Array,
-) -> None:  # fmt: skip
+    ring: Array, cells: Array, work: Any, f: int, u_x: float, u_y: float, g: float, rates: Array, flows: Array
+) -> None:
     """As store_rates, after move_cells has moved a film that will balance: rates by its linear equations, which hold.
 
     Cells pass as much to each other as the neighbours take, so that no oil is lost. What the ends pass follows from
     what all cells gain; it contains the small change of the flow through openings.
     """
     m, k = rates.shape
+    past, states, fields, grid = work.past[f], work.states[f], work.fields[f], work.grids[:, f]
     c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
     d_x, d_y = grid[GRID_X] - g * x, grid[GRID_Y] - g * y

@@ -8,6 +8,7 @@ with the force of a film depending on the journals of both films of its ring.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -61,12 +62,14 @@ def set_pressures(films: VolumeFilms, grids: Array, w: Array, channel: Array) ->
 
 @compiled()
 def join(
-    films: VolumeFilms, grids: Array, states: Array, fields: Array, clearances: Array, follows_x: Array,
-    follows_y: Array, force: Array, cross: Array, answers: Array, changes: Array,
-) -> None:  # fmt: skip
-    """Let the solved films feel each other: their forces, and cross (2 films, 2 films), N s / m, what the channels make
-    of the derivatives by the journals' velocities. answers (feed_holes, 1 + 2 films) <- the changes of the channels'
-    pressures, by themselves and per journal velocity in m/s; changes (films, slots) <- the former."""
+    films: VolumeFilms, work: Any, clearances: Array, follows_x: Array, follows_y: Array, force: Array
+) -> None:
+    """Let the solved films feel each other: their forces, and in their work what the channels make of the derivatives
+    by the journals' velocities, cross (2 films, 2 films) in N s / m; the changes of the channels' pressures, by
+    themselves and per journal velocity in m/s, answers (feed_holes, 1 + 2 films); changes (films, slots): the former.
+    """
+    grids, states, fields = work.grids, work.states, work.fields
+    cross, answers, changes = work.cross, work.answers, work.changes
     count, journals = films.feed_holes.shape[0], cross.shape[0]
     matrix, own = np.zeros((count, count)), np.empty(SIDES + changes.shape[1])
     for q in range(count):

@@ -29,22 +29,11 @@ from frbcli.solve.cell_films import (
 from frbcli.solve.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.element_films import back_off, element_numbers, left_of_elements, move_elements
 from frbcli.solve.films import Work, have_cells, have_elements, have_scales
+from frbcli.solve.stage import FilmMotion
 from frbcli.solve.state import Array
 
 
-def film_numbers(
-    films: Any,
-    work: Work,
-    f: int,
-    d_x: float,
-    d_y: float,
-    v_x: float,
-    v_y: float,
-    omega: float,
-    g: float,
-    s: int,
-    iteration: int,
-) -> Any:
+def film_numbers(films: Any, work: Work, f: int, motion: FilmMotion, g: float, s: int, iteration: int) -> Any:
     """The ten numbers of film_force for film f at what it feels of its journal; those of cells hold all in the
     derivatives by the velocity.
 
@@ -130,50 +119,27 @@ def _scaled(films: Any, f: int, scale: float, d_x: float, d_y: float, v_x: float
 
 
 @overload(film_numbers, inline="always")
-def _film_numbers(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
+def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
     if have_scales(work):
-        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: _scaled(
-            films, f, work.scales[f], d_x, d_y, v_x, v_y, omega
+        return lambda films, work, f, motion, g, s, iteration: _scaled(
+            films, f, work.scales[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
     if isinstance(films, types.UniTuple):
-        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: film_force(
-            films[f], d_x, d_y, v_x, v_y, omega
+        return lambda films, work, f, motion, g, s, iteration: film_force(
+            films[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
     if have_elements(films):
-        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: element_numbers(
-            films, work, d_x, d_y, v_x, v_y, omega, g, iteration
+        return lambda films, work, f, motion, g, s, iteration: element_numbers(
+            films, work, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega, g, iteration
         )
     if not have_cells(films):  # of several kinds: what the compiler knows of each stands at a fixed place of the tuple
-        return lambda films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration: _one_of(
-            films, f, d_x, d_y, v_x, v_y, omega
+        return lambda films, work, f, motion, g, s, iteration: _one_of(
+            films, f, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
 
-    def volumes(films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration):  # type: ignore[no-untyped-def]
+    def volumes(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
         work.grids[STAGE, f] = s
-        return cell_numbers(
-            films.numbers[f],
-            films.ring[f],
-            films.width[f],
-            films.cells[f],
-            work.w[f],
-            work.past[f],
-            work.states[f],
-            work.stencil,
-            work.blocks,
-            work.fields[f],
-            work.stage_oil[s, f],
-            work.stage_flows[s, f],
-            work.grids[:, f],
-            work.slopes[f],
-            work.channel[f] if work.channel.shape[0] > 0 else work.w[f],
-            d_x,
-            d_y,
-            v_x,
-            v_y,
-            omega,
-            g,
-            iteration,
-        )
+        return cell_numbers(films, work, f, motion, g, iteration)
 
     return volumes
 
@@ -199,10 +165,7 @@ def _join_films(films, work, clearances, force, follows_x, follows_y):  # type: 
 
     def volumes(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
         if films.feed_holes.shape[0] > 0:
-            join(
-                films, work.grids, work.states, work.fields, clearances, follows_x, follows_y, force, work.cross,
-                work.answers, work.changes,
-            )  # fmt: skip
+            join(films, work, clearances, follows_x, follows_y, force)
 
     return volumes
 
@@ -247,9 +210,8 @@ def _move_film(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-d
         if films.numbers[f, REMEMBERS] != 0.0 and work.grids[BALANCE, f] == AHEAD:
             s = int(work.grids[STAGE, f])
             store_ahead(
-                films.ring[f], films.cells[f], work.states[f], work.past[f], work.fields[f], work.grids[:, f],
-                u_x, u_y, g, work.stage_oil[s, f], work.stage_flows[s, f],
-            )  # fmt: skip
+                films.ring[f], films.cells[f], work, f, u_x, u_y, g, work.stage_oil[s, f], work.stage_flows[s, f]
+            )
         return unsettled
 
     return volumes

@@ -13,28 +13,29 @@ from frbcli.film.contact_gap import closes_freely_until, contact_gap
 from frbcli.solve.contact import push_back, shell_ahead, touches
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film, step_back
-from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FOLLOWS_X, FOLLOWS_Y, FORCE, OMEGA, U_0, X_0, U, norm
+from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FOLLOWS_X, FOLLOWS_Y, FORCE, OMEGA, U_0, X_0, FilmMotion, U, norm
+from frbcli.solve.state import Control
 
 CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction may close
 
 
 @compiled()
 def _in_contact(
-    films: Any, work: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float, s: int,
-    iteration: int, c: float, contact_at: float, contact_stiffness: float, film: Array,
+    films: Any, work: Any, f: int, motion: FilmMotion, g: float, s: int, iteration: int, c: float, control: Control,
+    film: Array,
 ) -> None:  # fmt: skip
     """FORCE, BY_X, BY_Y of a bearing in contact: the film at what it feels of the journal, and the elastic shell;
     FOLLOWS_X, FOLLOWS_Y."""
-    x, y = 2 * f, 2 * f + 1
+    x, y, contact_at = 2 * f, 2 * f + 1, control.contact_eccentricity
     at_x, at_y, rate_x, rate_y, xx, yy, xy, turn_xx, turn_yy, turn_xy = contact_gap(
-        closes_freely_until(contact_at), d_x, d_y, v_x, v_y
+        closes_freely_until(contact_at), motion.d_x, motion.d_y, motion.v_x, motion.v_y
     )
     if work.grids.shape[1] > 0:  # a film with cells has one derivative, of velocity and displacement together
         turn_xx = turn_yy = turn_xy = 0.0
     f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
-        films, work, f, at_x, at_y, rate_x, rate_y, omega, g, s, iteration
+        films, work, f, FilmMotion(at_x, at_y, rate_x, rate_y, motion.omega), g, s, iteration
     )
-    s_x, s_y, s_xx, s_yy, s_xy = push_back(d_x, d_y, c, contact_at, contact_stiffness)
+    s_x, s_y, s_xx, s_yy, s_xy = push_back(motion.d_x, motion.d_y, c, contact_at, control.contact_stiffness)
     film[FORCE, x], film[FORCE, y] = f_x + s_x, f_y + s_y
     rate_xx, rate_yy, rate_xy = xx + g * turn_xx, yy + g * turn_yy, xy + g * turn_xy
     film[BY_X, x] = (d_xx * rate_xx + d_xy * rate_xy + g * (k_xx * xx + k_xy * xy - s_xx)) / c
@@ -73,23 +74,18 @@ def reach(d_x: float, d_y: float, c_x: float, c_y: float, end: float) -> float:
 
 @compiled(inline=True)
 def forces(
-    films: Any, work: Any, clearances: Array, contact_at: float, contact_stiffness: float, g: float, s: int,
-    iteration: int, film: Array,
-) -> None:  # fmt: skip
+    films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, iteration: int, film: Array
+) -> None:
     """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
     meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         d_x, d_y = (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c
-        v_x, v_y, omega = film[U, x] / c, film[U, y] / c, film[OMEGA, x]
-        if touches(norm(d_x, d_y), contact_at, contact_stiffness):
-            _in_contact(
-                films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration, c, contact_at, contact_stiffness, film
-            )
+        motion = FilmMotion(d_x, d_y, film[U, x] / c, film[U, y] / c, film[OMEGA, x])
+        if touches(norm(d_x, d_y), control.contact_eccentricity, control.contact_stiffness):
+            _in_contact(films, work, f, motion, g, s, iteration, c, control, film)
             continue
-        f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
-            films, work, f, d_x, d_y, v_x, v_y, omega, g, s, iteration
-        )
+        f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(films, work, f, motion, g, s, iteration)
         film[FORCE, x], film[FORCE, y] = f_x, f_y
         film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
         film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
@@ -100,8 +96,8 @@ def forces(
 
 @compiled(inline=True)
 def correct(
-    films: Any, work: Any, compliance: Array, clearances: Array, contact_at: float, contact_stiffness: float,
-    g: float, film: Array, newton: Array,
+    films: Any, work: Any, compliance: Array, clearances: Array, control: Control, g: float, film: Array,
+    newton: Array,
 ) -> tuple[float, float, float, int]:  # fmt: skip
     """One correction of U by Newton's method, and of the films' cells with it.
 
@@ -134,7 +130,7 @@ def correct(
             return 0.0, math.inf, math.inf, 0
         moved = max(moved, move)
         here = norm(at_x, at_y)
-        end = shell_ahead(here, contact_at, contact_stiffness)
+        end = shell_ahead(here, control.contact_eccentricity, control.contact_stiffness)
         share = min(share, reach(at_x, at_y, c_x, c_y, end))
         # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
         # |w|, over the size of w.

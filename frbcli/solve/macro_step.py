@@ -18,10 +18,10 @@ from frbcli.rotor.excitation import rotation
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.films import make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
-from frbcli.solve.micro_step import films_follow, parabola
-from frbcli.solve.ring_spin import spin_up
+from frbcli.solve.micro_step import Told, films_follow, parabola
+from frbcli.solve.ring_spin import Rings, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, start_stage
+from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, predict, start_stage
 from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, RotorData, State
 from frbcli.solve.step import (
     SMALLEST_STEP,
@@ -88,12 +88,12 @@ def _extrapolate(past: Array, t: float, lagrange: Array, given: Array, film: Arr
 
 
 @compiled()
-def _recall(past: Array, three: Array, motions: Array) -> None:
-    """three, motions <- times and motions of the last two macro times."""
+def _recall(past: Array, told: Told) -> None:
+    """told <- the last two macro times."""
     for p in range(2):
-        three[p] = past[1 + p, 0]
-        for k in range(motions.shape[1]):
-            motions[p, k] = past[1 + p, 1 + k]
+        told.times[p] = past[1 + p, 0]
+        for k in range(told.motions.shape[1]):
+            told.motions[p, k] = past[1 + p, 1 + k]
 
 
 @compiled()
@@ -148,18 +148,20 @@ def _advance(
 ) -> tuple[int, int]:  # fmt: skip
     """advance_in_turn with the arrays that it works in."""
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
-    wet, flows = state.wet, state.flows
     spins, times, speeds, angles = rotor.spins, rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
     weights, moments, defect = tableau.stage, tableau.times, tableau.defect
-    tolerance, contact_at, stiffness = control.tolerance, control.contact_eccentricity, control.contact_stiffness
+    tolerance, stiffness = control.tolerance, control.contact_stiffness
     n, m, stages, rings = q.shape[0], 2 * clearances.shape[0], moments.shape[0], spins.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
     responses, given, lagrange, q_new = _responses(rotor, selection), np.zeros(m + rings), np.zeros(3), np.zeros(n)
-    three, motions = np.zeros(3), np.zeros((3, 2 * m + 2 * rings))
-    bodies, turned, torque = np.zeros(1 + rings), np.zeros(1 + rings), np.zeros(rings)
-    unused_at, unused = np.zeros((STAGE_ROWS, n)), np.zeros((n, 1))
+    told = Told(np.zeros(3), np.zeros((3, 2 * m + 2 * rings)))
+    torque = np.zeros(rings)
+    turning, unused = Rings(np.zeros(1 + rings), np.zeros(1 + rings), torque), np.zeros((n, 1))
+    aside = Scratch(
+        selection, products, loads, spread, compliance, np.zeros((STAGE_ROWS, n)), film, unused, unused
+    )
     written, done = 0, 0
 
     while done < budget:
@@ -173,8 +175,8 @@ def _advance(
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
             if outdated(numbers, g, speed, gyroscopic):
                 prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
-            start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed,
-                        angle, gyroscopic, at, film)
+            predict(weights, s, step, q, v, stage_v, stage_a, at)
+            start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, film)
             _extrapolate(past, t_s, lagrange, given, film)
             lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
@@ -191,27 +193,23 @@ def _advance(
 
         t_new = end_of_step(t, step, times[piece + 1])
         displace(weights[stages - 1], stage_v, step, q, q_new)
-        _recall(past, three, motions)
-        three[2] = t_new
-        largest = _tell(selection, spins, clearances, q_new, stage_v[:, stages - 1], motions[2])
+        _recall(past, told)
+        told.times[2] = t_new
+        largest = _tell(selection, spins, clearances, q_new, stage_v[:, stages - 1], told.motions[2])
         if not largest < limit:  # the films cannot be asked there any more
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
-        if not films_follow(
-            films, work, wet, flows, numbers, weights, moments, defect, order, tolerance, times, speeds, angles, piece,
-            rotor.turning, clearances, contact_at, stiffness, motions, three, film, bodies, turned
-        ):  # fmt: skip
+        if not films_follow(films, work, rotor, tableau, control, state, piece, told, film, turning):
             return STUCK, written
         if rings > 0:  # only its torques are wanted, with the journals where they are now
             for k in range(m):
-                film[X_0, k], film[U, k] = motions[2, k], 0.0
-            spin_up(films, work, rotor, 0, 0.0, clearances, contact_at, stiffness, unused_at, film, bodies, turned,
-                    torque, unused, unused)  # fmt: skip
+                film[X_0, k], film[U, k] = told.motions[2, k], 0.0
+            spin_up(films, work, rotor, 0, 0.0, control, aside, turning)
 
         before = written
-        written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
+        written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         write_oil(films, work, out_oil, before, written)
         move_on(q, v, a, q_new, stage_v, stage_a)
-        _remember(past, t_new, motions[2], film, torque, given)
+        _remember(past, t_new, told.motions[2], film, torque, given)
         off = _amend(responses, compliance, clearances, given, a)
         done += 1
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)

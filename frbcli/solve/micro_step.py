@@ -6,17 +6,18 @@ The journals' motion is a parabola through the last three macro time points (sec
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from frbcli.compiled import Array, compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import move_film
 from frbcli.solve.films import NEWTON_LIMIT, accept_films, begin_stage
 from frbcli.solve.journal_newton import forces
-from frbcli.solve.ring_spin import set_speeds
+from frbcli.solve.ring_spin import Rings, set_speeds
 from frbcli.solve.stage import FORCE, X_0, U, lagrange
-from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE
+from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE, Control, RotorData, State
 from frbcli.solve.step import SMALLEST_STEP, shorter, step_after
+from frbcli.solve.tableau import Tableau
 
 # Behind the numbers of a state: steps of the films, how many of them were repeated, the next one in s, and whether the
 # films keep their oil: those that do not are solved once per macro step.
@@ -30,13 +31,19 @@ def parabola(times: Array, t: float, weights: Array) -> None:
     weights[0], weights[1], weights[2] = lagrange(times[0], times[1], times[2], t)
 
 
+class Told(NamedTuple):
+    """What the films are told of the rotor: motions (3, 4 films + 2 rings) of journals and rings at the macro times
+    (3,), the films being at the second one: see macro_step.py."""
+
+    times: Array
+    motions: Array
+
+
 @compiled()
-def _move_journals(
-    motions: Array, times: Array, t: float, g: float, film: Array, bodies: Array, angles: Array, lagrange: Array,
-) -> None:  # fmt: skip
+def _move_journals(told: Told, t: float, g: float, film: Array, bodies: Array, angles: Array, lagrange: Array) -> None:
     """U of the journals at the time t and X_0, g U short of where they are; speeds and angles of the rings."""
-    m, rings = film.shape[1], bodies.shape[0] - 1
-    parabola(times, t, lagrange)
+    motions, m, rings = told.motions, film.shape[1], bodies.shape[0] - 1
+    parabola(told.times, t, lagrange)
     for k in range(m):
         place, rate = 0.0, 0.0
         for p in range(3):
@@ -51,13 +58,10 @@ def _move_journals(
 
 
 @compiled()
-def _solve_films(
-    films: Any, work: Any, clearances: Array, contact_at: float, contact_stiffness: float, g: float, s: int,
-    film: Array,
-) -> int:  # fmt: skip
+def _solve_films(films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, film: Array) -> int:
     """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
     for iteration in range(NEWTON_LIMIT):
-        forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
+        forces(films, work, clearances, control, g, s, iteration, film)
         unsettled = 0
         for f in range(clearances.shape[0]):
             if not math.isfinite(film[FORCE, 2 * f] + film[FORCE, 2 * f + 1]):
@@ -85,18 +89,17 @@ def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
 
 @compiled()
 def films_follow(
-    films: Any, work: Any, wet: Array, flows: Array, numbers: Array, weights: Array, moments: Array,
-    defect: Array, order: float, tolerance: float, profile_times: Array, profile_speeds: Array,
-    profile_angles: Array, piece: int, turning: Array, clearances: Array, contact_at: float,
-    contact_stiffness: float, motions: Array, three: Array, film: Array, bodies: Array, angles: Array,
+    films: Any, work: Any, rotor: RotorData, tableau: Tableau, control: Control, state: State, piece: int, told: Told,
+    film: Array, rings: Rings,
 ) -> bool:  # fmt: skip
-    """Take the films from the macro time three[1] to three[2]; FORCE is then theirs. Returns whether that succeeded.
-
-    motions: (3, 4 films + 2 rings) of the journals and rings at the macro times three (3,), see macro_step.py.
-    """
+    """Take the films through a macro step; FORCE is then theirs. Returns whether that succeeded."""
+    times, speeds, profile_angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
+    turning, clearances, numbers = rotor.turning, rotor.clearances, state.numbers
+    weights, moments, order, tolerance = tableau.stage, tableau.times, float(tableau.error_order), control.tolerance
+    bodies, angles = rings.bodies, rings.angles
     remembers = numbers[FILMS_REMEMBER] != 0.0
-    lagrange = three.copy()
-    stages, gamma, t, end = moments.shape[0] if remembers else 2, weights[1, 1], three[1], three[2]
+    lagrange = told.times.copy()
+    stages, gamma, t, end = moments.shape[0] if remembers else 2, weights[1, 1], told.times[1], told.times[2]
     wanted = min(numbers[MICRO_STEP], end - t) if remembers else end - t
     while t < end:
         step = end - t
@@ -105,24 +108,24 @@ def films_follow(
         g, solved = gamma * step, True
         for s in range(1, stages):
             reach = moments[s] * step if remembers else step
-            _, bodies[0], angles[0] = rotation(profile_times, profile_speeds, profile_angles, piece, t + reach)
-            _move_journals(motions, three, t + reach, g, film, bodies, angles, lagrange)
+            _, bodies[0], angles[0] = rotation(times, speeds, profile_angles, piece, t + reach)
+            _move_journals(told, t + reach, g, film, bodies, angles, lagrange)
             set_speeds(turning, bodies, angles, film, work.grids)
             lag = moments[s] / moments[s - 1] if moments[s - 1] > 0.0 else 1.0
-            begin_stage(films, work, wet, flows, weights, s, step, g, reach / numbers[STEP_DONE], lag)
-            iterations = _solve_films(films, work, clearances, contact_at, contact_stiffness, g, s, film)
+            begin_stage(films, work, state.wet, state.flows, weights, s, step, g, reach / numbers[STEP_DONE], lag)
+            iterations = _solve_films(films, work, clearances, control, g, s, film)
             numbers[SOLVES] += iterations * clearances.shape[0]
             if iterations == 0:
                 solved = False
                 break
-        error = _oil_error(defect, work.stage_oil, step) / tolerance if solved and remembers else 0.0
+        error = _oil_error(tableau.defect, work.stage_oil, step) / tolerance if solved and remembers else 0.0
         if not solved or not error <= 1.0:
             numbers[MICRO_REJECTED] += 1
             wanted = shorter(step, error, order) if solved else UNSOLVED_SHARE * step
             if wanted < SMALLEST_STEP or not remembers:
                 return False
             continue
-        accept_films(films, work, wet, flows, weights, step)
+        accept_films(films, work, state.wet, state.flows, weights, step)
         numbers[STEP_DONE] = step
         numbers[MICRO_STEPS] += 1
         t = t + step if step < end - t else end

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -10,8 +10,22 @@ from frbcli.compiled import Array, Indices, compiled
 from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.contact import feel
 from frbcli.solve.film_forces import drag_integral
+from frbcli.solve.scratch import Scratch
 from frbcli.solve.stage import FORCE, OMEGA, X_0, Q, U, V
-from frbcli.solve.state import GRID, SLIP, SUM, RotorData
+from frbcli.solve.state import GRID, SLIP, SUM, Control, RotorData
+
+
+class Rings(NamedTuple):
+    """bodies, angles (1 + rings,): speeds and angles of the rotor and the rings in a stage; torque (rings,) on them."""
+
+    bodies: Array
+    angles: Array
+    torque: Array
+
+
+def make_rings(count: int) -> Rings:
+    """For so many rings, all at rest."""
+    return Rings(np.zeros(1 + count), np.zeros(1 + count), np.zeros(count))
 
 
 @compiled(inline=True)
@@ -44,10 +58,8 @@ def guess_speeds(
 
 @compiled()
 def spin_up(
-    films: Any, work: Any, rotor: RotorData, s: int, g: float, clearances: Array, contact_at: float,
-    contact_stiffness: float, at: Array, film: Array, bodies: Array, angles: Array, torque: Array, stage_v: Array,
-    stage_a: Array,
-) -> float:  # fmt: skip
+    films: Any, work: Any, rotor: RotorData, s: int, g: float, control: Control, scratch: Scratch, rings: Rings
+) -> float:
     """Let the films' torques (4.17) turn the rings: speeds and angles of the stage. Returns how far, in rad, the angle
     of a ring was off.
 
@@ -55,11 +67,12 @@ def spin_up(
     middle between them, at both in the same sense. How Couette's term of a ring falls with its own speed is taken in by
     Newton's method: a ring of little inertia follows it at once, and plain iterations would go to and fro.
     """
-    rings = rotor.spins.shape[0]
-    if rings == 0:
+    count, clearances, film, at = rotor.spins.shape[0], rotor.clearances, scratch.film, scratch.at
+    bodies, angles, torque = rings
+    if count == 0:
         return 0.0
-    held = np.zeros(rings)  # what Couette's terms fall by per speed of the ring
-    for r in range(rings):
+    held = np.zeros(count)  # what Couette's terms fall by per speed of the ring
+    for r in range(count):
         torque[r] = 0.0
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
@@ -67,7 +80,9 @@ def spin_up(
         slip = 0.0
         for b in range(bodies.shape[0]):
             slip += rotor.turning[f, SLIP, b] * bodies[b]
-        d_x, d_y, _, _, _, _, _, _, _, _ = feel(e_x / c, e_y / c, 0.0, 0.0, contact_at, contact_stiffness)
+        d_x, d_y, _, _, _, _, _, _, _, _ = feel(
+            e_x / c, e_y / c, 0.0, 0.0, control.contact_eccentricity, control.contact_stiffness
+        )
         resistance = rotor.drag[f] * drag_integral(films, work, f, d_x, d_y, rotor.torque_terms[1])
         couette = -resistance * slip
         poiseuille = -0.5 * (e_x * film[FORCE, y] - e_y * film[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
@@ -79,12 +94,12 @@ def spin_up(
             torque[outside] += poiseuille - couette
             held[outside] += resistance
     off = 0.0
-    for r in range(rings):
+    for r in range(count):
         i = rotor.spins[r]
         pulled = torque[r] + held[r] * (bodies[1 + r] - at[V, i])
-        stage_a[i, s] = pulled / (rotor.mass[i, i] + g * held[r])
-        speed = at[V, i] + g * stage_a[i, s]
+        scratch.stage_a[i, s] = pulled / (rotor.mass[i, i] + g * held[r])
+        speed = at[V, i] + g * scratch.stage_a[i, s]
         off = max(off, abs(g * (speed - bodies[1 + r])))
-        stage_v[i, s] = bodies[1 + r] = speed
+        scratch.stage_v[i, s] = bodies[1 + r] = speed
         angles[1 + r] = at[Q, i] + g * speed
     return off

@@ -12,6 +12,7 @@ with D, K, G and the loads are made when the step changes, not in every stage (i
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from frbcli.compiled import Array, Indices, compiled
 from frbcli.solve.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
@@ -26,6 +27,16 @@ V, Q, FREE, LATE, STAGE_ROWS = range(5)
 # OMEGA is omega_J + omega_S of the journal's own film. FOLLOWS_X, FOLLOWS_Y: the change of the velocity that the film
 # feels by that of the journal, see contact.py.
 U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL_ROWS = range(11)
+
+
+class FilmMotion(NamedTuple):
+    """What a film feels of its journal: displacement d and velocity v over the clearance, omega_J + omega_S."""
+
+    d_x: float
+    d_y: float
+    v_x: float
+    v_y: float
+    omega: float
 
 
 @compiled()
@@ -50,20 +61,24 @@ def lagrange(a: float, b: float, c: float, t: float) -> tuple[float, float, floa
 
 
 @compiled(inline=True)
-def start_stage(
-    weights: Array, s: int, step: float, g: float, q: Array, v: Array, stage_v: Array, stage_a: Array,
-    products: Array, loads: Array, selection: Array, acceleration: float, speed: float, angle: float,
-    gyroscopic: bool, at: Array, film: Array,
-) -> None:  # fmt: skip
-    """Fill V, Q, FREE of `at` and U_0, X_0 of `film`: what stage s knows before its films do."""
-    n = q.shape[0]
-    for i in range(n):
+def predict(weights: Array, s: int, step: float, q: Array, v: Array, stage_v: Array, stage_a: Array, at: Array) -> None:
+    """V, Q of `at`: the rotor at stage s by the stages before it."""
+    for i in range(q.shape[0]):
         sum_v, sum_a = 0.0, 0.0
         for j in range(s):
             sum_v += weights[s, j] * stage_v[i, j]
             sum_a += weights[s, j] * stage_a[i, j]
         at[V, i] = v[i] + step * sum_a
         at[Q, i] = q[i] + step * sum_v
+
+
+@compiled(inline=True)
+def start_stage(
+    acceleration: float, speed: float, angle: float, g: float, gyroscopic: bool, products: Array, loads: Array,
+    selection: Array, at: Array, film: Array,
+) -> None:  # fmt: skip
+    """Fill FREE of `at` and U_0, X_0 of `film`: what a stage knows before its films do."""
+    n = at.shape[1]
     # The unbalance (2.3): along the angle with alpha'', outwards with alpha'^2
     sine, cosine = math.sin(angle), math.cos(angle)
     along = acceleration * cosine - speed * speed * sine

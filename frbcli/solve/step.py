@@ -63,11 +63,11 @@ def local_error(defect: Array, observed: Array, stage_v: Array, stage_a: Array, 
 
 @compiled()
 def write_outputs(
-    numbers: Array, stage_v: Array, output_step: float, t: float, step: float, t_new: float, q: Array,
-    q_new: Array, out_q: Array, out_v: Array, written: int,
+    numbers: Array, stage_v: Array, output_step: float, step: float, t_new: float, q: Array, q_new: Array,
+    out_q: Array, out_v: Array, written: int,
 ) -> int:  # fmt: skip
     """Dense output: the cubic through displacements and velocities at both ends of a step. Returns rows written."""
-    last = stage_v.shape[1] - 1
+    last, t = stage_v.shape[1] - 1, numbers[TIME]
     while numbers[OUTPUTS] * output_step <= t_new * (1.0 + 1e-12):
         x = min(max((numbers[OUTPUTS] * output_step - t) / step, 0.0), 1.0)
         for i in range(q.shape[0]):

@@ -18,9 +18,9 @@ from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterat
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, begin_heat, carry_heat, write_heat
 from frbcli.solve.inverse import outdated, prepare
 from frbcli.solve.journal_newton import correct, forces
-from frbcli.solve.ring_spin import guess_speeds, set_speeds, spin_up
+from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, start_stage
+from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, RotorData, State
 from frbcli.solve.step import (
     UNSOLVED,
@@ -45,15 +45,20 @@ NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
 
 class Own(NamedTuple):
     """What this loop works in beside the Scratch of the stages: newton (m, m); past (HISTORY + stages - 1, 1 + m) times
-    and journals' velocities; q_new (n,); bodies, angles (1 + rings,) speeds and angles of rotor and rings; torque
-    (rings,)."""
+    and journals' velocities; q_new (n,)."""
 
     newton: Array
     past: Array
     q_new: Array
-    bodies: Array
-    angles: Array
-    torque: Array
+    rings: Rings
+
+
+def make_own(rotor: RotorData, stages: int) -> Own:
+    """Own for a rotor."""
+    n, m = rotor.mass.shape[0], 2 * rotor.clearances.shape[0]
+    return Own(
+        np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n), make_rings(rotor.spins.shape[0])
+    )
 
 
 @compiled()
@@ -79,17 +84,13 @@ def advance(
     heat.py, whose state moves on, too, and out_heat (rows, columns_of(heat)) for it. Returns (status, rows written).
     The course of the steps does not depend on how often this is called.
     """
-    stages, m, bodies = tableau.times.shape[0], 2 * rotor.clearances.shape[0], 1 + rotor.spins.shape[0]
+    stages = tableau.times.shape[0]
     scratch = make_scratch(rotor, state.numbers, stages)
     work = make_work(films, state.wet, stages, heat.now[SCALE] if isinstance(heat, LumpedHeat) else None)
     begin_heat(heat, films, rotor, state.wet)
-    own = Own(
-        np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros_like(state.q), np.zeros(bodies),
-        np.zeros(bodies), np.zeros(bodies - 1),
-    )  # fmt: skip
     status, rows = _advance(
-        rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil, heat,
-        np.zeros((len(out_q), 0)) if out_heat is None else out_heat,
+        rotor, films, tableau, control, state, scratch, work, make_own(rotor, stages), budget, out_q, out_v, out_oil,
+        heat, np.zeros((len(out_q), 0)) if out_heat is None else out_heat,
     )  # fmt: skip
     return int(status), int(rows)
 
@@ -113,7 +114,8 @@ def _advance(
     smallest = clearances.min()
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
-    newton, past, q_new, bodies, angles_now, torque = own
+    newton, past, q_new, rings = own
+    bodies, angles_now, _ = rings
     written, done = 0, 0
 
     while done < budget:
@@ -128,8 +130,8 @@ def _advance(
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
             if outdated(numbers, g, speed, gyroscopic):
                 prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
-            start_stage(weights, s, step, g, q, v, stage_v, stage_a, products, loads, selection, acceleration, speed,
-                        angle, gyroscopic, at, film)
+            predict(weights, s, step, q, v, stage_v, stage_a, at)
+            start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, film)
             guess(past, three, s, selection, q, clearances, g, t_s, limit, film)
             guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles_now)
             set_speeds(turning, bodies, angles_now, film, grids)
@@ -140,10 +142,9 @@ def _advance(
             lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             solved = False
             for iteration in range(most_iterations(films)):
-                forces(films, work, clearances, contact_at, contact_stiffness, g, s, iteration, film)
+                forces(films, work, clearances, control, g, s, iteration, film)
                 numbers[SOLVES] += m // 2
-                share, left, moved, unsettled = correct(films, work, compliance, clearances, contact_at,
-                                                         contact_stiffness, g, film, newton)
+                share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, film, newton)
                 if left == math.inf:
                     break
                 left = left_over(films, work, left, moved, unsettled, NEWTON_SHARE * tolerance)
@@ -151,9 +152,7 @@ def _advance(
                     late = accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
                     left = max(left, g * late / smallest)
                     if spins.shape[0] > 0:
-                        turned = spin_up(films, work, rotor, s, g, clearances, contact_at, contact_stiffness, at, film,
-                                         bodies, angles_now, torque, stage_v, stage_a)
-                        left = max(left, turned)
+                        left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                         set_speeds(turning, bodies, angles_now, film, grids)
                     if control.linearised or left < NEWTON_SHARE * tolerance:
                         solved = True
@@ -172,7 +171,7 @@ def _advance(
         t_new = end_of_step(t, step, times[piece + 1])
         displace(weights[stages - 1], stage_v, step, q, q_new)
         before = written
-        written = write_outputs(numbers, stage_v, control.output_step, t, step, t_new, q, q_new, out_q, out_v, written)
+        written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
         hot = carry_heat(heat, films, work, turning, rotor.torque_terms, film, bodies, wet, contact_at,

@@ -19,9 +19,9 @@ from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.films import have_cells, have_elements, make_work
 from frbcli.solve.heat import NO_HEAT
 from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.state import HISTORY, NOW, OUTPUTS, RUNNING, TIME, Array, Control, RotorData, State
+from frbcli.solve.state import NOW, OUTPUTS, RUNNING, TIME, Array, Control, RotorData, State
 from frbcli.solve.tableau import Tableau
-from frbcli.solve.time_loop import Own, _advance
+from frbcli.solve.time_loop import Own, _advance, make_own
 
 DRAG, LEAVES, NOTES = range(3)  # rows that are noted of each film: drag_integral, and the oil that leaves it
 
@@ -33,11 +33,8 @@ def advance_watched(
     """As advance of time_loop.py. noted (n + NOTES films,) the rotor's accelerations and what is noted of its films, at
     the end of the last step, not a number before the first one; out_noted (rows, the same): at the output times;
     far_open (films,): whether the end z = 1 of the sections of films on cells is open."""
-    stages, m, bodies = tableau.times.shape[0], 2 * rotor.clearances.shape[0], 1 + rotor.spins.shape[0]
-    own = Own(
-        np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros_like(state.q), np.zeros(bodies),
-        np.zeros(bodies), np.zeros(bodies - 1),
-    )  # fmt: skip
+    stages = tableau.times.shape[0]
+    own = make_own(rotor, stages)
     scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
     status, rows = _advance_watched(
         rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil, noted, out_noted,

@@ -7,6 +7,7 @@ solved together.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import wright_omega
@@ -61,6 +62,24 @@ INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, FLOWS = range(6)
 BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 
+class GridMotion(NamedTuple):
+    """How the journal moves against a film's grid, in the grid's directions, and how the time step takes it.
+
+    d: displacement over the clearance; omega: omega_J + omega_S relative to the grid; spin: angular speed of the grid,
+    which turns the velocity v; g: how far a velocity moves the journal within the stage, 0: not at all; rate: of what
+    is stored, 1 / g of a film that remembers its oil, else 0.
+    """
+
+    d_x: float
+    d_y: float
+    omega: float
+    v_x: float = 0.0
+    v_y: float = 0.0
+    spin: float = 0.0
+    g: float = 0.0
+    rate: float = 0.0
+
+
 @compiled()
 def end_flow(
     kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, length: float,
@@ -87,10 +106,11 @@ def end_flow(
 
 @compiled()
 def _flow_around(
-    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float,
-    g: float, stencil: Array, right: Array, flows: Array,
+    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
+    right: Array, flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
+    d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
     bored, half = numbers[BORED] != 0.0, 0.5 * omega
     forward = omega >= 0.0
     taken = 0.0  # by the openings in cells that are film in part
@@ -156,11 +176,11 @@ def _take(taken: float, flows: Array) -> None:
 
 @compiled()
 def _carry_out_of_excess(
-    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float, g: float, stencil: Array,
-    right: Array, flows: Array,
+    ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
     """What the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
     m, k = states.shape[1], states.shape[2]
+    d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
     half, taken = 0.5 * omega, 0.0
     for i in range(m):
         b = i - 1 if i > 0 else m - 1
@@ -180,9 +200,10 @@ def _carry_out_of_excess(
 
 @compiled()
 def _flow_along(
-    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, g: float, stencil: Array, right: Array,
+    ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
+    d_x, d_y, g = motion.d_x, motion.d_y, motion.g
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
         h = ring[GAP, i] + d_x * s - d_y * c
@@ -206,10 +227,10 @@ def _flow_along(
 
 @compiled()
 def _store(
-    ring: Array, cells: Array, states: Array, d_x: float, d_y: float, rate: float, past: Array, g: float,
-    v_x: float, v_y: float, spin: float, stencil: Array, right: Array,
+    ring: Array, cells: Array, states: Array, motion: GridMotion, past: Array, stencil: Array, right: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
+    d_x, d_y, _, v_x, v_y, spin, g, rate = motion
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
         h = ring[GAP, i] + d_x * s - d_y * c
@@ -234,10 +255,11 @@ def _store(
 
 @compiled()
 def _flow_through_ends(
-    numbers: Array, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, g: float, stencil: Array,
-    right: Array, flows: Array,
+    numbers: Array, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
+    flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
+    d_x, d_y, g = motion.d_x, motion.d_y, motion.g
     steepness = STEEPNESS / numbers[AMBIENT]
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
@@ -302,15 +324,13 @@ def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> Non
 
 @compiled()
 def balances(
-    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float,
-    rate: float, past: Array, g: float, v_x: float, v_y: float, spin: float, stencil: Array, right: Array,
-    flows: Array,
+    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
+    stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
     """The balances of the cells and their derivatives.
 
-    d: displacement; omega: omega_J + omega_S relative to the grid. Stored are rate H theta - past (m, k); with rate 0,
-    for a film without memory, the gap's own change with the velocity v. g: how far a velocity moves the journal within
-    the stage; spin: angular speed of the grid, which turns v.
+    Stored are rate H theta - past (m, k); with rate 0, for a film without memory, the gap's own change with the
+    velocity of the motion.
     stencil (ENTRIES, m, k), right (m, k, k + SIDES), its last layers: minus the residual and minus its derivatives by
     the journal's velocities; flows (FLOWS,).
     """
@@ -323,10 +343,10 @@ def balances(
                 right[i, j, k + side] = 0.0
     for flow in range(FLOWS):
         flows[flow] = 0.0
-    _flow_around(numbers, ring, width, cells, states, d_x, d_y, omega, g, stencil, right, flows)
+    _flow_around(numbers, ring, width, cells, states, motion, stencil, right, flows)
     if numbers[BORED] != 0.0:
-        _carry_out_of_excess(ring, cells, states, d_x, d_y, omega, g, stencil, right, flows)
-    _flow_along(ring, cells, states, d_x, d_y, g, stencil, right)
-    _store(ring, cells, states, d_x, d_y, rate, past, g, v_x, v_y, spin, stencil, right)
-    _flow_through_ends(numbers, ring, cells, states, d_x, d_y, g, stencil, right, flows)
+        _carry_out_of_excess(ring, cells, states, motion, stencil, right, flows)
+    _flow_along(ring, cells, states, motion, stencil, right)
+    _store(ring, cells, states, motion, past, stencil, right)
+    _flow_through_ends(numbers, ring, cells, states, motion, stencil, right, flows)
     _hold_given(cells, stencil, right, flows)

@@ -155,7 +155,7 @@ def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
     A column is coupled to the next as x_i = right_i - inverse_i behind_i x_i+1 - border_i x_last. The rows hold
     inverse, border and right of each, the two latter first without and then with what the columns behind it bring.
     """
-    m, k, r = stencil.shape[1], len(column), len(sides)
+    m, k, r, sizes = stencil.shape[1], len(column), len(sides), (column, sides)
     last, rows = m - 1, np.zeros((m, k, row_length(k, r)))
     for i in range(0, m, last):  # the first and the last column
         for a in range(k):
@@ -168,26 +168,26 @@ def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
                 rows[i, a, 2 * k + side] = fields[i, a, k + side]
     for a in range(k):
         rows[0, a, k + a] = stencil[BEFORE, 0, a]
-    eliminate_column(rows[0], column, sides)
+    eliminate_column(rows[0], sizes)
     for i in range(1, last):
         next_column(
             stencil[CENTRE, i], stencil[BELOW, i], stencil[ABOVE, i], stencil[BEFORE, i], stencil[BEHIND, i - 1],
-            fields[i], rows[i - 1], rows[i], column, sides,
+            fields[i], rows[i - 1], rows[i], sizes,
         )  # fmt: skip
     for a in range(k):
         for b in range(k):
             rows[last - 1, a, k + b] += rows[last - 1, a, b] * stencil[BEHIND, last - 1, b]
     for i in range(last - 2, -1, -1):
-        take_in_next(stencil[BEHIND, i], rows[i + 1], rows[i], column, sides)
+        take_in_next(stencil[BEHIND, i], rows[i + 1], rows[i], sizes)
     for a in range(k):
         low, high = stencil[BEFORE, last, a], stencil[BEHIND, last, a]
         for b in range(k):
             rows[last, a, b] -= low * rows[last - 1, a, k + b] + high * rows[0, a, k + b]
         for side in range(2 * k, 2 * k + r):
             rows[last, a, side] -= low * rows[last - 1, a, side] + high * rows[0, a, side]
-    eliminate_column(rows[last], column, sides)
+    eliminate_column(rows[last], sizes)
     for i in range(last):
-        take_in_border(rows[last], rows[i], fields[i], column, sides)
+        take_in_border(rows[last], rows[i], fields[i], sizes)
     for a in range(k):
         for side in range(r):
             fields[last, a, k + side] = rows[last, a, 2 * k + side]

@@ -6,7 +6,7 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
-from frbcli.film.cells.balances import balances
+from frbcli.film.cells.balances import GridMotion, balances
 from frbcli.film.cells.block_cyclic import CENTRE
 from frbcli.film.cells.data import (
     AREA,
@@ -22,6 +22,7 @@ from frbcli.film.cells.data import (
     SIN,
     SOLVER_AT,
     UNKNOWN,
+    VolumeFilms,
 )
 from frbcli.film.cells.ring_solver import solve_ring_at
 from frbcli.film.cells.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
@@ -83,20 +84,19 @@ def damp(cells: Array, rate: float, stencil: Array) -> None:
 
 @compiled()
 def film_newton(
-    numbers: Array, ring: Array, width: Array, cells: Array, w: Array, d_x: float, d_y: float, omega: float,
-    rate: float, past: Array, g: float, v_x: float, v_y: float, spin: float, states: Array, stencil: Array,
+    films: VolumeFilms, f: int, w: Array, motion: GridMotion, past: Array, states: Array, stencil: Array,
     blocks: Array, fields: Array, flows: Array,
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
-    """One step of Newton's method of a film from the unknowns w (m, k): fields (m, k, k + SIDES) <- its changes.
+    """One step of Newton's method of film f from the unknowns w (m, k): fields (m, k, k + SIDES) <- its changes.
 
     See balances for the arguments; the layer BEFORE_UPSTREAM of states is given. Returns film_loads.
     """
-    law = np.empty(LAW_NUMBERS)
-    follow_law(numbers, d_x, d_y, v_x - spin * d_y, v_y + spin * d_x, omega + 2.0 * spin, law)
+    numbers, ring, width, cells = films.numbers[f], films.ring[f], films.width[f], films.cells[f]
+    law, spin = np.empty(LAW_NUMBERS), motion.spin
+    v_x, v_y = motion.v_x - spin * motion.d_y, motion.v_y + spin * motion.d_x
+    follow_law(numbers, motion.d_x, motion.d_y, v_x, v_y, motion.omega + 2.0 * spin, law)
     cell_states(numbers, cells, law, numbers[CENTRIFUGAL] * spin * spin, w, states)
-    balances(
-        numbers, ring, width, cells, states, d_x, d_y, omega, rate, past, g, v_x, v_y, spin, stencil, fields, flows
-    )
+    balances(numbers, ring, width, cells, states, motion, past, stencil, fields, flows)
     solve_ring_at(numbers[SOLVER_AT], stencil, blocks, fields)
     return film_loads(numbers, ring, cells, states, fields)
 

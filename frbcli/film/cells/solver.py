@@ -16,7 +16,7 @@ import numpy as np
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, balances
+from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, GridMotion, balances
 from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.carried import UPWIND, before_upstream
 from frbcli.film.cells.data import volume_films
@@ -150,10 +150,9 @@ class FilmSolver:
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""
         numbers, ring, width, cells = self._parts
-        d_x, d_y, omega = float(motion.d[0]), float(motion.d[1]), float(motion.omega)
+        at = GridMotion(float(motion.d[0]), float(motion.d[1]), float(motion.omega))
         balances(
-            numbers, ring, width, cells, self._states, d_x, d_y, omega, 0.0, past, 0.0, 0.0, 0.0, 0.0,
-            self._stencil, self._fields, self._flows,
+            numbers, ring, width, cells, self._states, at, past, self._stencil, self._fields, self._flows
         )  # fmt: skip
 
     def _passed(self, motion: Motion) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from frbcli.film.cells.balances import FLOWS, SIDES
+from frbcli.film.cells.balances import FLOWS, SIDES, GridMotion
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.carried import UPWIND
 from frbcli.film.cells.data import volume_films
@@ -49,8 +49,8 @@ def steady_force(
     for g in (CARRIED, HELD):
         scratch = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
         values = film_newton(
-            data.numbers[0], data.ring[0], data.width[0], data.cells[0], solution.w.copy(), *motion.d, omega, 0.0,
-            nothing, g, *motion.v, 0.0, states, *scratch, np.zeros(FLOWS),
+            data, 0, solution.w.copy(), GridMotion(*motion.d, omega, *motion.v, g=g), nothing, states, *scratch,
+            np.zeros(FLOWS),
         )  # fmt: skip
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.pressure(solution.state)))

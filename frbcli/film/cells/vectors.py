@@ -95,9 +95,9 @@ class _Code:
         return rows
 
 
-def _eliminate_column(typing, rows, column, sides):  # type: ignore[no-untyped-def]
+def _eliminate_column(typing, rows, sizes):  # type: ignore[no-untyped-def]
     """rows (k, w) <- the inverse of their first k columns, and the inverse times the rest."""
-    k, w = len(column), row_length(len(column), len(sides))
+    k, w = len(sizes[0]), row_length(len(sizes[0]), len(sizes[1]))
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         code = _Code(context, builder, signature, arguments)
@@ -108,17 +108,17 @@ def _eliminate_column(typing, rows, column, sides):  # type: ignore[no-untyped-d
                 code.put_vector(base, w * i + c, row[c // LANES])
         return context.get_dummy_value()
 
-    return types.void(rows, column, sides), generate
+    return types.void(rows, sizes), generate
 
 
-def _next_column(typing, centre, below, above, before, behind, right, last, rows, column, sides):  # type: ignore[no-untyped-def]
+def _next_column(typing, centre, below, above, before, behind, right, last, rows, sizes):  # type: ignore[no-untyped-def]
     """rows (k, w) <- as eliminate_column, of a column with the entries centre, below, above, before (k,) and right-hand
     sides right (k, k + r), its last r layers, behind one with the entries behind (k,) and the rows last (k, w)."""
-    k, r, w = len(column), len(sides), row_length(len(column), len(sides))
+    k, r, w = len(sizes[0]), len(sizes[1]), row_length(len(sizes[0]), len(sizes[1]))
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         code = _Code(context, builder, signature, arguments)
-        centre, below, above, before, behind, right, last, rows, _, _ = code.arrays
+        centre, below, above, before, behind, right, last, rows, _ = code.arrays
         passed = [code.number(behind, j) for j in range(k)] + [_ONE] * (w - k)
         passes = code.vectors(passed)
         filled = []
@@ -137,19 +137,19 @@ def _next_column(typing, centre, below, above, before, behind, right, last, rows
                 code.put_vector(rows, w * i + c, row[c // LANES])
         return context.get_dummy_value()
 
-    given = (centre, below, above, before, behind, right, last, rows, column, sides)
+    given = (centre, below, above, before, behind, right, last, rows, sizes)
     return types.void(*given), generate
 
 
-def _take_in_next(typing, behind, following, rows, column, sides):  # type: ignore[no-untyped-def]
+def _take_in_next(typing, behind, following, rows, sizes):  # type: ignore[no-untyped-def]
     """rows (k, w) from column k on -= their inverse diag(behind) following (k, w), the rows of the next column. Of the
     inverse itself what shares a vector with these is lost."""
-    k, w = len(column), row_length(len(column), len(sides))
+    k, w = len(sizes[0]), row_length(len(sizes[0]), len(sizes[1]))
     parts = range(k // LANES * LANES, w, LANES)
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         code = _Code(context, builder, signature, arguments)
-        behind, following, rows, _, _ = code.arrays
+        behind, following, rows, _ = code.arrays
         passed = []
         for j in range(k):
             there = [code.vector(following, w * j + c) for c in parts]
@@ -162,18 +162,18 @@ def _take_in_next(typing, behind, following, rows, column, sides):  # type: igno
                 code.put_vector(rows, w * i + c, value)
         return context.get_dummy_value()
 
-    return types.void(behind, following, rows, column, sides), generate
+    return types.void(behind, following, rows, sizes), generate
 
 
-def _take_in_border(typing, border, rows, right, column, sides):  # type: ignore[no-untyped-def]
+def _take_in_border(typing, border, rows, right, sizes):  # type: ignore[no-untyped-def]
     """right (k, k + r), its last r layers <- the right-hand sides of rows (k, w) less what they take from the border,
     whose solutions stand in place of its right-hand sides in border (k, w)."""
-    k, r, w = len(column), len(sides), row_length(len(column), len(sides))
+    k, r, w = len(sizes[0]), len(sizes[1]), row_length(len(sizes[0]), len(sizes[1]))
     places = range(2 * k, 2 * k + r, LANES)
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         code = _Code(context, builder, signature, arguments)
-        border, rows, right, _, _ = code.arrays
+        border, rows, right, _ = code.arrays
         there = [[code.vector(border, w * j + c) for c in places] for j in range(k)]
         for i in range(k):
             row = [code.vector(rows, w * i + c) for c in places]
@@ -183,7 +183,7 @@ def _take_in_border(typing, border, rows, right, column, sides):  # type: ignore
                 code.put(right, (k + r) * i + k + side, code.lane(row[side // LANES], side % LANES))
         return context.get_dummy_value()
 
-    return types.void(border, rows, right, column, sides), generate
+    return types.void(border, rows, right, sizes), generate
 
 
 eliminate_column: Any = intrinsic(_eliminate_column)

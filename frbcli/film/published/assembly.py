@@ -141,30 +141,43 @@ def assemble(
                     by_h = change + gap.half * steep * around
                     across = (3.0 * h * h + by_height) * around
                     axial = (3.0 * elements.aspect * h * h + elements.spread * by_height) * along
-                    sine, cosine = elements.sine[e, q], elements.cosine[e, q]
-                    for a in range(9):
-                        value = area * values[q, a]
-                        flow = area * (elements.slopes[e, q, a, 0] * across + elements.slopes[e, q, a, 1] * axial)
-                        by_slope = value * gap.half * theta
-                        r[a, 1] -= (value * by_h + flow) * sine + by_slope * cosine
-                        r[a, 2] -= -(value * by_h + flow) * cosine + by_slope * sine
-                        r[a, 3] -= value * theta * sine
-                        r[a, 4] += value * theta * cosine
+                    _by_motion(elements, e, q, by_h, across, axial, theta, gap.half, r)
             if elements.near[e]:
                 _free_end(elements, e, 0, p, m, r)
             if elements.far[e]:
                 _free_end(elements, e, 2, p, m, r)
-        for a in range(9):
-            node = nodes[e, a]
-            if elements.fixed[node]:
-                r[a, :] = 0.0
-                m[a, :] = 0.0
-        for a in range(9):
-            for b in range(9):
-                m[a, b] *= slope[nodes[e, b]]
-        for a in range(9):
-            if elements.fixed[nodes[e, a]]:
-                m[a, a] = 1.0
+        _by_unknowns(elements, e, slope, m, r)
+
+
+@compiled(inline=True)
+def _by_motion(
+    elements: Elements, e: int, q: int, by_h: float, across: float, axial: float, theta: float, half: float, r: Array
+) -> None:
+    """What point q adds to minus the derivatives by the journal's displacement and velocity, by_h, across and axial
+    being those of the source and of both flows by H."""
+    area, sine, cosine = elements.area[e, q], elements.sine[e, q], elements.cosine[e, q]
+    for a in range(9):
+        value = area * elements.values[q, a]
+        flow = area * (elements.slopes[e, q, a, 0] * across + elements.slopes[e, q, a, 1] * axial)
+        by_slope = value * half * theta
+        r[a, 1] -= (value * by_h + flow) * sine + by_slope * cosine
+        r[a, 2] -= -(value * by_h + flow) * cosine + by_slope * sine
+        r[a, 3] -= value * theta * sine
+        r[a, 4] += value * theta * cosine
+
+
+@compiled(inline=True)
+def _by_unknowns(elements: Elements, e: int, slope: Array, m: Array, r: Array) -> None:
+    """Derivatives by the pressures become those by the unknowns, and rows of fixed nodes say that these stay."""
+    nodes = elements.nodes
+    for a in range(9):
+        if elements.fixed[nodes[e, a]]:
+            r[a, :] = 0.0
+            m[a, :] = 0.0
+        for b in range(9):
+            m[a, b] *= slope[nodes[e, b]]
+        if elements.fixed[nodes[e, a]]:
+            m[a, a] = 1.0
 
 
 @compiled()
