@@ -30,15 +30,24 @@ from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine, film_loads, make_machine, transfer
 from frbcli.cycles.over_key import limit_cycles_over
 from frbcli.cycles.result import LimitCycles
+from frbcli.cycles.stability_map import StabilityMap
 from frbcli.cycles.threshold import threshold_kind
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
+from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.linear.stability import stability
 from frbcli.plot.run_track import run_tracks
+from frbcli.rotor.held import held_rotor
+from frbcli.rotor.speed_profile import speed_profile
+from frbcli.runs.control import control_of
+from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
+from frbcli.solve.state import RUNNING
+from frbcli.solve.tableau import METHODS
+from frbcli.solve.time_loop import advance
 
 GRAVITY, CLEARANCE, MASS, WIDTH, RADIUS = 9.81, 50e-6, 6.0, 10e-3, 25e-3
 UNIT_Hz = math.sqrt(GRAVITY / CLEARANCE) / (2.0 * math.pi)  # w = 1
@@ -300,6 +309,52 @@ def test_harmonic_balance_agrees_with_the_time_loop(speed_Hz: float, tmp_path) -
     assert cycle.eccentricity_max[0] == pytest.approx(top, abs=1e-6)
 
 
+@pytest.mark.parametrize("name", ["jeffcott", "ring", "turbocharger"])
+def test_a_disturbance_above_the_threshold_grows_by_the_eigenvalue(name: str) -> None:
+    """The growing motion at rest, 1 % above the lowest Hopf point, five periods in the time loop: asked is 1 %."""
+    case = {
+        "jeffcott": lambda: frbcli.load_case("jeffcott", ["rotor.unbalance=0 g*mm"]),
+        "ring": ring_case,
+        "turbocharger": turbocharger,
+    }[name]()
+    plan = make_plan(case)
+    system, machine = make_system(case, plan), machine_of(case)
+    curve = resting_curve(system, machine, 0.3 * machine.pace, machine.pace)
+    omega = 1.01 * curve.hopf[0].equilibrium.omega
+    q, spins, n = resting_position(system, omega), list(system.spins), machine.rotor.size
+    v = np.zeros_like(q)
+    v[spins] = ring_speeds(system, held_rotor(system.rotor), omega, system.rotor.journals @ q)
+    space, u = state_space(machine), np.concatenate([machine.places @ q[:n], v[n:] / machine.pace])
+    loads = film_loads(machine, u[None], np.zeros((1, machine.size)), omega)
+    values, states = np.linalg.eig(space.matrix(omega, loads.by_u[0], loads.by_v[0]))
+    oscillating = np.flatnonzero(values.imag > 1e-6 * np.abs(values))
+    own = oscillating[np.argmax(values[oscillating].real)]
+    value, left = values[own], np.linalg.inv(states)[own]
+    mode = 1e-4 * (states[:, own] / np.abs(space.read @ states[:, own])[: 2 * machine.film_count].max()).real
+    period = 2.0 * math.pi / value.imag
+    profile = speed_profile([0.0, 6.0 * period], [omega, omega])
+    rotor = rotor_data(system, profile)
+    still = np.zeros_like(rotor.unbalance_cos)
+    rotor = rotor._replace(unbalance_cos=still, unbalance_sin=still)
+    control = control_of(case, plan)._replace(tolerance=1e-10, steps_per_revolution=200.0, output_step=period / 40.0)
+    moved = np.concatenate([mode[:n], np.zeros(len(spins))])
+    faster = np.concatenate([mode[n : 2 * n], machine.pace * mode[2 * n :]])
+    state = state_at(system, profile, q + moved, v + faster)
+    out_q, out_v, out_oil = np.empty((400, len(q))), np.empty((400, len(q))), np.zeros((400, len(system.names)))
+    tableau, status, rows = METHODS[plan.method].tableau, RUNNING, []
+    while status == RUNNING:
+        status, count = advance(rotor, system.films, tableau, control, state, 10**7, out_q, out_v, out_oil)
+        rows.append(np.hstack([out_q[:count, :n] - q[:n], out_v[:count] - v]))
+    x = np.concatenate(rows)
+    x[:, 2 * n :] /= machine.pace
+    size = x @ left
+    times = np.arange(len(size)) * control.output_step
+    late = times > period
+    growth = np.polyfit(times[late], np.log(np.abs(size[late])), 1)[0]
+    assert growth == pytest.approx(value.real, rel=1e-3)
+    assert np.polyfit(times[late], np.unwrap(np.angle(size[late])), 1)[0] == pytest.approx(value.imag, rel=1e-5)
+
+
 def test_half_of_the_drive_is_dissipated_at_rest() -> None:
     """Couette's torque on a journal in the centre of a film: eta R^3 B / C times 2 pi times the slip."""
     machine = machine_of(ring_case())
@@ -373,7 +428,7 @@ def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        (["film.cavitation=two-phase", "oil.cavitation_pressure=0.9 bar"], "mass-conserving"),
+        (["film.cavitation=two-phase", "film.two-phase.form=published"], "openings that turn"),
         (["film.cavitation=reynolds"], "no continuous derivative"),
         (["speed.to=0 Hz"], "no range of speeds"),
     ],
@@ -454,6 +509,58 @@ def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture
     assert picture.exists()
     assert run([*words, "--from", "1 Pa*s", "--to", "2 m"]) == 2
     assert run(words) == 2
+
+
+@cache
+def rigid_map() -> StabilityMap:
+    """Of the rigid rotor over its viscosity, Gamma = 0.8 to 5."""
+    low, high = (rigid(gamma, 2.3, 2.95).oil.viscosity for gamma in (0.8, 5.0))
+    return frbcli.stability_map(rigid(1.313, 2.3, 2.95), "oil.viscosity", f"{low!r} Pa*s", f"{high!r} Pa*s", 3)
+
+
+def gamma_of(value: float) -> float:
+    viscosity = rigid(1.0, 2.3, 2.95).oil.viscosity
+    assert isinstance(viscosity, float)
+    return value / viscosity
+
+
+def test_curves_of_a_map_are_those_of_the_diagrams() -> None:
+    """One curve of Hopf points and one of folds; Hopf points of both known values of Gamma lie on the first (by
+    the parabola through three points), and the folds of a diagram that the map has not seen on the second."""
+    hopf, fold = rigid_map().curves
+    assert (hopf.kind, fold.kind) == ("hopf", "fold")
+    for gamma, expected in ((4.538, 2.7413), (1.313, 2.6058)):
+        points = sorted(hopf.points, key=lambda point: abs(gamma_of(point.value) - gamma))[:5]
+        found = np.poly1d(
+            np.polyfit([gamma_of(p.value) - gamma for p in points], [p.speed_Hz / UNIT_Hz for p in points], 4)
+        )
+        assert found(0.0) == pytest.approx(expected, abs=2e-4)
+    other = diagram(4.538, 2.4, 2.9).of("fold")[0]
+    near = [p for p in fold.points if abs(p.speed_Hz - other.speed_Hz) < 0.01 * other.speed_Hz]
+    line = CubicSpline(*zip(*sorted((gamma_of(p.value), p.speed_Hz / UNIT_Hz) for p in near), strict=True))
+    assert float(line(4.538)) == pytest.approx(other.speed_Hz / UNIT_Hz, abs=1e-4)
+
+
+def test_folds_end_where_the_criticality_changes_and_turn_back_in_a_cusp() -> None:
+    """Soft below, hard above Gamma = 3.167, where the curve of folds begins; and one fold vanishes with another in a
+    cusp at Gamma = 1.06."""
+    found = rigid_map()
+    kinds = {point.kind: point for point in found.special}
+    assert set(kinds) == {"bautin", "cusp"}
+    change = gamma_of(kinds["bautin"].value)
+    for gamma, criticality in ((change - 0.02, "supercritical"), (change + 0.02, "subcritical")):
+        assert diagram(gamma, 2.6, 2.8).of("hopf")[0].criticality == criticality
+    fold = found.curves[1]
+    assert "It meets the curve of Hopf points." in fold.notes
+    ends = [(gamma_of(p.value), p.speed_Hz / UNIT_Hz) for p in (fold.points[0], fold.points[-1])]
+    nearest = min(ends, key=lambda end: abs(end[0] - change))
+    assert nearest[0] == pytest.approx(change, abs=0.02)
+    assert nearest[1] == pytest.approx(kinds["bautin"].speed_Hz / UNIT_Hz, abs=1e-3)
+    cusp = gamma_of(kinds["cusp"].value)
+    assert len(diagram(cusp - 0.05, 2.6, 2.9).of("fold")) == 0
+    assert len(diagram(cusp + 0.15, 2.6, 2.9).of("fold")) == 2
+    frame = found.to_pandas()
+    assert {"bautin", "cusp", "hopf", "fold"} == set(frame["kind"])
 
 
 def test_speeds_without_a_cycle_are_told() -> None:

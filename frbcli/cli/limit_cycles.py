@@ -20,6 +20,7 @@ from frbcli.cli.runs import OUTPUT, here
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint
+    from frbcli.cycles.stability_map import MapPoint
     from frbcli.plot.run_track import RunTrack
 
 ASKED = "asked"
@@ -33,10 +34,11 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @click.option("--over", default="speed", metavar="KEY",
               help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
 @click.option("--and", "key", metavar="KEY",
-              help="Hopf points and folds over speed and this key, e.g. bearing.clearance.")  # fmt: skip
+              help="Curves of Hopf points and folds over speed and this key, e.g. bearing.clearance.")  # fmt: skip
 @click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
 @click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
-@click.option("--points", type=click.IntRange(2, 500), default=9, help="Number of values of --and. [9]")
+@click.option("--points", type=click.IntRange(2, 500), default=3,
+              help="Number of values of --and whose diagrams tell where curves begin. [3]")  # fmt: skip
 @click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
@@ -118,7 +120,17 @@ def _map(
         for row in found.rows
         for point in row.special
     ]  # fmt: skip
+    rows += [
+        (f"{point.value:.4g} {found.unit}".strip(), point.kind, f"{point.speed_Hz:.2f}", f"{point.frequency_Hz:.2f}",
+         "on a curve")
+        for point in found.special
+    ]  # fmt: skip
     terminal.table(case.title or case.name, (found.key, "point", "Hz", "whirl Hz", ""), rows)
+    for curve in found.curves:
+        values = [point.value for point in curve.points]
+        told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
+        named = "Hopf points" if curve.kind == "hopf" else "folds"
+        terminal.result(_wrapped(" ".join([f"Curve of {named}: {told}", *curve.notes])))
     for row in found.rows:
         if row.problem:
             terminal.result(_wrapped(f"{row.value:.4g} {found.unit}: {row.problem}"))
@@ -145,10 +157,31 @@ def _map(
                 }
                 for row in found.rows
             ],
+            "curves": [
+                {
+                    "kind": curve.kind,
+                    "points": [_map_point(names, point) for point in curve.points],
+                    "notes": curve.notes,
+                }
+                for curve in found.curves
+            ],
+            "special": [_map_point(names, point) for point in found.special],
             "picture": picture,
             "csv": csv,
         }
     )
+
+
+def _map_point(names: tuple[str, ...], point: MapPoint) -> dict[str, object]:
+    return {
+        "value": point.value,
+        "speed_Hz": point.speed_Hz,
+        "frequency_Hz": point.frequency_Hz,
+        "eccentricity_max": dict(zip(names, point.eccentricity_max, strict=True)),
+        "criticality": point.criticality,
+        "lyapunov_1_s": point.lyapunov,
+        "kind": point.kind or None,
+    }
 
 
 def _tracks(path: Path) -> tuple[RunTrack, ...]:
@@ -276,5 +309,6 @@ def _special(films: tuple[str, ...], point: SpecialPoint) -> dict[str, object]:
         "frequency_Hz": point.frequency_Hz,
         "criticality": point.criticality,
         "lyapunov_1_s": point.lyapunov,
+        "lyapunov_uncertainty_1_s": point.lyapunov_uncertainty,
         "eccentricity_max": largest,
     }

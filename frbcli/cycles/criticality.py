@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,22 +31,43 @@ Complex = NDArray[np.complex128]
 States = Mapping[int, NDArray[Any]]
 
 ANGLES = 32
-SMOOTH, TABULATED = 0.02, 0.15  # radius over the gap in closed forms, and in tables, whose cubics have to be averaged
+SMOOTH = 0.02  # radius over the gap in closed forms
 LEVELS = 4  # radii, each half of the one before, of a closed form
+# Radii in tables, whose third derivatives jump between cells: an ellipse has to pass over some.
+TABULATED = (0.1, 0.15, 0.2)
 
 
-def lyapunov_coefficient(machine: Machine, hopf: HopfPoint) -> complex:
-    """c_1 in 1/s for an amplitude z over the clearance: below zero supercritical, above zero subcritical."""
+@dataclass(frozen=True)
+class Lyapunov:
+    """value: c_1 in 1/s for an amplitude z over the clearance; uncertainty: of its real part: what the last
+    extrapolation changes, of tables the range between radii."""
+
+    value: complex
+    uncertainty: float
+
+    @property
+    def sign(self) -> int:
+        """1: subcritical, -1: supercritical, 0: that cannot be told."""
+        real = self.value.real
+        return 0 if abs(real) <= self.uncertainty else 1 if real > 0.0 else -1
+
+
+def lyapunov_coefficient(machine: Machine, hopf: HopfPoint) -> Lyapunov:
+    """That of a Hopf point."""
     smooth = all(isinstance(film, ShortFilm) for film in machine.films)
     d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
     gap = 1.0 - float(np.max(np.hypot(d[:, 0], d[:, 1])))
-    radius = (SMOOTH if smooth else TABULATED) * gap
-    levels = LEVELS if smooth else 1
-    rows = [_at_radius(machine, hopf, radius * 0.5**level) for level in range(levels)]
+    if not smooth:
+        found = [_at_radius(machine, hopf, radius * gap) for radius in TABULATED]
+        real = [value.real for value in found]
+        return Lyapunov(found[len(found) // 2], max(real) - min(real))
+    rows = [_at_radius(machine, hopf, SMOOTH * gap * 0.5**level) for level in range(LEVELS)]
+    changed = 0.0
     while len(rows) > 1:  # errors go with r^2, r^4, ...
-        power = 4.0 ** (levels - len(rows) + 1)
+        power = 4.0 ** (LEVELS - len(rows) + 1)
+        changed = abs((rows[-1] - rows[-2]).real) / (power - 1.0)
         rows = [(power * fine - coarse) / (power - 1.0) for coarse, fine in itertools.pairwise(rows)]
-    return rows[0]
+    return Lyapunov(rows[0], changed)
 
 
 def _at_radius(machine: Machine, hopf: HopfPoint, radius: float) -> complex:

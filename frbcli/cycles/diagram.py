@@ -13,7 +13,7 @@ from frbcli.case.schema import Case
 from frbcli.cycles.balance import loads_along, unpacked
 from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, Follower, first_place, follow_branch
 from frbcli.cycles.continuation import oriented
-from frbcli.cycles.criticality import lyapunov_coefficient
+from frbcli.cycles.criticality import Lyapunov, lyapunov_coefficient
 from frbcli.cycles.equilibria import Course, Equilibrium, HopfPoint, Resting
 from frbcli.cycles.machine import Machine
 from frbcli.cycles.result import (
@@ -80,9 +80,9 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
     if not any(point.stable for point in resting.points) and not resting.hopf:
         seeded = _seeded(walk, tell)
         followed += [] if seeded is None else [(None, seeded)]
-    special = [_hopf(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
+    special = [hopf_special(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
     for number, (_, branch) in enumerate(followed):
-        special += [_special(walk, cycle, number) for cycle in branch.cycles if cycle.kind in (FOLD, FLIP, TORUS)]
+        special += [cycle_special(walk, cycle, number) for cycle in branch.cycles if cycle.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
         case=case,
         over=walk.over,
@@ -183,10 +183,11 @@ def _cycle(walk: Walk, cycle: Cycle) -> CyclePoint:
     )
 
 
-def _hopf(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoint:
+def hopf_special(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoint:
+    """A Hopf point with its criticality; branch: number of the one that begins there."""
     machine: Machine = walk.course.machine(hopf.equilibrium.value)
     d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
-    coefficient = lyapunov_coefficient(machine, hopf).real
+    found = lyapunov_coefficient(machine, hopf)
     return SpecialPoint(
         kind=HOPF,
         branch=branch,
@@ -194,12 +195,19 @@ def _hopf(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoint:
         speed_Hz=_hertz(hopf.equilibrium.omega),
         frequency_Hz=_hertz(hopf.nu),
         eccentricity_max=np.hypot(d[:, 0], d[:, 1]),
-        criticality=SUBCRITICAL if coefficient > 0.0 else SUPERCRITICAL,
-        lyapunov=coefficient,
+        criticality=criticality_of(found),
+        lyapunov=found.value.real,
+        lyapunov_uncertainty=found.uncertainty,
     )
 
 
-def _special(walk: Walk, cycle: Cycle, branch: int) -> SpecialPoint:
+def criticality_of(found: Lyapunov) -> str | None:
+    """None where it cannot be told."""
+    return (None, SUBCRITICAL, SUPERCRITICAL)[found.sign]
+
+
+def cycle_special(walk: Walk, cycle: Cycle, branch: int) -> SpecialPoint:
+    """A special cycle of a branch."""
     speed, frequency = _hertz(cycle.y[-1] * cycle.machine.pace), _hertz(cycle.y[-2] * cycle.machine.pace)
     return SpecialPoint(cycle.kind, branch, walk.value(cycle), speed, frequency, cycle.eccentricity_max)
 

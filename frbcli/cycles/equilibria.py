@@ -230,13 +230,20 @@ def _located(course: Course, low: Equilibrium, high: Equilibrium) -> HopfPoint:
         return course.solved(low, high, value).growth(number)
 
     value = float(brentq(growth, low.value, high.value, xtol=SHARP * high.value, rtol=SHARP))
-    here, machine = course.solved(low, high, value), course.machine(value)
+    here = course.solved(low, high, value)
+    return hopf_at(course.machine(value), here, high.unstable > low.unstable)
+
+
+def hopf_at(machine: Machine, here: Equilibrium, rising: bool, nu: float | None = None) -> HopfPoint:
+    """The Hopf point of an equilibrium. nu: about its frequency in rad/s, else the pair is taken that is nearest to the
+    imaginary axis."""
     space = state_space(machine)
     loads = film_loads(machine, here.u[None], np.zeros((1, len(here.u))), here.omega)
     values, vectors = np.linalg.eig(space.matrix(here.omega, loads.by_u[0], loads.by_v[0]))
     oscillating = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
-    own = oscillating[np.argmin(np.abs(values[oscillating].real))]
+    off = values[oscillating].real if nu is None else values[oscillating] - 1j * nu
+    own = oscillating[np.argmin(np.abs(off))]
     state = vectors[:, own].astype(complex)
     mode = space.read @ state
     largest = mode[np.argmax(np.abs(mode[: 2 * machine.film_count]))]
-    return HopfPoint(here, float(values[own].imag), mode / largest, high.unstable > low.unstable, state / largest)
+    return HopfPoint(here, float(values[own].imag), mode / largest, rising, state / largest)

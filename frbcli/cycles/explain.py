@@ -43,8 +43,8 @@ def _sentence(cause: SpecialPoint, starts: bool, speed_Hz: float) -> str:
     where = f"{cause.speed_Hz:.1f} Hz ({cause.frequency_Hz:.1f} Hz)"
     off = abs(speed_Hz - cause.speed_Hz)
     if starts and cause.kind == HOPF:
-        soft = "soft" if cause.criticality == "supercritical" else "hard"
-        return f"a whirl grows at rest from the {soft} Hopf point at {where} on; it is seen {off:.1f} Hz later."
+        soft = {"supercritical": "soft ", "subcritical": "hard "}.get(cause.criticality or "", "")
+        return f"a whirl grows at rest from the {soft}Hopf point at {where} on; it is seen {off:.1f} Hz later."
     if starts:
         return f"stable cycles begin in the fold at {where}; a disturbance led there {off:.1f} Hz above it."
     if cause.kind == HOPF:

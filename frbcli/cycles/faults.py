@@ -11,13 +11,15 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.linear.stability import default_speeds
 from frbcli.scene.channels import coupled
 from frbcli.scene.film_choice import all_clipped, needs_cells
-from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings
+from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
 from frbcli.scene.keys import cavitation_keys
+from frbcli.scene.published import is_published
 
 
-def check(case: Case) -> tuple[float, float]:
-    """The range of speeds of a case in rad/s, the slowest above zero. Raises InputError."""
-    faults = list(_films(case))
+def check(case: Case, with_oil: bool = False) -> tuple[float, float]:
+    """The range of speeds of a case in rad/s, the slowest above zero. with_oil: whether films may be mass-conserving.
+    Raises InputError."""
+    faults = list(_oil_films(case) if with_oil and keeps_oil(case) else _films(case))
     if case.heat is not None:
         problem = "is not modelled in limit cycles: each of them dissipates something else, and has other viscosities."
         remedy = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
@@ -31,6 +33,12 @@ def check(case: Case) -> tuple[float, float]:
     return 2.0 * math.pi * speeds[0], 2.0 * math.pi * speeds[-1]
 
 
+def keeps_oil(case: Case) -> bool:
+    """Whether a film of the case is mass-conserving."""
+    named = () if case.film.bearing_model else tuple(name for _, name in cavitation_keys(case))
+    return any(law_named(name).keeps_oil for name in named)
+
+
 def turning_openings(case: Case) -> bool:
     """Whether all films on cells solve a linear equation and have no openings but those that turn."""
     if not all_clipped(case) or any(coupled(bearing) for bearing in rings(case)):
@@ -41,6 +49,26 @@ def turning_openings(case: Case) -> bool:
 def _turn(place: FilmPlace) -> bool:
     geometry = place.geometry
     return isinstance(geometry.supply, Bores) and geometry.lobes is None and place.grid_body != HOUSING
+
+
+def _oil_films(case: Case) -> tuple[Fault, ...]:
+    """Mass-conserving films whose map over a period is not the same at each start: their openings turn. And those of
+    the published form, whose oil is not on cells."""
+    named = cavitation_keys(case)
+    kept = all(law_named(name).keeps_oil for _, name in named)
+    turn = any(
+        place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
+        for place in film_places(case)
+    )
+    if kept and not turn and not is_published(case):
+        return ()
+    problem = "has limit cycles only without openings that turn, with the oil of all films on cells."
+    remedy = "Leave feed holes that turn and the published form out, or take a run-up."
+    return tuple(Fault(key, name, None, problem, remedy) for key, name in named)
+
+
+def _turns(case: Case, place: FilmPlace) -> bool:
+    return place.grid_body != HOUSING or turns_with_oil(case, place)
 
 
 def _films(case: Case) -> tuple[Fault, ...]:

@@ -12,8 +12,9 @@ from frbcli.cycles.branch import Follower
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
 from frbcli.cycles.equilibria import OverSpeed, resting_curve
-from frbcli.cycles.faults import check
+from frbcli.cycles.faults import check, keeps_oil
 from frbcli.cycles.machine import make_machine
+from frbcli.cycles.oil_cycles import limit_cycles_with_oil
 from frbcli.cycles.result import SPEED, LimitCycles
 from frbcli.cycles.synchronous import synchronous_response
 from frbcli.errors import Fault, InputError, NotConverged
@@ -32,13 +33,15 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
     NotConverged without a resting position at the highest speed.
     """
     begun = time.process_time()
-    slowest, fastest = check(case)
+    slowest, fastest = check(case, with_oil=True)
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
         problem = f"lies outside of the range, {_hertz(slowest):.4g} to {_hertz(fastest):.4g} Hz."
         remedy = "Ask for a speed within it, or set speed.from and speed.to."
         faults = tuple(Fault("speed", f"{_hertz(speed):g} Hz", None, problem, remedy) for speed in outside)
         raise InputError(case.name or "case", faults)
+    if keeps_oil(case):
+        return _with_missing(limit_cycles_with_oil(case, slowest, fastest, asked, observe), speeds_Hz)
     system = make_system(case, make_plan(case))
     machine = make_machine(system, fastest)
     try:
@@ -56,14 +59,18 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
         follower=Follower(machine, slowest, fastest, asked),
         branch_scale=machine.pace / (2.0 * math.pi),
     )
-    found = diagram(case, walk, observe, lambda: time.process_time() - begun)
-    met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
-    missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
-    found = replace(found, notes=(*found.notes, *missing))
+    found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
     if not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
         return found
     response = synchronous_response(machine, resting.points[-1], slowest)
     return with_response(found, walk, response, time.process_time() - begun)
+
+
+def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:
+    """With a note on each speed at which there is no cycle."""
+    met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
+    missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
+    return replace(found, notes=(*found.notes, *missing))
 
 
 def _hertz(omega: float) -> float:

@@ -12,57 +12,25 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.cycles.balance import Balance, unpacked
 from frbcli.cycles.branch import Follower
 from frbcli.cycles.continuation import Equations, Place, Unreachable
 from frbcli.cycles.diagram import Observer, Walk, diagram
-from frbcli.cycles.equilibria import Equilibrium, Resting, hopf_points, settled
+from frbcli.cycles.equilibria import Resting, hopf_points, settled
+from frbcli.cycles.family import Family, value_range
 from frbcli.cycles.faults import check
-from frbcli.cycles.machine import Machine, make_machine
+from frbcli.cycles.machine import Machine
 from frbcli.cycles.result import LimitCycles
-from frbcli.cycles.stability_map import value_range
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
-from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
-from frbcli.scene.system import System, make_system
 
 Array = NDArray[np.float64]
 
 POINTS = 41  # resting positions of the diagram
 DIFFERENCE = 1e-5  # of the largest value
-KEPT = 64  # machines
-
-
-class Family:
-    """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`."""
-
-    def __init__(self, case: Case, key: str, high: float, unit: str, omega: float) -> None:
-        self.case, self.key, self.high, self.unit, self.omega = case, key, high, unit, omega
-        self._made: dict[float, Machine] = {}
-
-    def system(self, share: float) -> System:
-        """The system at a share of the largest value. Raises InputError if the case cannot have it."""
-        setting = f"{self.key}={share * self.high!r} {self.unit}".strip()
-        case = load_case_text(self.case.source_text, [setting], self.case.name)
-        check(case)
-        return make_system(case, make_plan(case))
-
-    def machine(self, value: float) -> Machine:
-        """The machine at a share."""
-        if value not in self._made:
-            if len(self._made) >= KEPT:
-                self._made.pop(next(iter(self._made)))
-            self._made[value] = make_machine(self.system(value), self.omega)
-        return self._made[value]
-
-    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
-        """As Course says."""
-        share = (value - low.value) / (high.value - low.value)
-        return settled(self.machine(value), low.u + share * (high.u - low.u), self.omega, value)
 
 
 class KeyFollower(Follower):

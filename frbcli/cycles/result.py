@@ -80,8 +80,9 @@ class CycleBranch:
 @dataclass(frozen=True)
 class SpecialPoint:
     """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
-    point; value: of the number that the diagram goes over; criticality: of a Hopf point, else None, with lyapunov (1/s,
-    for an amplitude over the clearance): Re c_1 of criticality.py; eccentricity_max: (F,).
+    point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it
+    cannot be told, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of
+    criticality.py; eccentricity_max: (F,).
     """
 
     kind: str
@@ -92,6 +93,7 @@ class SpecialPoint:
     eccentricity_max: Array
     criticality: str | None = None
     lyapunov: float = math.nan
+    lyapunov_uncertainty: float = math.nan
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ class ThresholdKind:
 
 def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
     """Of a case that is stable at rest below a threshold in Hz and not above; None where it cannot be told: of films
-    whose force does not follow from the motion alone."""
+    whose force does not follow from the motion alone, or next to the change from one kind to the other."""
     try:
         slowest, fastest = check(case)
         system = make_system(case, make_plan(case))
@@ -44,7 +44,10 @@ def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
     if not near.hopf:
         return None
     hopf = min(near.hopf, key=lambda point: abs(point.equilibrium.omega - omega))
-    if lyapunov_coefficient(machine, hopf).real < 0.0:
+    sign = lyapunov_coefficient(machine, hopf).sign
+    if sign == 0:
+        return None
+    if sign < 0:
         return ThresholdKind(SUPERCRITICAL, None)
     folds: list[float] = []
 

@@ -1,0 +1,63 @@
+"""The machines of a case by one of its numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from frbcli.case.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.cycles.equilibria import Equilibrium, settled
+from frbcli.cycles.faults import check
+from frbcli.cycles.machine import Machine, make_machine
+from frbcli.errors import Fault, InputError
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import System, make_system
+
+KEPT = 64  # machines
+NUMBER = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*")
+
+
+class Family:
+    """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`."""
+
+    def __init__(self, case: Case, key: str, high: float, unit: str, omega: float) -> None:
+        self.case, self.key, self.high, self.unit, self.omega = case, key, high, unit, omega
+        self._made: dict[float, Machine] = {}
+
+    def system(self, share: float) -> System:
+        """The system at a share of the largest value. Raises InputError if the case cannot have it."""
+        setting = f"{self.key}={share * self.high!r} {self.unit}".strip()
+        case = load_case_text(self.case.source_text, [setting], self.case.name)
+        check(case)
+        return make_system(case, make_plan(case))
+
+    def machine(self, value: float) -> Machine:
+        """The machine at a share."""
+        if value not in self._made:
+            if len(self._made) >= KEPT:
+                self._made.pop(next(iter(self._made)))
+            self._made[value] = make_machine(self.system(value), self.omega)
+        return self._made[value]
+
+    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
+        """As Course says."""
+        share = (value - low.value) / (high.value - low.value)
+        return settled(self.machine(value), low.u + share * (high.u - low.u), self.omega, value)
+
+
+def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
+    """The ends of a range, text with one unit, and that unit. Raises InputError."""
+    (first, unit), (last, other) = _number(key, low), _number(key, high)
+    if unit != other or not first < last:
+        problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'
+        raise InputError(case.name or "case", (Fault(key, f"{low} to {high}", None, problem, remedy),))
+    return first, last, unit
+
+
+def _number(key: str, text: str) -> tuple[float, str]:
+    """A number and its unit."""
+    found: Sequence[str] | None = None if (match := NUMBER.fullmatch(text)) is None else match.groups()
+    if found is None:
+        raise InputError(key, (Fault(key, text, None, "is no number with a unit.", 'Write e.g. "40 um".'),))
+    return float(found[0]), found[1]

@@ -1,0 +1,225 @@
+"""What a time of constant speed makes of a machine whose films keep their oil: the map of the time loop that runs use.
+
+The state is x = (q, v, theta): displacements and velocities of the rotor, and the oil fraction of each cell, seen from
+the housing. Plain films have cells that turn with the oil; what they hold is brought back over the angle that they
+have turned by, with cubics through four cells. The steps are of equal length and their number is fixed, so
+that the map is smooth enough for differences: error control would change it from one evaluation to the next.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.schema import Case
+from frbcli.cycles.continuation import Unreachable
+from frbcli.errors import NotConverged
+from frbcli.film.cells.balances import FLOWS
+from frbcli.film.cells.data import COS, GAP, SIN, UNKNOWN, VolumeFilms
+from frbcli.rotor.speed_profile import speed_profile
+from frbcli.runs.control import control_of
+from frbcli.runs.start import rotor_data, state_at
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import System, make_system
+from frbcli.solve.state import (
+    ERROR_SPANS,
+    FINISHED,
+    GRID,
+    HISTORY,
+    NUMBERS,
+    OIL,
+    RATE,
+    RUN_END,
+    RUNNING,
+    STEP,
+    STEP_DONE,
+    W_BEFORE,
+    WET,
+    Array,
+    Control,
+    State,
+    W,
+    make_output,
+)
+from frbcli.solve.tableau import METHODS, Tableau
+from frbcli.solve.time_loop import advance
+
+STEPS_PER_REVOLUTION = 100
+TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differences of the map
+FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
+SAMPLES = 256  # moments at which displacements are told
+MOST_STEPS = 10**6
+
+
+@dataclass(frozen=True)
+class Wet:
+    """A machine at one moment. q, v, a: (n,) displacements, velocities and accelerations of the rotor, rings at their
+    angle 0; theta, rate, w: (F, m, k) oil fraction, rate of H theta in 1/s and unknown of the cells. a, rate and w
+    follow from the rest within the first step, and are carried along as its guess."""
+
+    q: Array
+    v: Array
+    a: Array
+    theta: Array
+    rate: Array
+    w: Array
+
+
+@dataclass(frozen=True)
+class Passage:
+    """What a time has led to: the state at its end; displacements: (SAMPLES + 1, F, 2) over the clearances at equal
+    moments from its start to its end."""
+
+    end: Wet
+    displacements: Array
+
+
+@dataclass(frozen=True)
+class PeriodMap:
+    """The time loop of a system without unbalance; turned: (F, 1 + rings) shares in the speed of each film's cells."""
+
+    system: System
+    films: VolumeFilms
+    control: Control
+    tableau: Tableau
+    clearances: Array
+    turned: Array
+    held: NDArray[np.bool_]
+
+    @property
+    def scale(self) -> float:
+        """Clearance in m over which displacements of the state are told."""
+        return float(self.clearances[0])
+
+    def packed(self, wet: Wet, omega: float) -> Array:
+        """The state of a machine, of the order of 1; omega: speed in rad/s over which velocities are told."""
+        kept = self._kept
+        oil = wet.theta[self.held] / math.sqrt(np.count_nonzero(self.held))
+        return np.concatenate([wet.q[kept] / self.scale, self._slow(wet.v, omega), oil])
+
+    def unpacked(self, x: Array, near: Wet, omega: float) -> Wet:
+        """The machine of a state; near: whose guesses and given cells it takes."""
+        n, kept = len(near.q), self._kept
+        m = len(kept)
+        q, theta = np.zeros(n), near.theta.copy()
+        q[kept] = x[:m] * self.scale
+        v = x[m : m + n] / self._slow(np.ones(n), omega)
+        theta[self.held] = x[m + n :] * math.sqrt(np.count_nonzero(self.held))
+        return replace(near, q=q, v=v, theta=theta)
+
+    def motion_of(self, wet: Wet, omega: float) -> Array:
+        """Rate of the state's displacements and velocities in 1/s, zero for its oil."""
+        moved = np.concatenate([wet.v[self._kept] / self.scale, self._slow(wet.a, omega)])
+        return np.concatenate([moved, np.zeros(np.count_nonzero(self.held))])
+
+    def passage(self, wet: Wet, time: float, omega: float, steps: int) -> Passage:
+        """After a time in s at a speed in rad/s. Raises Unreachable where the run ends before."""
+        rotor = rotor_data(self.system, speed_profile([0.0, time], [omega, omega]))
+        rotor = rotor._replace(
+            unbalance_cos=np.zeros_like(rotor.unbalance_cos), unbalance_sin=np.zeros_like(rotor.unbalance_sin)
+        )
+        control = self.control._replace(output_step=time / SAMPLES, longest_step=time / steps, steps_per_revolution=1.0)
+        state = self._state(wet, time)
+        output = make_output(SAMPLES + 8, len(wet.q), len(self.clearances))
+        written, status = [], RUNNING
+        while status == RUNNING:
+            status, count = advance(rotor, self.films, self.tableau, control, state, MOST_STEPS, output)
+            written.append(output.q[:count].copy())
+        if status != FINISHED or not np.isfinite(state.q).all():
+            raise Unreachable
+        q = np.concatenate(written)[: SAMPLES + 1]
+        places = np.einsum("fij,nj->nfi", self.system.rotor.journals, q) / self.clearances[:, None]
+        return Passage(self._end(state, time, omega), places)
+
+    @property
+    def _kept(self) -> NDArray[np.int64]:
+        """Degrees of freedom whose displacement belongs to the state: all but the angles of rings."""
+        return np.arange(self.system.rotor.size - self.system.ring_count)
+
+    def _slow(self, v: Array, omega: float) -> Array:
+        """Velocities over half of the speed; of displacements over the clearance, too."""
+        told = 2.0 * v / omega
+        told[self._kept] /= self.scale
+        return np.asarray(told)
+
+    def _gaps(self, q: Array, angles: Array) -> Array:
+        """(F, m) H in the cells of films turned by angles (F,)."""
+        d = self.system.rotor.journals @ q / self.clearances[:, None]
+        c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
+        x, y = c * d[:, :1] + s * d[:, 1:], c * d[:, 1:] - s * d[:, :1]
+        ring = self.films.ring
+        return np.asarray(ring[:, GAP] + x * ring[:, SIN] - y * ring[:, COS])
+
+    def _state(self, wet: Wet, time: float) -> State:
+        count, first = len(self.clearances), FIRST_STEP * time
+        films = np.zeros((WET, *wet.theta.shape))
+        films[W] = films[W_BEFORE] = wet.w
+        films[OIL] = wet.theta * self._gaps(wet.q, np.zeros(count))[:, :, None]
+        films[RATE] = wet.rate
+        numbers = np.zeros(NUMBERS)
+        numbers[STEP] = numbers[STEP_DONE] = first
+        numbers[RUN_END] = time
+        past = np.zeros((HISTORY, 1 + 2 * count))
+        past[:, 0] = first * np.arange(1 - HISTORY, 1)
+        past[:, 1:] = (self.system.rotor.journals @ wet.v).ravel()
+        flows, errors = np.zeros((2, count, FLOWS)), np.zeros((2, ERROR_SPANS))
+        return State(numbers, wet.q.copy(), wet.v.copy(), wet.a.copy(), past, films, flows, errors)
+
+    def _end(self, state: State, time: float, omega: float) -> Wet:
+        spins = list(self.system.spins)
+        angles = self.turned @ np.concatenate([[omega * time], state.q[spins]])
+        theta = state.wet[OIL] / self._gaps(state.q, angles)[:, :, None]
+        seen = [
+            np.stack([turned_back(field, angle) for field, angle in zip(fields, angles, strict=True)])
+            for fields in (theta, state.wet[RATE], state.wet[W])
+        ]
+        q = state.q.copy()
+        q[spins] = 0.0
+        return Wet(q, state.v.copy(), state.a.copy(), seen[0], seen[1], seen[2])
+
+
+def period_map(case: Case) -> PeriodMap:
+    """The map of a case whose films are all on cells."""
+    plan = replace(make_plan(case), tolerance=TOLERANCE)
+    system = make_system(case, plan)
+    films = system.films
+    assert isinstance(films, VolumeFilms)
+    tableau = METHODS[plan.method].tableau
+    return PeriodMap(
+        system=system,
+        films=films,
+        control=control_of(case, plan),
+        tableau=tableau._replace(defect=np.zeros_like(tableau.defect)),
+        clearances=np.array(system.clearances),
+        turned=system.turning[:, GRID],
+        held=films.cells[:, UNKNOWN] != 0.0,
+    )
+
+
+def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
+    """A machine with displacements q and velocities v whose films have settled there. Raises Unreachable."""
+    try:
+        state = state_at(found.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
+    except NotConverged:
+        raise Unreachable from None
+    theta = state.wet[OIL] / found._gaps(q, np.zeros(len(found.clearances)))[:, :, None]
+    return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W])
+
+
+def turned_back(field: Array, angle: float) -> Array:
+    """(m, k) a field of m equal cells around that have turned by an angle in rad, seen from where they began."""
+    cells = angle / (2.0 * math.pi) * len(field)
+    whole = math.floor(cells + 1e-9)
+    x = cells - whole
+    if abs(x) < 1e-9:
+        return np.roll(field, whole, axis=0)
+    weights = (
+        -x * (x - 1.0) * (x - 2.0) / 6.0,
+        (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0,
+        -(x + 1.0) * x * (x - 2.0) / 2.0,
+        (x + 1.0) * x * (x - 1.0) / 6.0,
+    )
+    return np.asarray(sum(weight * np.roll(field, whole + j - 1, axis=0) for j, weight in enumerate(weights)))

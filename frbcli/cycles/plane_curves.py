@@ -1,0 +1,228 @@
+"""Curves of Hopf points and of folds in the plane of the speed and a second number of the case.
+
+Both are curves of solutions as in continuation.py, with one equation more than the resting positions or the cycles
+that lie on them. That a matrix A is singular is asked by g = 0 of
+
+    [A  b; c^H 0] [v; g] = [0; 1],
+
+which is regular on the curve if b and c are near to the vectors that A has no part of (Govaerts, Numerical Methods for
+Bifurcations of Dynamical Equilibria, 2000). Of a Hopf point A = 1 - T_1 (dg/du + i nu dg/du' + kappa), as small as the
+films; of a fold, the derivative of the harmonic balance by the motion and its frequency at a constant speed.
+
+The unknowns end with Omega / pace and the second number over its largest value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lu_factor, lu_solve
+
+from frbcli.cycles.balance import Balance, left_out, unpacked
+from frbcli.cycles.continuation import (
+    Equations,
+    Place,
+    Strides,
+    Unreachable,
+    corrected,
+    next_length,
+    oriented,
+    step_from,
+)
+from frbcli.cycles.equilibria import equations as resting_equations
+from frbcli.cycles.machine import Machine, film_loads, transfer
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Machines = Callable[[float], Machine]  # of the second number over its largest value
+
+STRIDES = Strides(first=0.02, shortest=1e-5, longest=0.06, points=300)
+DIFFERENCE = 1e-5  # of the unknowns of Hopf points, of the second number, and along the vector v of folds
+MOST_HARMONICS, TAIL = 48, 1e-6  # of folds; what the harmonics left out may have of the clearance
+
+
+@dataclass(frozen=True)
+class Curve:
+    """places: in their order; notes: why the first and the last place do not lie on the border, empty if they do."""
+
+    places: tuple[Place, ...]
+    notes: tuple[str, str]
+
+
+def hopf_equations(machines: Machines, y: Array) -> Equations:
+    """Those of a Hopf point y = (u, nu / pace, Omega / pace, share), with the bordering vectors of a y near to it."""
+    at = machines(float(y[-1]))
+    left, _, right = np.linalg.svd(_at_rest(at, y))
+    b, c = left[:, -1], right[-1].conj()
+
+    def residual(y: Array) -> Array:
+        machine = machines(float(y[-1]))
+        rest, _ = resting_equations(machine)(np.append(y[:-3], y[-2]))
+        size = len(b)
+        matrix = np.zeros((size + 1, size + 1), dtype=complex)
+        matrix[:size, :size], matrix[:size, size], matrix[size, :size] = _at_rest(machine, y), b, c.conj()
+        g = np.linalg.solve(matrix, np.eye(size + 1)[-1])[-1]
+        return np.concatenate([rest, [g.real, g.imag]])
+
+    def equations(y: Array) -> tuple[Array, Array]:
+        if not y[-1] > DIFFERENCE:
+            raise Unreachable
+        steps = DIFFERENCE * np.eye(len(y))
+        columns = [(residual(y + step) - residual(y - step)) / (2.0 * DIFFERENCE) for step in steps]
+        return residual(y), np.transpose(columns)
+
+    return equations
+
+
+def _at_rest(machine: Machine, y: Array) -> Complex:
+    """1 - T_1 (dg/du + i nu dg/du' + kappa) at rest."""
+    nu, omega = float(y[-3] * machine.pace), float(y[-2] * machine.pace)
+    passing = transfer(machine, 1, nu, omega)
+    u = y[None, :-3]
+    loads = film_loads(machine, u, np.zeros_like(u), omega)
+    inner = loads.by_u[0] + 1j * nu * loads.by_v[0] + np.diag(passing.kappa[1])
+    return np.asarray(np.eye(len(inner)) - passing.values[1] @ inner)
+
+
+def fold_equations(machines: Machines, y: Array) -> Equations:
+    """Those of a fold y = (motion, nu / pace, Omega / pace, share), see balance.py, with the bordering vectors and the
+    phase of a y near to it."""
+    size = machines(float(y[-1])).size
+    reference = unpacked(y[:-3], size)
+
+    def balance(y: Array) -> tuple[Array, Array]:
+        return Balance(machines(float(y[-1])), reference)(y[:-1])
+
+    _, slope = balance(y)
+    b, c, n = _nearly_null(slope[:, :-1].T), _nearly_null(slope[:, :-1]), len(y) - 2
+    last = np.eye(n + 1)[-1]
+
+    def equations(y: Array) -> tuple[Array, Array]:
+        if not y[-1] > DIFFERENCE:
+            raise Unreachable
+        residual, slope = balance(y)
+        bordered = np.zeros((n + 1, n + 1))
+        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = slope[:, :-1], b, c
+        v, w = np.linalg.solve(bordered, last), np.linalg.solve(bordered.T, last)
+        along, share = np.zeros(len(y)), np.zeros(len(y))
+        along[:n], share[-1] = v[:n] / np.linalg.norm(v[:n]), 1.0
+        ahead, behind = (balance(y + side * DIFFERENCE * along) for side in (1.0, -1.0))
+        more, less = (balance(y + side * DIFFERENCE * share) for side in (1.0, -1.0))
+        matrix = np.zeros((n + 1, n + 2))
+        matrix[:n, :-1] = slope
+        matrix[:n, -1] = (more[0] - less[0]) / (2.0 * DIFFERENCE)
+        scale = np.linalg.norm(v[:n]) / (2.0 * DIFFERENCE)
+        matrix[n, :-1] = -scale * w[:n] @ (ahead[1] - behind[1])
+        matrix[n, -1] = -w[:n] @ (more[1] - less[1])[:, :-1] @ v[:n] / (2.0 * DIFFERENCE)
+        return np.append(residual, v[n]), matrix
+
+    return equations
+
+
+def _nearly_null(matrix: Array) -> Array:
+    """The unit vector of which a nearly singular matrix makes least, by inverse iteration."""
+    factors = lu_factor(matrix)
+    found = np.ones(len(matrix))
+    for side in (1, 0, 1, 0):  # of the transposed matrix and of its own: that of the smallest singular value
+        found = lu_solve(factors, found, trans=side)
+        found /= np.linalg.norm(found)
+    return np.asarray(found)
+
+
+def follow_both(
+    equations: Callable[[Array], Equations],
+    start: Array,
+    corners: tuple[Array, Array],
+    fitted: Callable[[Place], Place | None] = lambda place: place,
+    ends: Callable[[Place], str] = lambda _: "",
+) -> Curve | None:
+    """The curve through a place near to `start` inside of a rectangle of its last two unknowns, up to its border; None
+    if there is none.
+
+    fitted: a place with as many unknowns as it needs; ends: why a curve ends in a place, or nothing.
+    """
+    asked, units = equations(start), np.eye(len(start))
+    place = corrected(asked, start, units[-1]) or corrected(asked, start, units[-2])
+    place = None if place is None else fitted(place)
+    if place is None:
+        return None
+    sides = [_followed(equations, oriented(place, way * place.tangent), corners, fitted, ends) for way in (-1.0, 1.0)]
+    (back, first), (on, last) = sides
+    back = [replace(one, tangent=-one.tangent, side=-one.side) for one in reversed(back)]
+    return Curve((*back, place, *on), (first, last))
+
+
+def _followed(
+    equations: Callable[[Array], Equations],
+    place: Place,
+    corners: tuple[Array, Array],
+    fitted: Callable[[Place], Place | None],
+    ends: Callable[[Place], str],
+) -> tuple[list[Place], str]:
+    found: list[Place] = []
+    length = STRIDES.first
+    for _ in range(STRIDES.points):
+        there = _stepped(equations, place, length, fitted)
+        while there is None and length > STRIDES.shortest:
+            length *= 0.5
+            there = _stepped(equations, place, length, fitted)
+        if there is None:
+            return found, "The steps became too short."
+        if not (np.all(there.y[-2:] >= corners[0]) and np.all(there.y[-2:] <= corners[1])):
+            return [*found, _on_border(equations, there, corners)], ""
+        found.append(there)
+        if note := ends(there):
+            return found, note
+        if len(place.y) == len(there.y):
+            length = next_length(length, STRIDES, place, there)
+        place = there
+    return found, f"It was followed over {STRIDES.points} points and goes on."
+
+
+def _on_border(equations: Callable[[Array], Equations], there: Place, corners: tuple[Array, Array]) -> Place:
+    """The place next to one outside of the rectangle in which the curve leaves it."""
+    at, limits = there.y[-2:], np.clip(there.y[-2:], *corners)
+    number = int(np.argmax(np.abs(at - limits))) - 2
+    along = np.zeros(len(there.y))
+    along[number] = 1.0
+    guess = there.y + (limits[number] - at[number]) / there.tangent[number] * there.tangent
+    guess[number] = limits[number]
+    found = corrected(equations(there.y), guess, along)
+    return there if found is None else oriented(found, there.tangent)
+
+
+def _stepped(
+    equations: Callable[[Array], Equations], place: Place, length: float, fitted: Callable[[Place], Place | None]
+) -> Place | None:
+    try:
+        found = step_from(equations(place.y), place, length)
+        return None if found is None else fitted(oriented(found, place.tangent))
+    except Unreachable:
+        return None
+
+
+def fitted_fold(machines: Machines, place: Place) -> Place | None:
+    """A fold with as many harmonics as it needs, up to a largest number."""
+    for _ in range(8):
+        machine = machines(float(place.y[-1]))
+        harmonics = (len(place.y) - 3) // machine.size // 2
+        if harmonics >= MOST_HARMONICS or left_out(machine, place.y[:-1]) < TAIL:
+            return place
+        more = min(MOST_HARMONICS, harmonics + max(2, harmonics // 3))
+        y, tangent = (with_harmonics(vector, machine.size, more) for vector in (place.y, place.tangent))
+        found = corrected(fold_equations(machines, y), y, tangent / np.linalg.norm(tangent))
+        if found is None:
+            return None
+        place = oriented(found, tangent)
+    return place
+
+
+def with_harmonics(vector: Array, c: int, harmonics: int) -> Array:
+    """Unknowns of a fold with other harmonics, new ones zero."""
+    body = np.zeros(c * (2 * harmonics + 1))
+    kept = min(len(body), len(vector) - 3)
+    body[:kept] = vector[:kept]
+    return np.concatenate([body, vector[-3:]])

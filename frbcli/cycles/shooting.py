@@ -1,0 +1,141 @@
+"""Fixed points of a map by Newton's method in the space that it contracts slowly, and by repetition in the rest.
+
+Let x -> M(x, p) have a derivative with few eigenvalues that are not small: those of the rotor; oil is exchanged within
+a period. An orthonormal basis V of the states of the rotor and of what the map makes of them (a Krylov space) holds
+the slow motions, and dM/dx is taken as (M V) V^T with finite differences M V. Then
+
+    dx = r + (M V) c + (dM/dp) dp,      (1 - V^T M V) c - V^T dM/dp dp = V^T r,      r = M(x) - x,
+
+with as many further equations for the parameters p as there are (recursive projection: Shroff and Keller, SIAM J.
+Numer. Anal. 30, 1993). One evaluation of the map makes one iteration. The eigenvalues of V^T M V are the multipliers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Map = Callable[[Array, Array], Array]  # (N,) of a state (N,) and parameters (P,)
+
+DIFFERENCE = 5e-3  # by which states and parameters are disturbed, at most: less blurs the images by the cells
+MORE = 12  # images beside those of the first states
+NEW = 0.01  # part of an image outside of the space from which on it counts
+ITERATIONS = 24
+CLOSE, SLOW = 1e-6, 0.9  # a correction that ends the iteration; over the last but one, that gives it up
+STRAY = 0.5  # a correction beyond which the iteration is given up
+
+
+@dataclass(frozen=True)
+class SlowSpace:
+    """states: (N, k) V; images: (N, k) M V; by_parameters: (N, P) dM/dp."""
+
+    states: Array
+    images: Array
+    by_parameters: Array
+
+    @property
+    def reduced(self) -> Array:
+        """(k, k) V^T M V."""
+        return np.asarray(self.states.T @ self.images)
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Further equations: by_state (P, N) (x - x_0) + by_parameters (P, P) (p - p_0) = 0."""
+
+    by_state: Array
+    by_parameters: Array
+
+
+def slow_space(mapped: Map, x: Array, p: Array, first: Array, by: float = DIFFERENCE) -> SlowSpace:
+    """The space at a state x. first: (N, j) states that it begins with; by: what x and p are disturbed by."""
+    states: list[Array] = []
+    images: list[Array] = []
+    waiting = list(first.T)
+    while waiting and len(states) < first.shape[1] + MORE:
+        direction = waiting.pop(0)
+        length = float(np.linalg.norm(direction))
+        for _ in range(2):  # once more, against round-off
+            for state in states:
+                direction = direction - (state @ direction) * state
+        outside = float(np.linalg.norm(direction))
+        if outside < NEW * max(length, 1.0):
+            continue
+        direction = direction / outside
+        states.append(direction)
+        images.append(_difference(mapped, x, p, by * direction, 0.0 * p) / by)
+        waiting.append(images[-1])
+    columns = [_difference(mapped, x, p, 0.0 * x, by * unit) / by for unit in np.eye(len(p))]
+    by_parameters = np.transpose(columns) if columns else np.zeros((len(x), 0))
+    return SlowSpace(np.transpose(states), np.transpose(images), by_parameters)
+
+
+def _difference(mapped: Map, x: Array, p: Array, dx: Array, dp: Array) -> Array:
+    """Half of what the map changes by between both sides of a state."""
+    return 0.5 * (mapped(x + dx, p + dp) - mapped(x - dx, p - dp))
+
+
+def fixed_point(
+    mapped: Map, x: Array, p: Array, space: SlowSpace, conditions: Conditions
+) -> tuple[Array, Array, Array] | None:
+    """(x, p, image) near to a guess x_0, p_0; None if it does not converge. The map may raise Unreachable."""
+    guess_x, guess_p, sizes = x, p, [np.inf, np.inf]
+    for iteration in range(ITERATIONS):
+        image = mapped(x, p)
+        dx, dp = correction(space, conditions, image - x, x - guess_x, p - guess_p)
+        size = float(np.linalg.norm(dx) + np.linalg.norm(dp))
+        # Corrections go to and fro where a slow motion is missed a little: every second one is looked at. Those that
+        # become no smaller are the noise of the cells if they are small.
+        stays = iteration > 3 and size > SLOW * sizes[-2]
+        if size > STRAY or (stays and size > 100.0 * CLOSE):
+            return None
+        if size < CLOSE or stays:
+            return x, p, image
+        x, p = x + dx, p + dp
+        sizes.append(size)
+    return None
+
+
+def correction(
+    space: SlowSpace, conditions: Conditions, residual: Array, off_x: Array, off_p: Array
+) -> tuple[Array, Array]:
+    """(dx, dp) of a residual M(x) - x; off_x, off_p: how far x and p are from the guess."""
+    k, parameters = space.states.shape[1], space.by_parameters.shape[1]
+    matrix, right = np.zeros((k + parameters, k + parameters)), np.zeros(k + parameters)
+    matrix[:k, :k] = np.eye(k) - space.reduced
+    matrix[:k, k:] = -space.states.T @ space.by_parameters
+    right[:k] = space.states.T @ residual
+    matrix[k:, :k] = conditions.by_state @ space.images
+    matrix[k:, k:] = conditions.by_state @ space.by_parameters + conditions.by_parameters
+    right[k:] = -conditions.by_state @ (residual + off_x) - conditions.by_parameters @ off_p
+    answer = np.linalg.solve(matrix, right)
+    return residual + space.images @ answer[:k] + space.by_parameters @ answer[k:], answer[k:]
+
+
+def direction_along(space: SlowSpace, phase: Array, before: Array) -> Array:
+    """(N + P,) unit tangent of the curve of fixed points with one parameter more than conditions, which are that it is
+    across `phase` (N,); turned along `before` (N + P,)."""
+    k, parameters = space.states.shape[1], space.by_parameters.shape[1]
+    size = len(phase)
+    rows = np.zeros((k + parameters, k + parameters))
+    rows[:k, :k] = np.eye(k) - space.reduced
+    rows[:k, k:] = -space.states.T @ space.by_parameters
+    rows[k, :k], rows[k, k:] = phase @ space.images, phase @ space.by_parameters
+    along = before[:size]
+    rows[k + 1, :k] = along @ space.images
+    rows[k + 1, k:] = along @ space.by_parameters + before[size:]
+    answer = np.linalg.solve(rows, np.eye(k + parameters)[-1])
+    tangent = np.concatenate([space.images @ answer[:k] + space.by_parameters @ answer[k:], answer[k:]])
+    return np.asarray(tangent / np.linalg.norm(tangent))
+
+
+def ritz(space: SlowSpace) -> tuple[Complex, Complex]:
+    """(k,) eigenvalues of V^T M V by falling size, and (N, k) their states."""
+    values, vectors = np.linalg.eig(space.reduced)
+    order = np.argsort(-np.abs(values), kind="stable")
+    return values[order].astype(complex), (space.states @ vectors[:, order]).astype(complex)

@@ -1,0 +1,181 @@
+"""Limit cycles of films that keep their oil: the map of the time loop over a period, shooting, the command."""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.cli.main import run
+from frbcli.cycles.oil_cycles import _settled
+from frbcli.cycles.period_map import SAMPLES, period_map, turned_back
+from frbcli.cycles.result import LimitCycles
+from frbcli.cycles.shooting import Conditions, fixed_point, ritz, slow_space
+from frbcli.cycles.shot_branch import Shooting
+from frbcli.linear.resting import resting_position
+
+FED = ('bearing.supply.pressure="2 bar"', "speed.from=74 Hz", "speed.to=84 Hz")
+
+
+@cache
+def diagram() -> LimitCycles:
+    return frbcli.limit_cycles(frbcli.load_case("rigid-two-phase", FED), [82.0])
+
+
+def test_a_field_is_seen_from_where_it_began() -> None:
+    """cos(phi) and 2 on 64 cells, turned by 1.3 rad: cubics leave 2e-6."""
+    phi = 2.0 * math.pi * np.arange(64) / 64
+    field = np.column_stack([np.cos(phi), np.full(64, 2.0)])
+    np.testing.assert_allclose(
+        turned_back(field, 1.3), np.column_stack([np.cos(phi - 1.3), np.full(64, 2.0)]), atol=3e-6
+    )
+    np.testing.assert_allclose(turned_back(field, 2.0 * math.pi * 3 / 64), np.roll(field, 3, axis=0), atol=1e-14)
+
+
+def test_slow_motions_of_a_map_are_solved_for_and_fast_ones_repeated() -> None:
+    """x -> A x + B p + curvature in 60 unknowns, three slow eigenvalues, one of them growing, all in what the first two
+    states are led to: the fixed point with x_0 given, and the eigenvalues."""
+    random = np.random.default_rng(2)
+    turn = np.linalg.qr(random.standard_normal((60, 60)))[0]
+    decay = np.concatenate([[1.2, 0.95, 0.7], 0.05 * random.uniform(-1.0, 1.0, 57)])
+    matrix, by_p = turn @ np.diag(decay) @ turn.T, random.standard_normal(60)
+
+    def mapped(x: np.ndarray, p: np.ndarray) -> np.ndarray:
+        return matrix @ x + by_p * p[0] + 0.1 * x**2
+
+    first = turn[:, :3] @ random.standard_normal((3, 2)) + 0.01 * random.standard_normal((60, 2))
+    x, p = np.zeros(60), np.zeros(1)
+    space = slow_space(mapped, x, p, first)
+    largest = np.sort(np.abs(ritz(space)[0]))[::-1]
+    np.testing.assert_allclose(largest[:3], decay[:3], atol=1e-3)
+    asked = np.zeros((1, 60))
+    asked[0, 0] = 1.0
+    guess = 0.01 * by_p
+    found = fixed_point(mapped, guess, p, space, Conditions(asked, np.zeros((1, 1))))
+    assert found is not None
+    x, p, image = found
+    np.testing.assert_allclose(image, x, atol=1e-6)
+    assert x[0] == pytest.approx(guess[0], abs=1e-6)
+    assert abs(p[0]) > 1e-4
+
+
+def test_the_cycle_is_what_the_time_loop_ends_in() -> None:
+    """At 82 Hz, 0.4 off rest: after 110 periods the largest eccentricity of the last ones and their frequency. The
+    cells, which come to lie otherwise in each period, leave 5e-4 with 32 x 6 of them (2e-5 with 64 x 6, at 90 Hz)."""
+    (cycle,) = [point for branch in diagram().branches for point in branch.points if point.kind == "asked"]
+    assert cycle.stable
+    flow, omega = period_map(frbcli.load_case("rigid-two-phase", FED)), 2.0 * math.pi * 82.0
+    shooting = Shooting(flow, omega)
+    rest = _settled(shooting, omega)
+    assert rest is not None
+    wet, period, pieces = rest.wet, 1.0 / cycle.frequency_Hz, []
+    wet.q[:2] += 0.4 * flow.scale
+    for _ in range(140):
+        passage = flow.passage(wet, period, omega, 200)
+        wet = passage.end
+        pieces.append(passage.displacements[:SAMPLES, 0])
+    late = np.concatenate(pieces[110:])
+    largest = np.hypot(*late.T).reshape(30, SAMPLES).max(axis=1).mean()
+    x = late[:, 0] - late[:, 0].mean()
+    up = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))
+    times = (up + x[up] / (x[up] - x[up + 1])) * period / SAMPLES
+    assert cycle.eccentricity_max[0] == pytest.approx(largest, abs=5e-4)
+    assert cycle.frequency_Hz == pytest.approx((len(times) - 1) / (times[-1] - times[0]), rel=1e-4)
+
+
+def test_the_branch_begins_in_its_hopf_point_and_closes_its_orbits() -> None:
+    found = diagram()
+    (hopf,) = found.of("hopf")
+    (branch,) = found.branches
+    assert branch.points[0].speed_Hz == pytest.approx(hopf.speed_Hz, rel=0.02)
+    assert branch.points[0].frequency_Hz == pytest.approx(hopf.frequency_Hz, rel=0.02)
+    assert branch.note == "It leaves the range."
+    assert branch.points[-1].speed_Hz == pytest.approx(84.0, rel=1e-6)
+    for point in branch.points:
+        assert abs(point.multipliers[0] - 1.0) < 0.02
+        orbit = point.orbit()
+        assert np.hypot(*orbit.T).max() == pytest.approx(point.eccentricity_max[0], abs=1e-3)
+        assert np.abs(np.diff(orbit, axis=0, append=orbit[:1])).max() < 0.05  # closed, without a jump
+    stable = [rest.stable for rest in found.equilibria]
+    assert stable == sorted(stable, reverse=True)
+
+
+def test_a_disturbance_at_rest_grows_as_the_slow_motions_say() -> None:
+    """Rest at 90 Hz plus the growing motion, over one and three revolutions of the time loop: displacements (velocities
+    at one moment jump by some per cent, as fronts of the oil cross cells)."""
+    flow, omega = period_map(frbcli.load_case("rigid-two-phase", FED)), 2.0 * math.pi * 90.0
+    shooting = Shooting(flow, omega)
+    rest = _settled(shooting, omega)
+    assert rest is not None
+    number = rest.whirling
+    assert number is not None
+    rate, state = complex(rest.rates[number]), rest.states[:, number]
+    assert rate.real > 0.0
+    assert not rest.stable
+    turn, size = 2.0 * math.pi / omega, 0.02 / np.abs(state[:2]).max()
+    for revolutions in (1, 3):
+        ends = []
+        for side in (1.0, -1.0):
+            start = flow.unpacked(rest.x + side * size * state.real, rest.wet, omega)
+            ends.append(flow.packed(flow.passage(start, revolutions * turn, omega, 100 * revolutions).end, omega))
+        moved, expected = 0.5 * (ends[0] - ends[1]), (size * state * np.exp(rate * revolutions * turn)).real
+        assert np.linalg.norm((moved - expected)[:2]) < 0.01 * np.linalg.norm(expected[:2])
+
+
+def test_a_film_that_stays_full_has_the_eigenvalues_of_sommerfeld() -> None:
+    """Under 5 bar nothing cavitates: Elrod's film on cells against that of Sommerfeld's condition at 90 Hz."""
+    pressures = [f'{key}="5 bar"' for key in ("bearing.supply.pressure", "oil.ambient_pressure")]
+    settings = [*pressures, 'oil.cavitation_pressure="0.01 bar"', "bearing.ends=oil-bath"]
+    cells = [*settings, "film.cavitation=elrod", "accuracy.mesh=[12,64]"]
+    flow = period_map(frbcli.load_case("rigid-two-phase", cells))
+    omega = 2.0 * math.pi * 90.0
+    rest = _settled(Shooting(flow, omega), omega)
+    plain = frbcli.load_case("rigid-two-phase", [*settings, "film.cavitation=sommerfeld", "film.theory=finite"])
+    (point,) = frbcli.stability(plain, [90.0]).points
+    assert rest is not None
+    np.testing.assert_allclose(rest.displacement[0], point.films[0].displacement, atol=5e-4)
+    number = rest.whirling
+    assert number is not None
+    expected = point.oscillating[np.argmax(point.oscillating.real)]
+    assert abs(rest.rates[number] - expected) < 2e-4 * abs(expected)
+    assert rest.growth == pytest.approx(expected.real, rel=0.01)
+
+
+def test_the_command_shoots(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+    words = ["limit-cycles", "rigid-two-phase", "--json", "-o", str(tmp_path / "oil.png")]
+    settings = ("bearing.supply.pressure=2 bar", "speed.from=75 Hz", "speed.to=79 Hz")
+    words += [word for setting in settings for word in ("--set", setting)]
+    assert run([*words, "--csv", str(tmp_path / "oil.csv")]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert "keep their oil" in document["notes"][0]
+    (branch,) = document["branches"]
+    assert branch["points"][0]["torque_N_m"] is None
+    assert (tmp_path / "oil.png").exists()
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ['bearing.supply={kind="bores",count=4,diameter="2 mm",axial_position=0.5,on="journal",pressure="2 bar"}'],
+        ["film.two-phase.form=published"],
+    ],
+)
+def test_films_whose_map_changes_from_period_to_period_are_told(settings: list[str]) -> None:
+    with pytest.raises(frbcli.InputError, match="openings that turn"):
+        frbcli.limit_cycles(frbcli.load_case("rigid-two-phase", settings))
+
+
+def test_shooting_begins_at_rest() -> None:
+    """The state of a machine goes into numbers and back."""
+    flow, omega = period_map(frbcli.load_case("rigid-two-phase", FED)), 500.0
+    q = resting_position(flow.system, omega)
+    rest = _settled(Shooting(flow, omega), omega)
+    assert rest is not None
+    again = flow.unpacked(flow.packed(rest.wet, omega), rest.wet, omega)
+    np.testing.assert_allclose(again.q, rest.wet.q, rtol=1e-12)
+    np.testing.assert_allclose(again.theta, rest.wet.theta, rtol=1e-12)
+    np.testing.assert_allclose(rest.wet.q, q, atol=0.02 * flow.scale)
