@@ -13,6 +13,7 @@ from test_heat import RING, ring_case, single
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
+from frbcli.errors import NotConverged
 from frbcli.linear.heat import warm_machine
 from frbcli.materials.oils import OILS
 from frbcli.plot.heat import heat_figure
@@ -365,6 +366,14 @@ def test_a_film_that_boils_ends_the_run_with_its_name(tmp_path: Path, capsys: py
     assert frb(["runup", str(file), *settings, "-o", str(tmp_path / "run.h5")]) == 3
     told = " ".join("".join(capsys.readouterr()).split())
     assert "film inner became too hot (363.15 K, thermal.hottest_film)" in told
+
+
+def test_a_gap_that_heat_closes_before_the_start_is_told(tmp_path: Path) -> None:
+    """A journal of 290 degC grows by 40 um, twice the clearance."""
+    case = single("thermal.clearance=follows", "thermal.shaft=290 degC", "thermal.housing=20 degC",
+                  "bearing.clearance=20 um", "speed.duration=0.1 s")  # fmt: skip
+    with pytest.raises(NotConverged, match="closes the gap of the film at the temperatures that the run begins with"):
+        runup(case, tmp_path / "run.h5")
 
 
 def test_heat_of_a_run_is_printed_and_drawn(ring_run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -99,8 +99,9 @@ def _overheated(case: Case, end: RunEnd) -> tuple[str, ...]:
     limit = "" if thermal is None else f" ({display(thermal.hottest_film, 'K')}, thermal.hottest_film)"
     follows = thermal is not None and thermal.clearance == "follows"
     gap = ", or heat closed its gap" if follows else ""
+    film = "the film" if end.hot_film == "film" else f"the film {end.hot_film}"
     return (
-        f"At {end.speed_Hz:.4g} Hz the oil in the film {end.hot_film} became too hot{limit}{gap}{_while(end)}. "
+        f"At {end.speed_Hz:.4g} Hz the oil in {film} became too hot{limit}{gap}{_while(end)}. "
         "Give it more flow, a cooler supply, more clearance, or a wall that takes heat.",
     )
 

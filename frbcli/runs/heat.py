@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cells.data import GIVEN_PRESSURE, RESISTANCE, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
@@ -21,7 +22,7 @@ from frbcli.scene.heat import Heat, heat_of
 from frbcli.scene.planned import Plan
 from frbcli.scene.system import System
 from frbcli.scene.warm import warm_system
-from frbcli.solve.heat import NO_HEAT, TOLD, CellEnds, LumpedHeat, NoHeat, columns_of
+from frbcli.solve.heat import NARROWEST, NO_HEAT, TOLD, CellEnds, LumpedHeat, NoHeat, columns_of
 from frbcli.solve.state import Array
 from frbcli.thermal.exchange import (
     BOOKS,
@@ -39,6 +40,7 @@ from frbcli.thermal.exchange import (
     arrays_of,
 )
 from frbcli.thermal.model import clearances_at, viscosities_at
+from frbcli.thermal.steady import closed_gap
 
 QUANTITIES = ("temperature_{}_K", "viscosity_{}_Pa_s", "clearance_{}_m", "power_{}_W", "flow_{}_m3_s")
 UNITS = ("K", "Pa*s", "m", "W", "m^3/s")
@@ -46,7 +48,8 @@ UNITS = ("K", "Pa*s", "m", "W", "m^3/s")
 
 class RunHeat:
     """The heat of one run of a case; without heat all of it is empty. start: the machine at the temperatures that a run
-    begins with; films: those that the loop may change, None without heat."""
+    begins with; films: those that the loop may change, None without heat. Raises NotConverged where these temperatures
+    close a gap."""
 
     def __init__(self, case: Case, plan: Plan, system: System) -> None:
         self._names, self._units = system.names, tuple(heat_units(case, system))
@@ -60,7 +63,11 @@ class RunHeat:
         self._heat = heat_of(case)
         self._loop, self.films = _lumped(case, system, self._heat), _own(system.films)
         model, start, still = self._heat.model, self._heat.start, np.zeros(1 + system.ring_count)
-        self.start = warm_system(case, plan, system, viscosities_at(model, start), clearances_at(model, start, still))
+        clearances = clearances_at(model, start, still)
+        for name, clearance, reference in zip(system.names, clearances, model.reference, strict=True):
+            if clearance <= NARROWEST * reference:
+                raise NotConverged(closed_gap(name, "at the temperatures that the run begins with"))
+        self.start = warm_system(case, plan, system, viscosities_at(model, start), clearances)
 
     @property
     def kind(self) -> LumpedHeat | NoHeat:

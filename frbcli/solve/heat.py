@@ -116,9 +116,20 @@ def begin_heat(heat: Any, films: Any, rotor: RotorData, wet: Array) -> None:
         follow_temperatures(heat, films, rotor.drag, rotor.clearances, wet, False)
 
 
+class Taken(NamedTuple):
+    """The step that was taken: its length, g of its stages, the cavitation factor of Couette's torque, and where
+    contact begins."""
+
+    step: float
+    g: float
+    factor: int
+    contact_at: float
+    contact_stiffness: float
+
+
 def carry_heat(
-    heat: Any, films: Any, work: Any, turning: Array, terms: Indices, film: Array, bodies: Array, wet: Array,
-    contact_at: float, contact_stiffness: float, g: float, step: float, clearances: Array, drag: Array,
+    heat: Any, films: Any, work: Any, turning: Array, film: Array, bodies: Array, wet: Array, taken: Taken,
+    clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
     """After an accepted step: temperatures, viscosities and clearances move on. RUNNING, or OVERHEATED. film: the rows
     of stage.py in the last stage, with its speeds `bodies` of rotor and rings."""
@@ -131,33 +142,17 @@ def write_heat(heat: Any, out_heat: Array, first: int, last: int) -> None:
 
 
 @overload(carry_heat, inline="always")
-def _carry_heat(  # type: ignore[no-untyped-def]
-    heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
-):
-    def none(  # type: ignore[no-untyped-def]
-        heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
-    ):
-        return RUNNING
-
-    def lumped(  # type: ignore[no-untyped-def]
-        heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
-    ):
-        return _carry(
-            heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances,
-            drag,
-        )  # fmt: skip
-
-    # Only what tabulated films need is handed on: a call with the arrays of all films takes as long as their heat does.
-    def tabulated(  # type: ignore[no-untyped-def]
-        heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
-    ):
-        return _carry(
-            heat, 0, 0, turning, terms, film, bodies, 0, contact_at, contact_stiffness, g, step, clearances, drag,
-        )  # fmt: skip
-
+def _carry_heat(heat, films, work, turning, film, bodies, wet, taken, clearances, drag):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
-        return none
-    return lumped if have_cells(films) else tabulated
+        return lambda heat, films, work, turning, film, bodies, wet, taken, clearances, drag: RUNNING
+    if have_cells(films):
+        return lambda heat, films, work, turning, film, bodies, wet, taken, clearances, drag: _carry(
+            heat, films, work, turning, film, bodies, wet, taken, clearances, drag
+        )
+    # Only what tabulated films need is handed on: a call with the arrays of all films takes as long as their heat does.
+    return lambda heat, films, work, turning, film, bodies, wet, taken, clearances, drag: _carry(
+        heat, 0, 0, turning, film, bodies, 0, taken, clearances, drag
+    )
 
 
 @overload(write_heat, inline="always")
@@ -169,12 +164,13 @@ def _write_heat(heat, out_heat, first, last):  # type: ignore[no-untyped-def]
 
 @compiled()
 def _carry(
-    heat: LumpedHeat, films: Any, work: Any, turning: Array, terms: Indices, film: Array, bodies: Array, wet: Any,
-    contact_at: float, contact_stiffness: float, g: float, step: float, clearances: Array, drag: Array,
+    heat: LumpedHeat, films: Any, work: Any, turning: Array, film: Array, bodies: Array, wet: Any, taken: Taken,
+    clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
     """carry_heat of LumpedHeat: P = K slip^2 + (e x F) omega/2 - F . e', see docs/heat.md."""
     capacity, links, made, numbers, _ = heat.model
     ends, state, now, gain = heat.ends, heat.state, heat.now, heat.gain
+    step, g, factor, contact_at, contact_stiffness = taken
     count = clearances.shape[0]
     for b in range(bodies.shape[0]):
         state[BOOKS + b] = bodies[b]
@@ -187,7 +183,7 @@ def _carry(
             slip += turning[f, SLIP, b] * bodies[b]
         d_x, d_y, r_x, r_y, _, _, _, _, _, _ = feel(e_x / c, e_y / c, v_x / c, v_y / c, contact_at, contact_stiffness)
         moved = e_x * film[FORCE, y] - e_y * film[FORCE, x]
-        now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, terms[1]) * slip * slip
+        now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, factor) * slip * slip
         now[POWER, f] += 0.5 * moved * total - film[FORCE, x] * v_x - film[FORCE, y] * v_y
         if numbers[BY_FORMULA] != 0.0:
             now[FLOW, f] = made[FORMULA, f] * c * c * c / now[ETA, f]

@@ -149,6 +149,29 @@ def _amend(responses: Array, compliance: Array, clearances: Array, given: Array,
     return off
 
 
+@compiled()
+def _turn_rings(
+    spins: Indices, mass: Array, s: int, g: float, given: Array, at: Array, stage_v: Array, stage_a: Array
+) -> None:
+    """Accelerations and speeds of the rings in stage s from the torques on them, the last of `given`."""
+    first = given.shape[0] - spins.shape[0]
+    for r in range(spins.shape[0]):
+        i = spins[r]
+        stage_a[i, s] = given[first + r] / mass[i, i]
+        stage_v[i, s] = at[V, i] + g * stage_a[i, s]
+
+
+@compiled()
+def _ask_for_torques(
+    films: Any, work: Any, rotor: RotorData, control: Control, aside: Scratch, motion: Array, rings: Rings
+) -> None:
+    """The torques on the rings with the journals where they are now, see _tell for the motion."""
+    if rotor.spins.shape[0] > 0:
+        for k in range(aside.film.shape[1]):
+            aside.film[X_0, k], aside.film[U, k] = motion[k], 0.0
+        spin_up(films, work, rotor, 0, 0.0, control, aside, rings)
+
+
 def advance_in_turn(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: Output
 ) -> tuple[int, int]:
@@ -176,16 +199,16 @@ def _advance(
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
     weights, moments, defect = tableau.stage, tableau.times, tableau.defect
     tolerance, stiffness = control.tolerance, control.contact_stiffness
-    m, stages, rings = 2 * clearances.shape[0], moments.shape[0], spins.shape[0]
+    stages = moments.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
     responses, given, told = exchange.responses, exchange.given, exchange.told
     turning, aside = exchange.rings, exchange.aside
-    lagrange, q_new = np.zeros(3), np.zeros(q.shape[0])
+    lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
     written, done = 0, 0
 
     while done < budget:
-        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, output.q.shape[0] - written)
+        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
         if step == 0.0:
             return status, written
         begin_stages(v, a, stage_v, stage_a)
@@ -201,10 +224,7 @@ def _advance(
             lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
                 accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
-            for r in range(rings):
-                i = spins[r]
-                stage_a[i, s] = given[m + r] / rotor.mass[i, i]
-                stage_v[i, s] = at[V, i] + g * stage_a[i, s]
+            _turn_rings(spins, rotor.mass, s, g, given, at, stage_v, stage_a)
         error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance
         if not error <= 1.0:  # not a number counts as too large
             if reject(numbers, step, error, order):
@@ -220,16 +240,10 @@ def _advance(
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
         if not films_follow(films, work, rotor, tableau, control, state, piece, told, film, turning):
             return STUCK, written
-        if rings > 0:  # only its torques are wanted, with the journals where they are now
-            for k in range(m):
-                film[X_0, k], film[U, k] = told.motions[2, k], 0.0
-            spin_up(films, work, rotor, 0, 0.0, control, aside, turning)
-
+        _ask_for_torques(films, work, rotor, control, aside, told.motions[2], turning)
         before = written
-        written = write_outputs(
-            numbers, stage_v, control.output_step, step, t_new, q, q_new, output.q, output.v, written
-        )
-        write_oil(films, work, output.oil, before, written)
+        written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
+        write_oil(films, work, out_oil, before, written)
         move_on(q, v, a, q_new, stage_v, stage_a)
         _remember(past, t_new, told.motions[2], film, turning.torque, given)
         off = _amend(responses, compliance, clearances, given, a)

@@ -15,7 +15,7 @@ from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import left_over
 from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterations, write_oil
-from frbcli.solve.heat import NO_HEAT, LumpedHeat, begin_heat, carry_heat, write_heat
+from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
 from frbcli.solve.inverse import outdated, prepare
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
@@ -186,8 +186,8 @@ def _advance(
         written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
-        hot = carry_heat(heat, films, work, turning, rotor.torque_terms, film, bodies, wet,
-                         control.contact_eccentricity, control.contact_stiffness, g, step, clearances, rotor.drag)
+        taken = Taken(step, g, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness)
+        hot = carry_heat(heat, films, work, turning, film, bodies, wet, taken, clearances, rotor.drag)
         write_heat(heat, out_heat, before, written)
         numbers[STEP_DONE] = step
         move_on(q, v, a, q_new, stage_v, stage_a)

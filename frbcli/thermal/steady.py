@@ -140,7 +140,13 @@ def _check(model: HeatModel, names: tuple[str, ...], temperatures: Array, cleara
         if temperature >= model.hottest:
             raise NotConverged(_hot(name, model.hottest))
         if clearance <= 0.0:
-            raise NotConverged(f"Heat closes the gap of {_film(name)}. Give it more clearance, or colder oil.")
+            raise NotConverged(closed_gap(name))
+
+
+def closed_gap(name: str, when: str = "") -> str:
+    """What to say of a film whose gap heat closes."""
+    where = f"{_film(name)} {when}".rstrip()
+    return f"Heat closes the gap of {where}. Give it more clearance, or shaft and shell of nearer temperatures."
 
 
 def _hot(name: str, hottest: float) -> str:
