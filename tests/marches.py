@@ -18,7 +18,7 @@ from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.system import System
-from frbcli.solve.state import OUTPUTS, RUNNING, Control, State
+from frbcli.solve.state import OUTPUTS, RUNNING, Control, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -97,16 +97,16 @@ def march(
     state = start(system, profile) if state is None else state
     data, tableau = rotor_data(system, profile), METHODS[method].tableau
     rows = int(profile.end / limits.output_step) + 10
-    out_q, out_v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
+    output = make_output(rows, system.rotor.size)
     written, status = 0, RUNNING
     while status == RUNNING:
         status, fresh = advance(
-            data, system.films, tableau, limits, state, budget, out_q[written:], out_v[written:], np.empty((rows, 0))
+            data, system.films, tableau, limits, state, budget, output.after(written)
         )
         written += fresh
     assert written == int(state.numbers[OUTPUTS])
     times = np.arange(written) * limits.output_step
-    return Result(times, out_q[:written], out_v[:written], status, state.numbers)
+    return Result(times, output.q[:written], output.v[:written], status, state.numbers)
 
 
 def even_steps(h: float, output: float) -> Control:

@@ -26,7 +26,7 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.system import System, make_system, settled_share
-from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS, State
+from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -48,15 +48,15 @@ def run(case: Case, plan: Plan, system: System, state: State | None = None, budg
     profile = run_up_profile(case)
     state = first_state(case.start, system, profile) if state is None else state
     rows, n = 4000, system.rotor.size
-    out_q, out_v, out_oil = np.empty((rows, n)), np.empty((rows, n)), np.empty((rows, len(system.volumes)))
+    output = make_output(rows, n, len(system.volumes))
     status, written = RUNNING, 0
     tableau, control, rotor = METHODS[plan.method].tableau, control_of(case, plan), rotor_data(system, profile)
     while status == RUNNING:
         status, fresh = advance(
-            rotor, system.films, tableau, control, state, budget, out_q[written:], out_v[written:], out_oil[written:]
+            rotor, system.films, tableau, control, state, budget, output.after(written)
         )
         written += fresh
-    return out_q[:written], state
+    return output.q[:written], state
 
 
 @pytest.mark.parametrize(
@@ -109,13 +109,12 @@ def test_measured_order_in_time_is_that_of_the_method(cavitation: str, method: s
 
     def displacement(steps: int, method: str) -> tuple[float, Array]:
         """The mean length of a step, and where the journal is at the end, over the clearance."""
-        state, rows = first_state(case.start, system, profile), np.empty((9, system.rotor.size))
+        state = first_state(case.start, system, profile)
         state.numbers[STEP] = end / steps
         # no error of a step is as large as this tolerance: what is longer than asked for is refused, nothing else
         limits = control(tolerance=1e-2, longest=end / steps, output=end)
-        status, _ = advance(
-            rotor, system.films, METHODS[method].tableau, limits, state, 10**6, rows, rows.copy(), np.empty((9, 1))
-        )
+        output = make_output(9, len(state.q), 1)
+        status, _ = advance(rotor, system.films, METHODS[method].tableau, limits, state, 10**6, output)
         assert status == FINISHED
         assert state.numbers[REJECTED] == 0
         return end / state.numbers[STEPS], state.q[:2] / system.clearances[0]

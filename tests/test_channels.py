@@ -36,7 +36,7 @@ from frbcli.scene.system import System, make_system
 from frbcli.solve.films import begin_stage, make_work
 from frbcli.solve.micro_step import _solve_films
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
-from frbcli.solve.state import OIL, PASSED, RUNNING, State, W
+from frbcli.solve.state import OIL, PASSED, RUNNING, State, W, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -65,11 +65,10 @@ def run(case: Case, system: System) -> tuple[State, State]:
     """The first and the last state of a run-up."""
     profile, plan = run_up_profile(case), make_plan(case)
     first, state = first_state(case.start, system, profile), first_state(case.start, system, profile)
-    rows, n, written, status = 1000, system.rotor.size, 0, RUNNING
-    q, v, oil = np.empty((rows, n)), np.empty((rows, n)), np.empty((rows, 2))
+    output, written, status = make_output(1000, system.rotor.size, 2), 0, RUNNING
     parts = rotor_data(system, profile), system.films, METHODS[plan.method].tableau, control_of(case, plan)
     while status == RUNNING:
-        status, fresh = advance(*parts, state, 10**6, q[written:], v[written:], oil[written:])
+        status, fresh = advance(*parts, state, 10**6, output.after(written))
         written += fresh
     return first, state
 
@@ -168,10 +167,9 @@ def test_a_channel_without_resistance_has_one_pressure_less_what_is_thrown_outwa
     state = first_state(case.start, system, run_up_profile(case))
     spin = 200.0 * math.pi
     state.v[list(system.spins)] = spin
-    plan, n = make_plan(case), system.rotor.size
-    buffers = np.empty((100, n)), np.empty((100, n)), np.empty((100, 2))
+    plan = make_plan(case)
     parts = rotor_data(system, run_up_profile(case)), system.films, METHODS[plan.method].tableau, control_of(case, plan)
-    advance(*parts, state, 10**6, *buffers)
+    advance(*parts, state, 10**6, make_output(100, system.rotor.size, 2))
     inner, outer = feed_hole_pressures(system, state)
     assert outer - inner == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2) * spin**2, rel=1e-3)
 

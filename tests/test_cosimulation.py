@@ -23,7 +23,7 @@ from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.system import make_system
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.micro_step import MICRO_STEPS, parabola
-from frbcli.solve.state import FINISHED, STEPS, State
+from frbcli.solve.state import FINISHED, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 from frbcli.studies.compare import compare
@@ -45,13 +45,12 @@ def marched(case: Case, apart: bool, longest: float, tolerance: float) -> tuple[
     if apart:
         state = in_turn(system, state, float(profile.speeds[0]))
     rows = int(profile.end / control.output_step) + 10
-    q, v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
-    oil = np.empty((rows, len(system.volumes)))
+    output = make_output(rows, system.rotor.size, len(system.volumes))
     step = advance_in_turn if apart else advance
     tableau = METHODS["esdirk4"].tableau
-    status, written = step(rotor_data(system, profile), system.films, tableau, control, state, 10**8, q, v, oil)
+    status, written = step(rotor_data(system, profile), system.films, tableau, control, state, 10**8, output)
     assert status == FINISHED
-    return q[:written] / system.clearances[0], state
+    return output.q[:written] / system.clearances[0], state
 
 
 def test_parabola_is_exact_for_a_parabola() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -163,3 +164,25 @@ def test_the_commands(folder: Path, found: Fit, monkeypatch: pytest.MonkeyPatch)
                   [*words, "--bounds", "oil.viscosity=3"]):  # fmt: skip
         assert invoke(frb, wrong).exit_code == 2
     assert len(fit_figure(found).axes) == 3
+
+
+@pytest.mark.parametrize(
+    ("keys", "bounds", "words"),
+    [
+        (["bearing.clearence"], {}, "Did you mean bearing.clearance?"),
+        (["bearing.clearance", "oil.viscosity", "bearing.clearance"], {}, "named more than once"),
+        (["bearing.clearance"], {"oil.viscosity": (8e-3, 2e-2)}, "is not varied"),
+        (["bearing.clearance"], {"bearing.clearance": (5e-5, 2e-5)}, "not below the upper one"),
+        ([], {}, "names no number"),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused_before_a_run(
+    keys: list[str], bounds: dict[str, tuple[float, float]], words: str
+) -> None:
+    with pytest.raises(InputError, match=re.escape(words)):
+        fit(frbcli.load_case("jeffcott"), make_run(Rotor()), keys, bounds)
+
+
+def test_a_measurement_at_a_constant_speed_is_refused() -> None:
+    with pytest.raises(InputError, match="1 speeds in common"):
+        fit(frbcli.load_case("jeffcott"), make_run(Rotor(speeds_Hz=(100.0, 100.0))), ["bearing.clearance"])

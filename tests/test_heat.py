@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from frbcli.bearing_tests.kinematic import rotation, squeeze
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
@@ -217,6 +218,49 @@ def test_walls_of_given_temperature_and_nodes_take_heat() -> None:
     series = 1.0 / (1.0 / transfer + 1.0 / 5.0)
     assert through.steady.given == pytest.approx(series * (film.temperature - 60.0 - ZERO), rel=1e-6)
     assert through.balance < 1e-6
+
+
+ROTATION = [
+    "bearing.supply={ kind = 'circumferential-groove', pressure = '2 bar' }", "oil.heat_capacity=2100 J/(kg*K)",
+    'oil.viscosity={ grade = "SAE 10W-40" }', "motion={eccentricity=0.6, angle='-60 deg', speed='50 Hz'}",
+]  # fmt: skip
+WARM_ROTATION = [*ROTATION, "thermal.model=lumped", "thermal.supply_temperature=50 degC"]
+
+
+@pytest.mark.parametrize("cavitation", ["half-sommerfeld", "two-phase"])
+def test_rotation_has_the_film_whose_heat_balances(cavitation: str) -> None:
+    """Without walls the film warms by half of its power over its flow, and its forces are those of that temperature."""
+    case = load_case("bearing", WARM_ROTATION)
+    (result,) = rotation(case, [cavitation]).results
+    assert result.heat is not None
+    assert result.loads is not None
+    (temperature,), (power,), (flow,) = result.heat.temperatures, result.heat.films.power, result.heat.films.flow
+    assert temperature - 50.0 - ZERO == pytest.approx(0.5 * power / (case.oil.density * 2100.0 * flow), rel=1e-4)
+    assert power == pytest.approx(-result.loads.torque.journal * 100.0 * math.pi, rel=1e-6)
+    assert result.heat.balance < 1e-5
+    alike = load_case("bearing", [*ROTATION, f"oil.temperature={temperature} K"])
+    (same,) = rotation(alike, [cavitation]).results
+    assert same.loads is not None
+    assert result.loads.force == pytest.approx(same.loads.force, rel=1e-5)
+
+
+def test_rotation_under_a_load_with_heat_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """More load makes the film thinner and its oil hotter; a squeeze has no steady heat."""
+    found = []
+    for load in (100, 400):
+        motion = f"motion={{load='{load} N', speed='50 Hz'}}"
+        sets = [word for setting in [*WARM_ROTATION[:3], *WARM_ROTATION[4:], motion] for word in ("--set", setting)]
+        assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture", "--json"]) == 0
+        (result,) = json.loads(capsys.readouterr().out)["results"]
+        assert result["force_N"] == pytest.approx([0.0, load], abs=1e-3 * load)
+        (film,) = result["thermal"]["films"]
+        found.append((film["power_W"], film["flow_m3_s"], film["temperature_K"]))
+    assert found[1][0] > found[0][0] * 0.9
+    assert found[1][1] > found[0][1]  # an eccentric film loses more oil
+    assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture"]) == 0
+    assert "the film when it is warm" in capsys.readouterr().out
+    with pytest.raises(InputError, match="no steady temperature"):
+        squeeze(load_case("squeeze", WARM_ROTATION[1:3] + WARM_ROTATION[4:]))
 
 
 def test_a_bearing_may_have_walls_and_supply_of_its_own() -> None:

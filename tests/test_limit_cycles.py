@@ -46,7 +46,7 @@ from frbcli.runs.control import control_of
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
-from frbcli.solve.state import RUNNING
+from frbcli.solve.state import RUNNING, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -344,11 +344,11 @@ def test_a_disturbance_above_the_threshold_grows_by_the_eigenvalue(name: str) ->
     moved = np.concatenate([mode[:n], np.zeros(len(spins))])
     faster = np.concatenate([mode[n : 2 * n], machine.pace * mode[2 * n :]])
     state = state_at(system, profile, q + moved, v + faster)
-    out_q, out_v, out_oil = np.empty((400, len(q))), np.empty((400, len(q))), np.zeros((400, len(system.names)))
+    output = make_output(400, len(q), len(system.names))
     tableau, status, rows = METHODS[plan.method].tableau, RUNNING, []
     while status == RUNNING:
-        status, count = advance(rotor, system.films, tableau, control, state, 10**7, out_q, out_v, out_oil)
-        rows.append(np.hstack([out_q[:count, :n] - q[:n], out_v[:count] - v]))
+        status, count = advance(rotor, system.films, tableau, control, state, 10**7, output)
+        rows.append(np.hstack([output.q[:count, :n] - q[:n], output.v[:count] - v]))
     x = np.concatenate(rows)
     x[:, 2 * n :] /= machine.pace
     size = x @ left

@@ -13,7 +13,7 @@ from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.start import rotor_data
-from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME
+from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -36,13 +36,11 @@ def test_numbers_do_not_depend_on_the_size_of_the_buffers() -> None:
     system, profile, limits = with_short_films(jeffcott()), speed_profile([0.0, 0.05], [0.0, 300.0]), control()
     whole = march(system, profile, limits)
     state, data = start(system, profile), rotor_data(system, profile)
-    out_q, out_v = np.empty((20, 4)), np.empty((20, 4))
+    output = make_output(20, 4)
     rows, status = [], RUNNING
     while status == RUNNING:
-        status, written = advance(
-            data, system.films, METHODS["esdirk4"].tableau, limits, state, 10**9, out_q, out_v, np.empty((20, 0))
-        )
-        rows.append(out_q[:written].copy())
+        status, written = advance(data, system.films, METHODS["esdirk4"].tableau, limits, state, 10**9, output)
+        rows.append(output.q[:written].copy())
     np.testing.assert_array_equal(np.concatenate(rows), whole.q)
 
 

@@ -156,3 +156,11 @@ def test_a_file_that_is_no_measurement_is_refused(name: str, content: bytes, sai
 def test_options_that_do_not_fit_are_said(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(words) == 2
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "twice", [["--time", "t", "--rate", "100", "--speed", "n"], ["--time", "t", "--speed", "n", "--tacho", "k"]]
+)
+def test_options_that_tell_the_same_are_refused(twice: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["waterfall", "measured.csv", "--x", "x", "--clearance", "35 um", *twice]) == 2
+    assert "give one of them" in capsys.readouterr().err

@@ -31,7 +31,7 @@ from frbcli.scene.system import System, make_system
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, ElementWork, make_element_work
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
-from frbcli.solve.state import FINISHED, OIL, RUNNING, Control, State, W
+from frbcli.solve.state import FINISHED, OIL, RUNNING, Control, State, W, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -62,16 +62,16 @@ def run(
     """Displacements (rows, n) at the output times, and the last state."""
     profile = run_up_profile(case)
     state, n = first_state(case.start, system, profile), system.rotor.size
-    out_q, out_v, out_oil = np.empty((2000, n)), np.empty((2000, n)), np.empty((2000, len(system.names)))
+    output = make_output(2000, n, len(system.names))
     status, written = RUNNING, 0
     tableau, rotor = METHODS[plan.method].tableau, rotor_data(system, profile)
     while status == RUNNING:
         status, fresh = advance(
-            rotor, system.films, tableau, control or control_of(case, plan), state, budget,
-            out_q[written:], out_v[written:], out_oil[written:])  # fmt: skip
+            rotor, system.films, tableau, control or control_of(case, plan), state, budget, output.after(written)
+        )
         written += fresh
     assert status == FINISHED
-    return out_q[:written], state
+    return output.q[:written], state
 
 
 def fixed_steps(case: Case, plan: Plan, steps: int) -> Control:

@@ -14,6 +14,7 @@ from frbcli.analysis.order_tracking import order_track
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.linear.response import Response, response, unbalance_motion
+from frbcli.plot.response import response_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.runs.run import runup
@@ -112,6 +113,17 @@ def test_the_command_writes_table_picture_and_document(
     rows = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
     assert float(rows[-1]["amplitude_m"]) == pytest.approx(document["points"][-1]["amplitude_m"])
     assert (tmp_path / "jeffcott-response.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_picture_has_the_orbits_at_the_largest_amplitude_and_the_highest_speed(jeffcott: Response) -> None:
+    panels = [axes for axes in response_figure(jeffcott).axes if axes.lines]  # without those of the legends
+    assert len(panels) == 6
+    assert all(panel.get_title(loc="left") for panel in panels)
+    for panel, speed in zip(panels[4:], (int(np.argmax(jeffcott.amplitude.max(axis=1))), -1), strict=True):
+        assert panel.get_title(loc="left") == f"orbits at {jeffcott.speeds_Hz[speed]:.4g} Hz"
+        for number, curve in enumerate(panel.lines[::2]):
+            reach = np.hypot(*curve.get_data()).max()
+            assert reach == pytest.approx(1e6 * jeffcott.amplitude[speed, number], rel=1e-3)
 
 
 def test_a_mass_conserving_film_has_no_linear_response(capsys: pytest.CaptureFixture[str]) -> None:

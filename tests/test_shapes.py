@@ -6,6 +6,7 @@ import itertools
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -192,6 +193,18 @@ places = [[response[dof * n], response[dof * n + 1]] for n in data["nodes"]]
 out = np.array(places)  # (points, 2, speeds)
 json.dump({"real": out.real.tolist(), "imag": out.imag.tolist()}, open(sys.argv[2], "w"))
 """
+
+
+def test_a_film_goes_to_ffmpeg_frame_by_frame(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program of this name that writes down its line and what it gets."""
+    program = tmp_path / "ffmpeg"
+    program.write_text('#!/bin/sh\necho "$@" > "$0.line"\nfor last; do :; done\ncat > "$last"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    path = animate_orbits(make_run(Rotor(duration_s=1.0)), tmp_path / "orbit.mp4", frames=5)
+    line = (tmp_path / "ffmpeg.line").read_text()
+    width, height = map(int, re.search(r"-s (\d+)x(\d+)", line).groups())  # type: ignore[union-attr]
+    assert path.stat().st_size == 5 * 4 * width * height  # red, green, blue, alpha
 
 
 @pytest.mark.skipif(not ROSS, reason="no interpreter with ROSS (FRB_ROSS_PYTHON)")

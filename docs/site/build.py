@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import csv
 import inspect
+import os
 import re
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
@@ -41,8 +43,8 @@ SHOWN: dict[str, tuple[list[str], str]] = {
     "compare": (["compare", "jeffcott", "--cavitation", "half-sommerfeld,sommerfeld", *SHORT], "jeffcott-compare.png"),
     "bearing": (["bearing", "jeffcott"], "jeffcott-bearing.png"),
     "fit": (["fit", "jeffcott", *SHORT, "--set", "bearing.clearance=37 um", *FIT], "jeffcott-fit.png"),
-    "stability": (["stability", "jeffcott", *SHORT], "jeffcott-campbell.png"),
-    "limit-cycles": (["limit-cycles", "jeffcott", *SHORT], "jeffcott-limit-cycles.png"),
+    "stability": (["stability", "jeffcott"], "jeffcott-campbell.png"),
+    "limit-cycles": (["limit-cycles", "jeffcott"], "jeffcott-limit-cycles.png"),
     "response": (["response", "jeffcott", *SHORT], "jeffcott-response.png"),
     "accuracy": (["accuracy", "jeffcott", "--theory", "short", "--until", "1 s"], "jeffcott-accuracy.png"),
     "sweep": (["sweep", "jeffcott", *SHORT, "--stability", "--jobs", "1", "--set",
@@ -98,12 +100,14 @@ def pages(source: Path) -> None:
 
 def run_commands(pictures: Path) -> dict[str, str]:
     """Run the line of every command among the pictures; its output by its name."""
-    said = {}
-    for name in ("runup", *(name for name in COMMANDS if name != "runup")):
-        said[name] = run(SHOWN[name][0], pictures)
-    for words, _, _ in MORE:
-        run(words, pictures)
-    printed_tables(pictures / "printed.png")
+    said = {"runup": run(SHOWN["runup"][0], pictures)}  # others need its run
+    others = [name for name in COMMANDS if name not in said]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        outputs = pool.map(lambda words: run(words, pictures), [SHOWN[name][0] for name in others])
+        more = pool.map(lambda words: run(words, pictures), [words for words, _, _ in MORE])
+        printed_tables(pictures / "printed.png")
+        said |= dict(zip(others, outputs, strict=True))
+        list(more)  # raises what a line raised
     return said
 
 

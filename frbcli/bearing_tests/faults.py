@@ -37,9 +37,10 @@ def bearing_faults(case: Case, test: str, keeps: bool) -> list[Fault]:
     if len(case.bearings) != 1:
         problem = "are too many: a kinematic test is of one bearing."
         return [Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")]
-    if case.heat is not None:
-        remedy = 'Write thermal.model = "none": the films then have oil.temperature, or that of the supply.'
-        return [Fault("thermal.model", "lumped", None, "is not modelled in kinematic tests.", remedy)]
+    if case.heat is not None and test != "rotation":
+        problem = f"is not modelled for a {test}: a film has no steady temperature there."
+        remedy = 'Write thermal.model = "none": the film then has oil.temperature, or that of the supply.'
+        return [Fault("thermal.model", "lumped", None, problem, remedy)]
     bearing = case.bearings[0]
     if not isinstance(bearing, SingleFilmBearing):
         problem = "is not modelled in this version of kinematic tests."

@@ -17,13 +17,16 @@ from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.bearing_tests.published import published_moment, resting_in_published
 from frbcli.bearing_tests.resting import resting_displacement
 from frbcli.bearing_tests.steady_film import FilmField, film_moment
+from frbcli.bearing_tests.warm import warm_film
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import Loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
+from frbcli.film.published.solution import FilmState
 from frbcli.html import Tabular
 from frbcli.scene.remedies import advised, film_advice
+from frbcli.thermal.steady import SteadyHeat
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +45,8 @@ class KinematicResult:
     there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error:
     estimated, relative to the force, NaN if not known; history: None for a rotation. Of a squeeze or a whirl,
     displacement, loads and field are those of the moment of the largest force, and so is the error; with a law that
-    keeps oil it is the worst of the largest forces of the periods.
+    keeps oil it is the worst of the largest forces of the periods. heat: of a rotation with heat; all else is that of
+    its viscosity and clearance, as in `plan`.
     """
 
     cavitation: str
@@ -58,6 +62,7 @@ class KinematicResult:
     newton_iterations: int
     plan: KinematicPlan
     problem: str = ""
+    heat: SteadyHeat | None = None
 
     @property
     def theory(self) -> str:
@@ -150,24 +155,15 @@ def _moment_count(case: Case, plan: KinematicPlan) -> int:
 
 def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
     assert case.motion is not None
-    motion, begun = case.motion, time.process_time()
-    omega = 2.0 * math.pi * (motion.speed or 0.0)
-    displacement, start = (math.nan, math.nan), None
+    begun, displacement, warm = time.process_time(), (math.nan, math.nan), None
+    omega = 2.0 * math.pi * (case.motion.speed or 0.0)
     try:
-        if motion.load is not None:
-            if plan.published:
-                found, start = resting_in_published(case, plan, motion.load, omega)
-            else:
-                found = resting_displacement(case, plan, motion.load, omega)
-            displacement, velocity = (float(found[0]), float(found[1])), (0.0, 0.0)
-        else:
-            e, angle = motion.eccentricity or 0.0, motion.angle
-            along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
-            displacement = (e * along[0], e * along[1])
-            turn = e * 2.0 * math.pi * motion.whirl_speed
-            rates = [motion.eccentricity_rate * a + turn * b for a, b in zip(along, across, strict=True)]
-            velocity = (rates[0], rates[1])
-        lasting = Motion(displacement, velocity, omega)
+        with advised(with_model(case, plan.cavitation)):
+            if case.heat is not None:
+                warm = warm_film(case, plan, omega, lambda alike, its_plan: _lasting(alike, its_plan)[0])
+                case, plan = warm.case, warm.plan
+        lasting, start = _lasting(case, plan)
+        displacement = lasting.d
         with advised(with_model(case, plan.cavitation)):
             if plan.model is not None:
                 moment = model_moment(case, plan, lasting)
@@ -192,7 +188,27 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
         unknowns=moment.unknowns,
         newton_iterations=moment.iterations,
         plan=plan,
+        heat=None if warm is None else warm.steady,
     )
+
+
+def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, FilmState | None]:
+    """The motion of a rotation, which lasts, and what the published form begins with. Raises NotConverged."""
+    motion = case.motion
+    assert motion is not None
+    start: FilmState | None = None
+    omega = 2.0 * math.pi * (motion.speed or 0.0)
+    if motion.load is not None:
+        if plan.published:
+            found, start = resting_in_published(case, plan, motion.load, omega)
+        else:
+            found = resting_displacement(case, plan, motion.load, omega)
+        return Motion((float(found[0]), float(found[1])), (0.0, 0.0), omega), start
+    e, angle = motion.eccentricity or 0.0, motion.angle
+    along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
+    turn = e * 2.0 * math.pi * motion.whirl_speed
+    rates = [motion.eccentricity_rate * a + turn * b for a, b in zip(along, across, strict=True)]
+    return Motion((e * along[0], e * along[1]), (rates[0], rates[1]), omega), start
 
 
 def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
@@ -268,6 +284,8 @@ def _row(result: KinematicResult) -> dict[str, Any]:
             "oil_defect_relative": loads.oil.defect_relative,
             "force_error_relative": result.force_error,
         }
+    if result.heat is not None:
+        row |= {"temperature_K": float(result.heat.temperatures[0]), "viscosity_Pa_s": result.plan.section.viscosity}
     return row | {"cpu_s": result.cpu_s}
 
 

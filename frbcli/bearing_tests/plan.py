@@ -17,6 +17,7 @@ from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.section_faults import section_faults
 from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.films import make_law
+from frbcli.scene.heat_faults import heat_faults
 from frbcli.scene.planned import Decision
 from frbcli.scene.published import DIFFUSIONS, ELEMENTS
 from frbcli.scene.section import film_rectangle, film_section
@@ -136,7 +137,7 @@ def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
     rate = TWO_PI * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
     from frbcli.scene.bearing_model_films import model_faults  # numba takes longer to import than a plan to make
 
-    faults += model_faults(case, rate)
+    faults += [*model_faults(case, rate), *heat_faults(case)]
     if faults:
         raise InputError(case.name or "case", tuple(faults))
     bearing, model = case.bearings[0], chosen_model(case)
@@ -213,6 +214,8 @@ def _film_decision(law: type[Law], rectangular: bool) -> Decision:
 def _refuse(case: Case, cavitation: str, test: str) -> None:
     faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test)]
     faults += bearing_faults(case, test, cavitation in names() and law_named(cavitation).keeps_oil)
+    if cavitation in names():
+        faults += heat_faults(with_model(case, cavitation))
     if faults:
         raise InputError(case.name or "case", tuple(faults))
 

@@ -14,6 +14,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import CavitationFactor, Loads, estimate, force, loads
 from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
@@ -39,18 +40,20 @@ class FilmField:
 @dataclass(frozen=True)
 class FilmMoment:
     """A film at one moment: its field, None of a bearing model, the loads on the whole bearing, the estimated relative
-    error of the force, and what it took."""
+    error of the force, and what it took; side_flow: m^3/s that leave through the open ends, where it was asked for."""
 
     field: FilmField | None
     loads: Loads
     force_error: float
     unknowns: int
     iterations: int
+    side_flow: float = math.nan
 
 
 def steady_film(
-    section: Section, law: Law, motion: Motion, cells: tuple[int, int], factor: CavitationFactor = "none"
-) -> FilmMoment:
+    section: Section, law: Law, motion: Motion, cells: tuple[int, int], factor: CavitationFactor = "none",
+    flow: bool = False,
+) -> FilmMoment:  # fmt: skip
     """The film for a motion that lasts, solved on half the cells each way, and from there on all.
 
     cells: around and along the whole film; one cut at its plane of symmetry gets half of those along; factor: of the
@@ -66,6 +69,7 @@ def steady_film(
         estimate(found.force, loads(coarse, motion, first).force, law.order),
         int(np.count_nonzero(~film.grid.fixed)),
         first.iterations + solution.iterations,
+        outflow(film, motion.d, film.pressure(solution.state)) if flow else math.nan,
     )
 
 
@@ -91,10 +95,13 @@ def _films(
     return VolumeFilm(section, coarse, law, reference), VolumeFilm(section, fine, law, reference)
 
 
-def film_moment(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> FilmMoment:
-    """The film for a motion that lasts, by the modal film where that is known. Raises NotConverged."""
+def film_moment(
+    case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int], flow: bool = False
+) -> FilmMoment:
+    """The film for a motion that lasts, by the modal film where that is known; flow: see steady_film. Raises
+    NotConverged."""
     law = law_at(case, plan, math.hypot(*motion.d))
-    found = steady_film(plan.section, law, motion, cells, case.film.cavitation_factor)
+    found = steady_film(plan.section, law, motion, cells, case.film.cavitation_factor, flow)
     if plan.rectangle is None or not plan.modal:
         return found
     place, velocity = _si(plan, motion)

@@ -14,6 +14,8 @@ from frbcli.units import NUMBER
 ROOM_TEMPERATURE = 293.15
 HOTTEST_FILM = 573.15  # K: 300 degC; engine oils burn there
 
+QUASI_STEADY = "quasi-steady"
+
 Material: Any = Literal[tuple(SOLIDS)]
 Clearances = Literal["fixed", "follows"]
 
@@ -74,6 +76,9 @@ class Thermal(Model):
     )
     side_flow: Literal["film", "concentric"] = Field(
         default="film", description="what leaves the solved film, or the formula of a concentric one (docs/heat.md)"
+    )
+    films: Literal["states", "quasi-steady"] = Field(
+        default="states", description="of a run: whether films store heat, or are in balance at each instant"
     )
     hottest_film: Temperature = Field(
         default=HOTTEST_FILM, description="a film that reaches it ends the run as `overheated`"

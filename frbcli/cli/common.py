@@ -70,22 +70,26 @@ class Terminal:
             _write(self._results, f"{printable(text)}\n")
 
     def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-        """Print a table, a part of the results. rows: as many cells as columns each, shown by str()."""
+        """Print a table, a part of the results; several, which repeat the first column, where one would be too wide
+        for its words. rows: as many cells as columns each, shown by str()."""
         if self.quiet:
             return
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
-        table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
         cells = [[printable(str(cell)) for cell in row] for row in rows]
         console = _console(self._results)
-        for column, width in zip(columns, _widths(columns, cells, console.width), strict=True):
-            table.add_column(column, overflow="fold", width=width)
-        for row in cells:
-            table.add_row(*map(Text, row))
-        with suppress(OutputLost):
-            console.print(table)
+        for kept in _parts(columns, cells, console.width):
+            named, shown = [columns[k] for k in kept], [[row[k] for k in kept] for row in cells]
+            table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+            for column, width in zip(named, _widths(named, shown, console.width), strict=True):
+                table.add_column(column, overflow="fold", width=width)
+            for row in shown:
+                table.add_row(*map(Text, row))
+            with suppress(OutputLost):
+                console.print(table)
+            title = ""
 
     def remark(self, text: str) -> None:
         """Print progress or advice."""
@@ -115,12 +119,28 @@ class Terminal:
         return sys.stderr if self.json else sys.stdout
 
 
+def _parts(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[list[int]]:
+    """The columns of each of the tables, by their numbers, in which no word is broken; each begins with the first."""
+    words = [_longest_word(column) for column in zip(columns, *rows, strict=True)]
+    parts: list[list[int]] = [[0]]
+    for number in range(1, len(columns)):
+        room = width - BETWEEN * (len(parts[-1]) + 1) - 1
+        if len(parts[-1]) > 1 and sum(words[k] for k in parts[-1]) + words[number] > room:
+            parts.append([0])
+        parts[-1].append(number)
+    return parts
+
+
+def _longest_word(column: Sequence[str]) -> int:
+    return max((len(word) for cell in column for word in cell.split()), default=1)
+
+
 def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[int | None]:
     """Of the columns of a table that would be wider than `width`: at least their longest words; the rest of the room
     goes to those first that need little more. None where all fits, or where not even the words do."""
     cells = list(zip(columns, *rows, strict=True))
     whole = [max(len(line) for cell in column for line in cell.split("\n")) for column in cells]
-    found = [max((len(word) for cell in column for word in cell.split()), default=1) for column in cells]
+    found = [_longest_word(column) for column in cells]
     room = width - BETWEEN * len(columns) - 1
     if sum(whole) <= room or sum(found) > room:
         return [None] * len(columns)

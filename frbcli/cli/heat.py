@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from frbcli.cli.common import Terminal
     from frbcli.linear.heat import WarmMachine
+    from frbcli.thermal.steady import SteadyHeat
 
 ZERO_CELSIUS = 273.15
 FILMS = ("film", "degC", "mPa*s", "gap, um", "loss, W", "flow, ml/s")
@@ -62,7 +63,45 @@ def tell_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
             for ring in warm.rings
         ]
         terminal.table("rings", RINGS, rings)
+    _tell_balance(terminal, warm.steady)
+
+
+def film_document(steady: SteadyHeat) -> dict[str, object]:
+    """The same of a single film, of a bearing test."""
+    return {
+        "films": [
+            {
+                "film": "film",
+                "temperature_K": float(steady.temperatures[0]),
+                "viscosity_Pa_s": float(steady.viscosities[0]),
+                "clearance_m": float(steady.clearances[0]),
+                "power_W": float(steady.films.power[0]),
+                "flow_m3_s": float(steady.films.flow[0]),
+            }
+        ],
+        "carried_by_oil_W": steady.carried,
+        "into_walls_W": steady.given,
+        "balance_relative": steady.balance,
+    }
+
+
+def tell_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
+    """A single film when it is warm, and where its heat goes."""
+    film = steady.films
+    row = (
+        "film",
+        f"{steady.temperatures[0] - ZERO_CELSIUS:.1f}",
+        f"{1e3 * steady.viscosities[0]:.4g}",
+        f"{1e6 * steady.clearances[0]:.4g}",
+        f"{film.power[0]:.4g}",
+        f"{1e6 * film.flow[0]:.3g}",
+    )
+    terminal.table(title, FILMS, [row])
+    _tell_balance(terminal, steady)
+
+
+def _tell_balance(terminal: Terminal, steady: SteadyHeat) -> None:
     terminal.result(
-        f"Heat: {warm.steady.carried:.4g} W with the oil, {warm.steady.given:.4g} W into shaft and housing, "
-        f"unaccounted for {warm.balance:.0e}."
+        f"Heat: {steady.carried:.4g} W with the oil, {steady.given:.4g} W into shaft and housing, "
+        f"unaccounted for {steady.balance:.0e}."
     )

@@ -11,6 +11,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.heat import film_document, tell_film
 from frbcli.cli.live import counting, live_lines
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.runs import OUTPUT, here
@@ -21,14 +22,14 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
 
 BAR = 1e5
-FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.", "CPU")
-OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance")
+FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.")
+OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance", "CPU")
 EXPLANATION = (
     "Forces of the whole bearing on the journal in N; angle: of the force from the\n"
     "x-axis; So: Sommerfeld number (3.14); p: absolute, in bar; err.: relative error\n"
-    "of the force, from half the cells; CPU: time in s; torque: on the journal, N m;\n"
-    "oil: mean oil fraction; in, out: flow in mm^3/s; balance: oil that is lost, or\n"
-    "created (negative), over the flow."
+    "of the force, from half the cells; torque: on the journal, N m; oil: mean oil\n"
+    "fraction; in, out: flow in mm^3/s; balance: oil that is lost, or created\n"
+    "(negative), over the flow; CPU: time in s."
 )
 LARGEST = "Values are those of the moment of the largest force."
 
@@ -97,6 +98,9 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
     terminal.table(f"{title}: {found.test}", FORCES, map(_forces, found.results))
     terminal.table("", OIL, map(_oil, found.results))
     terminal.result(EXPLANATION)
+    for result in found.results:
+        if result.heat is not None:
+            tell_film(terminal, result.heat, f"{result.name}: the film when it is warm")
     if found.test != "rotation":
         terminal.result(LARGEST)
     for result in found.results:
@@ -109,7 +113,7 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
 def _forces(result: KinematicResult) -> tuple[str, ...]:
     loads = result.loads
     if loads is None:
-        return (result.name, "none", *[""] * (len(FORCES) - 3), f"{result.cpu_s:.1f}")
+        return (result.name, "none", *[""] * (len(FORCES) - 2))
     x, y = loads.force
     size = math.hypot(x, y)
     error = result.force_error
@@ -123,7 +127,6 @@ def _forces(result: KinematicResult) -> tuple[str, ...]:
         f"{math.degrees(math.atan2(y, x)):.0f}°",
         _told(loads.p_max / BAR, ".4g"),
         _told(error, ".0e").replace("e-0", "e-"),
-        f"{result.cpu_s:.1f}",
     )
 
 
@@ -141,15 +144,16 @@ def _number(value: float, size: float) -> str:
 def _oil(result: KinematicResult) -> tuple[str, ...]:
     loads = result.loads
     if loads is None:
-        return (result.name, *[""] * (len(OIL) - 1))
+        return (result.name, *[""] * (len(OIL) - 2), f"{result.cpu_s:.1f}")
     return (
         result.name,
         _told(loads.p_min / BAR, ".4g"),
-        _told(loads.torque.journal, ".4g"),
+        _told(loads.torque.journal, ".3g"),
         _told(loads.oil_fraction, ".3f"),
         _told(loads.oil.in_m3_s * 1e9, ".4g"),
         _told(loads.oil.out_m3_s * 1e9, ".4g"),
-        _told(loads.oil.defect_relative, ".0e"),
+        _told(loads.oil.defect_relative, ".0e").replace("e-0", "e-"),
+        f"{result.cpu_s:.1f}",
     )
 
 
@@ -180,6 +184,8 @@ def result_document(result: KinematicResult) -> dict[str, Any]:
             "newton_iterations": result.newton_iterations,
         },
     }
+    if result.heat is not None:
+        document["thermal"] = film_document(result.heat)
     if result.plan.test != "rotation":
         document |= {
             "t_s": None if history is None else history.time_s,

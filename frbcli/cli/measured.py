@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
 
 _GIVEN = "frbcli.measurement"  # in the context of a command
+EITHER = (("time", "rate"), ("speed", "speed_at", "tacho"))  # options of which one is enough
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -51,7 +52,12 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
     if given["x"] is None:
         return None
     if clearance is None:
-        raise click.UsageError("A measurement needs --clearance, to which amplitudes refer.")
+        words = "A measurement needs --clearance, to which amplitudes refer; a run of frb needs neither that nor --x."
+        raise click.UsageError(words)
+    for names in EITHER:
+        several = [f"--{name.replace('_', '-')}" for name in names if given[name] is not None]
+        if len(several) > 1:
+            raise click.UsageError(f"{' and '.join(several)} tell the same of the measurement: give one of them.")
     return Measurement(
         x=given["x"],
         clearance=clearance,

@@ -40,7 +40,9 @@ class Size(click.ParamType[tuple[float, float]]):
 
         if isinstance(value, tuple):
             return value
-        width, _, height = str(value).partition("x")
+        width, by, height = str(value).partition("x")
+        if not by:
+            self.fail(f'{value!r} is not a width and a height. Write e.g. "160 mm x 90 mm".', param, ctx)
         unit = "".join(letter for letter in height if letter.isalpha())
         try:
             if not any(letter.isalpha() for letter in width):

@@ -15,12 +15,14 @@ from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
 from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs import OUTPUT, RUN, here
+from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from frbcli.analysis.order_tracking import OrderTrack
     from frbcli.case.schema import Case
     from frbcli.linear.response import Response
     from frbcli.plot.style import Picture
+    from frbcli.results.store import Run
 
 MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
 EXPLANATION = (
@@ -56,15 +58,17 @@ def command(
     """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping."""
     from frbcli.linear.response import response
     from frbcli.results.place import require_place
+    from frbcli.results.store import read_run
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
     picture = None if no_picture else output or here(case.name, "-critical-map.png" if as_map else "-response.png")
     check_place(picture)
     require_place(csv)
-    tracks = () if run_file is None else _tracks(run_file)
+    run = None if run_file is None else read_run(run_file)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         found = response(case, speeds or None, counting(terminal, show))
+    tracks = () if run is None else _tracks(run, found.points, str(run_file))
     _tell(terminal, found, bool(speeds))
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)
@@ -95,14 +99,19 @@ def _figure(found: Response, tracks: tuple[OrderTrack, ...], as_map: bool) -> Pi
     return response_figure(found, tracks)
 
 
-def _tracks(run_file: Path) -> tuple[OrderTrack, ...]:
-    """The synchronous motion of the journals and disks of a run."""
-    from frbcli.analysis.order_tracking import order_track
-    from frbcli.analysis.signals import points
-    from frbcli.results.store import read_run
+def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ...]:
+    """The synchronous motion of the journals and disks of a run that are points of the response.
 
-    run = read_run(run_file)
-    named = [f"{kind}_{name}".rstrip("_") for kind in ("journal", "disk") for name in points(run.signals, kind)]
+    Raises InputError if none is, which is then a run of another machine."""
+    from frbcli.analysis.order_tracking import order_track
+    from frbcli.analysis.signals import joined, points
+
+    recorded = [joined(kind, node) for kind in ("journal", "disk") for node in points(run.signals, kind)]
+    named = [node for node in recorded if node in known]
+    if not named:
+        problem = f"has the points {', '.join(recorded)}, of which the case has none."
+        fault = Fault("--run", name, None, problem, f"Give a run with {', '.join(known)}.")
+        raise InputError("response", (fault,))
     return tuple(order_track(run, 1.0, name) for name in named)
 
 

@@ -21,8 +21,9 @@ def check(case: Case, with_oil: bool = False) -> tuple[float, float]:
     Raises InputError."""
     faults = list(_oil_films(case) if with_oil and keeps_oil(case) else _films(case))
     if case.heat is not None:
-        remedy = 'Write thermal.model = "none": the films then have oil.temperature, or that of the supply.'
-        faults.append(Fault("thermal.model", "lumped", None, "is not modelled in limit cycles.", remedy))
+        problem = "is not modelled in limit cycles: each of them dissipates something else, and has other viscosities."
+        remedy = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
+        faults.append(Fault("thermal.model", "lumped", None, problem, remedy))
     speeds = default_speeds(case)
     if not speeds or not speeds[-1] > speeds[0]:
         problem, remedy = "leaves no range of speeds above zero.", 'Write e.g. speed.to = "300 Hz".'

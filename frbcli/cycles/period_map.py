@@ -42,6 +42,7 @@ from frbcli.solve.state import (
     Control,
     State,
     W,
+    make_output,
 )
 from frbcli.solve.tableau import METHODS, Tableau
 from frbcli.solve.time_loop import advance
@@ -122,13 +123,11 @@ class PeriodMap:
         )
         control = self.control._replace(output_step=time / SAMPLES, longest_step=time / steps, steps_per_revolution=1.0)
         state = self._state(wet, time)
-        rows = SAMPLES + 8
-        films, size = len(self.clearances), len(wet.q)
-        out_q, out_v, out_oil = np.empty((rows, size)), np.empty((rows, size)), np.zeros((rows, films))
+        output = make_output(SAMPLES + 8, len(wet.q), len(self.clearances))
         written, status = [], RUNNING
         while status == RUNNING:
-            status, count = advance(rotor, self.films, self.tableau, control, state, MOST_STEPS, out_q, out_v, out_oil)
-            written.append(out_q[:count].copy())
+            status, count = advance(rotor, self.films, self.tableau, control, state, MOST_STEPS, output)
+            written.append(output.q[:count].copy())
         if status != FINISHED or not np.isfinite(state.q).all():
             raise Unreachable
         q = np.concatenate(written)[: SAMPLES + 1]

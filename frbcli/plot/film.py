@@ -83,7 +83,8 @@ def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
                 phi, field.z, turned.T, cmap=LEVEL_MAP, vmin=low, vmax=high, shading="nearest", rasterized=True
             )
             meshes.append(mesh)
-        left.set_title(label_of(result.cavitation), fontsize=9.0)
+        for axes, what in zip((left, right), ("pressure", "oil fraction"), strict=True):
+            axes.set_title(f"{label_of(result.cavitation)}, {what}", fontsize=9.0)
         left.set_ylabel("z of section", fontsize=8.0)
     for column, label in ((0, "pressure in bar"), (1, "oil fraction")):
         bar = figure.colorbar(meshes[column], ax=rows[:, column], location="bottom", shrink=0.8, aspect=35)

@@ -1,4 +1,4 @@
-"""The linear unbalance response: Bode and polar diagrams of the points, and the forces of the bearings."""
+"""The linear unbalance response: Bode and polar diagrams of the points, forces of the bearings, and orbits."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ DASHES = ("-", (0, (5, 2)), (0, (5, 1, 1, 1)))  # of more points than there are 
 
 
 def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
-    """Amplitude and phase over the rotor speed, the forward motion in the complex plane, and the bearing forces.
+    """Amplitude and phase over the rotor speed, the forward motion in the complex plane, the bearing forces, and the
+    orbits at the largest amplitude and at the highest speed.
 
     Dotted where a whirl grows, so that the motion is not seen. tracks: synchronous motion in a run, of points of the
     response by their signals, drawn over it as thin black lines.
     """
     case = found.case
     with styled():
-        figure = new_figure(case.title or case.name, "linear unbalance response about the resting position", 9.6, 7.4)
-        panels = figure.subplots(2, 2)
-        amplitude, phase, polar, force = panels.ravel()
+        figure = new_figure(case.title or case.name, "linear unbalance response about the resting position", 9.6, 10.8)
+        amplitude, phase, polar, force, largest, highest = figure.subplots(3, 2).ravel()
         draw_amplitude(amplitude, found)
         for number in range(len(found.points)):
             colour, dash = _line_of(number)
@@ -53,6 +53,8 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
         names = ("Bode diagram: amplitude", "Bode diagram: phase", "polar diagram", "bearing forces")
         for panel, name in zip((amplitude, phase, polar, force), names, strict=True):
             panel.set_title(name)
+        for panel, speed in ((largest, int(np.argmax(found.amplitude.max(axis=1)))), (highest, -1)):
+            _orbits(panel, found, speed)
         legend_beside(amplitude)
         legend_beside(force)
     return figure
@@ -67,6 +69,21 @@ def draw_amplitude(axes: Axes, found: Response) -> None:
     axes.set_ylabel("amplitude in µm (larger semi-axis)")
     _speed_axis(axes, found)
     axes.set_ylim(bottom=0.0)
+
+
+def _orbits(axes: Axes, found: Response, speed: int) -> None:
+    """The orbits of all points about their resting positions at a speed, by its number; a dot where each is while the
+    mark of the rotor points along x."""
+    for number in range(len(found.points)):
+        colour, dash = _line_of(number)
+        x, y = MICRO * found.orbit(speed, number).T
+        axes.plot(np.append(x, x[0]), np.append(y, y[0]), color=colour,
+                  linestyle=GROWING if found.growth[speed] > 0.0 else dash)  # fmt: skip
+        axes.plot(x[0], y[0], color=colour, marker="o", markersize=4.0)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_title(f"orbits at {found.speeds_Hz[speed]:.4g} Hz")
+    axes.set_xlabel("x in µm")
+    axes.set_ylabel("y in µm")
 
 
 def _speed_axis(axes: Axes, found: Response) -> None:

@@ -23,6 +23,7 @@ LONGEST_s, SHORTEST_s = 0.2, 2e-3
 WIDTH, ROW = 7.2, 2.5  # inches
 ENLARGED = 0.1  # of the clearance: a smaller orbit is drawn without it
 AHEAD = 2.2  # of the rotor speed: up to where a spectrum is drawn
+CLOSE, LINE_pt = 0.2, 10.0  # share of an axis within which names stand one below the other, so far apart
 
 
 def speeds_figure(run: Run, times_s: Sequence[float], found: Spectrogram, signal: str = "journal") -> Figure:
@@ -71,12 +72,15 @@ def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, si
     axes.plot(found.frequency_Hz[kept], MICRO * found.amplitude[kept, column], color=BLUE)
     axes.set_xlim(0.0, highest)
     axes.set_ylim(bottom=0.0)
-    for name, frequencies in orders(run, signal, found):
-        at = float(abs(frequencies[column]))
+    lines = sorted((float(abs(frequencies[column])), name) for name, frequencies in orders(run, signal, found))
+    last, lower = -np.inf, 0.0
+    for at, name in lines:
         if 0.0 < at < highest:
             axes.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (2, 3)))
-            axes.annotate(name, (at, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(2, -2),
+            lower = lower + LINE_pt if at - last < CLOSE * highest else 0.0
+            axes.annotate(name, (at, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(2, -2 - lower),
                           textcoords="offset points", va="top", fontsize=8.0, color=GREY)  # fmt: skip
+            last = at
     axes.set_xlabel("frequency in Hz")
     axes.set_ylabel("amplitude in µm")
 

@@ -47,7 +47,8 @@ class FewerCells:
         points = [_largest(apart[:, :n], selection, system.clearances[0]) for _, selection in rotor.points]
         spins = np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0)
         top = max(float(np.abs(samples[:, 2 * n]).max(initial=0.0)), 1e-300)
-        oil = np.abs(apart[:, 2 * n + 1 :][:, list(system.remembering)]).max(initial=0.0)
+        first = 2 * n + 1
+        oil = np.abs(apart[:, first : first + len(system.names)][:, list(system.remembering)]).max(initial=0.0)
         found = max(eccentric), max([*films, *points]), float(spins) / top, float(oil)
         return CellErrors(*(self.share * off for off in found))
 

@@ -21,7 +21,8 @@ from frbcli.solve.state import RUNNING
 
 Observer = Callable[[Progress], None]
 
-SAFETY = 1.5  # errors differ from those of the shipped cases
+# Errors differ from those of the shipped cases; most of all those of rings that do not turn yet in a fast start.
+SAFETY, SAFETY_OF_RINGS = 1.5, 2.0
 
 
 def on_fewer_cells(march: March, until: float, observe: Observer | None = None) -> FewerCells | None:
@@ -40,7 +41,8 @@ def on_fewer_cells(march: March, until: float, observe: Observer | None = None) 
         if observe is not None:
             observe(other.progress(until))
     own, others = (cell_error(march.case, found) for found in (march.plan.cells, cells))
-    return FewerCells(SAFETY * own / (others - own), other.samples)
+    safety = SAFETY_OF_RINGS if march.system.ring_count else SAFETY
+    return FewerCells(safety * own / (others - own), other.samples)
 
 
 def fewer_cells(case: Case, plan: Plan, system: System) -> tuple[int, int] | None:

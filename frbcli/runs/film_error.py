@@ -69,9 +69,11 @@ def sample_count(plan: Plan) -> int:
 def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samples: Array) -> FilmErrors:
     """Errors of the film forces at sampled states, against the finite-length film on a finer mesh.
 
-    times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s. For the short-bearing
-    theory this is the error of the theory itself. In contact it is that of the film in the contact gap.
-    Mass-conserving films are compared in their steady state; where there is none, they are left out.
+    times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s; with heat the last
+    columns are clearances in m and scales of the films, see FilmNumbers: s times the scale gives the force of s times
+    the velocities. For the short-bearing theory this is the error of the theory itself. In contact it is that of the
+    film in the contact gap. Mass-conserving films are compared in their steady state; where there is none, they are
+    left out.
     """
     if plan.form == GIVEN:  # a bearing model has no mesh
         return FilmErrors(*np.zeros((3, 0)))
@@ -81,7 +83,7 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
         forces = _cell_forces(plan, system, case)
     else:
         forces = _source_forces(plan, system) if system.solved else _closed_forces(plan, system)
-    control, n, found = control_of(case, plan), system.rotor.size, []
+    control, n, count, found = control_of(case, plan), system.rotor.size, len(system.names), []
     every = 1
     if plan.cells is not None:  # each has to settle
         most = compared_states(plan.cells) if system.published is None else PUBLISHED_SAMPLES
@@ -90,13 +92,16 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
         omegas = system.omegas(omega, v[list(system.spins)])
         for i, selection in enumerate(system.rotor.journals):
-            at, rate, clearance = selection @ q, selection @ v, system.clearances[i]
+            at, rate, clearance, scale = selection @ q, selection @ v, system.clearances[i], 1.0
+            if case.heat is not None:
+                now, scale = (float(sample[column * count + i]) for column in (-2, -1))
+                at, rate = at * clearance / now, rate * clearance / now
             if control.contact_stiffness > 0.0:
                 at, rate = clearance * felt_motion(control, at / clearance, rate / clearance)
             if np.hypot(*at) >= LARGEST_ECCENTRICITY * clearance:
                 continue
             try:
-                exact, force = forces(i, at, rate, float(omegas[i]))
+                exact, force = forces(i, at, scale * rate, scale * float(omegas[i]))
             except NotConverged:
                 continue
             found.append((float(t), float(np.hypot(*(force - exact))), float(np.hypot(*exact))))

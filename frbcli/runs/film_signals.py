@@ -18,6 +18,7 @@ from frbcli.film.gap import Section, gap_height
 from frbcli.film.rectangles.end_flow import EndFlow, TableEndFlow, chain_end_flows, table_end_flows
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.runs.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
 from frbcli.scene.system import System
 from frbcli.solve.contact import felt_motion, touches
@@ -46,25 +47,28 @@ def film_signals(
     samples: Samples,
     kinds: Sequence[str],
     ends: Sequence[EndFlow] = (),
+    warm: FilmNumbers | None = None,
 ) -> dict[str, Array]:
     """The signals (k,) of all films by their names.
 
     force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
     by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
     the film through its open ends, m^3/s. ends: the flows of tabulated films (end_flows of linear/film_heat.py), if
-    these are asked for their oil.
+    these are asked for their oil; warm: what heat has changed.
     """
-    found = dict[str, Array]()
+    found, films = dict[str, Array](), warm or unchanged(system)
     if any(kind in OF_THE_STEPS for kind in kinds):
         forces = film_forces(system.rotor, profile, samples)
-        torques, powers = _torques(system, profile, samples, forces)
-        flows = _flows_of_motions(system, control, profile, samples, ends) if ends else _flows(system, samples)
+        torques, powers = _torques(system, films, profile, samples, forces)
+        flows = _flows(system, films, samples)
+        if ends:
+            flows = _flows_of_motions(system, films, control, profile, samples, ends)
     for i, name in enumerate(system.names):
         for kind in kinds:
             if kind == FORCE:
                 found |= dict(zip(signal_names(kind, name), forces[:, i].T, strict=True))
             elif kind == THICKNESS:
-                found[signal_names(kind, name)[0]] = _thickness(system, control, i, samples.q)
+                found[signal_names(kind, name)[0]] = _thickness(system, films, control, i, samples.q)
             else:
                 found[signal_names(kind, name)[0]] = {POWER: powers, TORQUE: torques, FLOW: flows}[kind][:, i]
     return found
@@ -83,13 +87,15 @@ def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> 
     return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
 
 
-def _torques(system: System, profile: SpeedProfile, samples: Samples, forces: Array) -> tuple[Array, Array]:
+def _torques(
+    system: System, films: FilmNumbers, profile: SpeedProfile, samples: Samples, forces: Array
+) -> tuple[Array, Array]:
     """(k, films) torque on the journals in N m, as spin_up of solve/ring_spin.py has it, and power in W."""
     n, count = system.rotor.size, len(system.names)
     total, slip = (_speeds(system, profile, samples, row) for row in (SUM, SLIP))
     drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]
     place, rate = (np.einsum("fij,kj->kfi", system.rotor.journals, each) for each in (samples.q, samples.v))
-    couette = -np.array(system.drags) * drag * slip
+    couette = -films.drags * drag * slip
     poiseuille = np.zeros_like(couette)
     if system.torque == "all":
         poiseuille = -0.5 * (place[..., 0] * forces[..., 1] - place[..., 1] * forces[..., 0])
@@ -104,43 +110,46 @@ def _speeds(system: System, profile: SpeedProfile, samples: Samples, row: int) -
 
 
 def _flows_of_motions(
-    system: System, control: Control, profile: SpeedProfile, samples: Samples, ends: Sequence[EndFlow]
-) -> Array:
-    """(k, films) m^3/s of oil that leaves tabulated films: it follows from how their journals move."""
+    system: System, films: FilmNumbers, control: Control, profile: SpeedProfile, samples: Samples,
+    ends: Sequence[EndFlow],
+) -> Array:  # fmt: skip
+    """(k, films) m^3/s of oil that leaves tabulated films: it follows from how their journals move. It is homogeneous
+    in their motion and the given pressures, which are divided by the scale."""
     found = np.empty((len(samples.times), len(ends)))
     total = _speeds(system, profile, samples, SUM)
-    for i, (end, clearance) in enumerate(zip(ends, system.clearances, strict=True)):
+    for i, end in enumerate(ends):
+        clearance, scale = films.clearances[:, i : i + 1], films.scales[:, i : i + 1]
         d, v = (each @ system.rotor.journals[i].T / clearance for each in (samples.q, samples.v))
         for k in _touching(control, d):
             d[k], v[k] = felt_motion(control, d[k], v[k])
         w = v + 0.5 * total[:, i : i + 1] * np.column_stack([d[:, 1], -d[:, 0]])
-        motions = np.column_stack([d, w])
+        motions = np.column_stack([d, scale * w])
         flows = table_end_flows(end, motions) if isinstance(end, TableEndFlow) else chain_end_flows(end, motions)
-        found[:, i] = clearance * flows
+        found[:, i] = clearance[:, 0] / scale[:, 0] * flows
     return found
 
 
-def _flows(system: System, samples: Samples) -> Array:
+def _flows(system: System, films: FilmNumbers, samples: Samples) -> Array:
     """(k, films) m^3/s of oil that leaves, as it is noted."""
     n, count = system.rotor.size, len(system.names)
     leaves: Array = samples.noted[:, n + LEAVES * count : n + NOTES * count]
     if not isinstance(system.films, VolumeFilms):
         return leaves
     sections = [film.section for film in system.volumes]
-    scales = np.array([each.copies * each.radius * each.width * each.clearance for each in sections])
-    return np.asarray(leaves * scales, dtype=np.float64)
+    areas = np.array([each.copies * each.radius * each.width for each in sections])
+    return np.asarray(leaves * (areas * films.clearances), dtype=np.float64)
 
 
-def _thickness(system: System, control: Control, i: int, q: Array) -> Array:
+def _thickness(system: System, films: FilmNumbers, control: Control, i: int, q: Array) -> Array:
     """(k,) m: the smallest gap of film i; in contact that which surfaces keep."""
-    clearance = system.clearances[i]
-    d = q @ system.rotor.journals[i].T / clearance
+    clearance = films.clearances[:, i]
+    d = q @ system.rotor.journals[i].T / clearance[:, None]
     for sample in _touching(control, d):
         d[sample] = felt_motion(control, d[sample], np.zeros(2))[0]
     section = system.volumes[i].section if system.volumes else None
     if section is None or section.lobes is None:
         return np.asarray(clearance * (1.0 - np.hypot(d[:, 0], d[:, 1])))
-    return _lobed(section, d)
+    return clearance * _lobed(section, d)
 
 
 def _touching(control: Control, d: Array) -> NDArray[np.int64]:
@@ -150,8 +159,8 @@ def _touching(control: Control, d: Array) -> NDArray[np.int64]:
 
 
 def _lobed(section: Section, d: Array) -> Array:
-    """(k,) m of displacements d (k, 2) over the clearance."""
+    """(k,) the smallest gap at displacements d (k, 2), all over the clearance."""
     phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
     still = gap_height(section, (0.0, 0.0), phi)
     height = still + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)
-    return np.asarray(section.clearance * height.min(axis=1))
+    return np.asarray(height.min(axis=1))

@@ -14,15 +14,30 @@ from frbcli.film.cells.data import GIVEN_PRESSURE, RESISTANCE, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.side_flow import opens_far
 from frbcli.linear.film_heat import end_flows
+from frbcli.runs.film_numbers import FilmNumbers
 from frbcli.runs.restored import array
 from frbcli.scene.films import FilmPlace, film_places, make_law
 from frbcli.scene.heat import Heat, heat_of
 from frbcli.scene.planned import Plan
 from frbcli.scene.system import System
 from frbcli.scene.warm import warm_system
-from frbcli.solve.heat import TOLD, CellEnds, LumpedHeat, columns_of
+from frbcli.solve.heat import NO_HEAT, TOLD, CellEnds, LumpedHeat, NoHeat, columns_of
 from frbcli.solve.state import Array
-from frbcli.thermal.exchange import BOOKS, CARRIED, CLEARANCE, DISSIPATED, FILM_ROWS, GIVEN, HOT, IN_FILMS, SHARE
+from frbcli.thermal.exchange import (
+    BOOKS,
+    CARRIED,
+    CLEARANCE,
+    DISSIPATED,
+    DRAG,
+    FILM_ROWS,
+    GIVEN,
+    HOT,
+    IN_FILMS,
+    REFERENCE,
+    SHARE,
+    VISCOSITY,
+    arrays_of,
+)
 from frbcli.thermal.model import clearances_at, viscosities_at
 
 QUANTITIES = ("temperature_{}_K", "viscosity_{}_Pa_s", "clearance_{}_m", "power_{}_W", "flow_{}_m3_s")
@@ -47,12 +62,15 @@ class RunHeat:
         model, start, still = self._heat.model, self._heat.start, np.zeros(1 + system.ring_count)
         self.start = warm_system(case, plan, system, viscosities_at(model, start), clearances_at(model, start, still))
 
-    def buffers(self, rows: int) -> tuple[Any, ...]:
-        """What the loop is given beside the rest: the heat, and a buffer for output; nothing without heat."""
-        if self._loop is None:
-            return ()
-        self._rows = np.zeros((rows, columns_of(self._loop)))
-        return self._loop, self._rows
+    @property
+    def kind(self) -> LumpedHeat | NoHeat:
+        """What the loop is given of it."""
+        return NO_HEAT if self._loop is None else self._loop
+
+    def buffer(self, rows: int) -> Array:
+        """(rows, columns) what the loop writes of it."""
+        self._rows = np.zeros((rows, 0 if self._loop is None else columns_of(self._loop)))
+        return self._rows
 
     def signals(self, rows: int) -> dict[str, Array]:
         """The signals of heat in the rows that the loop has written."""
@@ -63,6 +81,15 @@ class RunHeat:
         if self._loop is None:
             return []
         return [self._rows[:rows, TOLD * film + 2].copy() for film in range(len(self._names))]
+
+    def numbers(self, rows: int) -> FilmNumbers | None:
+        """What heat has changed of the films in the rows that the loop has written; None without heat."""
+        if self._loop is None or self._heat is None:
+            return None
+        viscosities, clearances = (self._rows[:rows, each : TOLD * len(self._names) : TOLD] for each in (1, 2))
+        made = self._loop.model.films
+        thicker, narrower = viscosities / made[VISCOSITY], made[REFERENCE] / clearances
+        return FilmNumbers(clearances.copy(), made[DRAG] * thicker * narrower, thicker * narrower**2)
 
     def snapshot(self) -> dict[str, Array]:
         """What a checkpoint holds of it."""
@@ -144,13 +171,11 @@ def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
     state[BOOKS + bodies :] = heat.start
     now = np.zeros((FILM_ROWS, count))
     now[SHARE], now[CLEARANCE] = 1.0, system.clearances
+    viscosity = np.array([case.viscosity(place.geometry) for place in places])
+    by_formula = case.heat is not None and case.heat.side_flow == "concentric"
     return LumpedHeat(
-        model=model,
+        model=arrays_of(model, viscosity, np.array(system.drags), heat.concentric, by_formula),
         ends=_cell_ends(case, system) if system.volumes else end_flows(system),
-        concentric=heat.concentric,
-        by_formula=case.heat is not None and case.heat.side_flow == "concentric",
-        viscosity=np.array([case.viscosity(place.geometry) for place in places]),
-        drag=np.array(system.drags),
         state=state,
         now=now,
         gain=np.zeros(n),

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -46,10 +45,11 @@ from frbcli.solve.state import (
     TIME,
     TURNS,
     Array,
+    Output,
 )
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
-from frbcli.solve.watched import NOTES, advance_watched
+from frbcli.solve.watched import NOTES, Notes, advance_watched
 
 BUFFER = 4096  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
@@ -98,19 +98,18 @@ class March:
         self._apart = plan.coupling == "co-simulation"
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))
-        self._advance: Callable[..., Any] = advance_in_turn if self._apart else advance
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
-        # what the loop takes beside the rest, nothing without heat
-        self._extra = self._heat.buffers(rows)
+        self._output = Output(self._q, self._v, self._oil, self._heat.buffer(rows))
         # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
         self._watches = any(kind in OF_THE_STEPS for kind in case.output.signals)
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
-        self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering)))
+        warm = 2 * len(system.names) if case.heat is not None else 0
+        self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering) + warm))
         self._expected, self._course = expected_cost(case, plan, profile), expected_course(case, plan, profile)
         self._cpu_s = self._wall_s = 0.0
         self._budget = FIRST_BUDGET
@@ -158,7 +157,7 @@ class March:
     @property
     def samples(self) -> Array:
         """(k, 2 n + 1 + films) states so far at the fixed output times: see film_force_errors, and the mean oil
-        fraction of each film, which is of no meaning where it keeps none."""
+        fraction of each film, which is of no meaning where it keeps none; with heat clearances and scales behind."""
         return self._samples
 
     @property
@@ -179,11 +178,12 @@ class March:
         """At most `budget` steps. Returns (status, rows of the output written)."""
         films = self._heat.films or self._system.films
         given = self._rotor, films, self._tableau, self._control, self._state, budget
-        outputs = self._q, self._v, self._oil
+        if self._apart:
+            return advance_in_turn(*given, self._output)
         if self._watches:
-            return advance_watched(*given, *outputs, self._noted, self._out_noted, self._far_open)
-        status, rows = self._advance(*given, *outputs, *self._extra)
-        return status, rows
+            notes = Notes(self._noted, self._out_noted, self._far_open)
+            return advance_watched(*given, self._output, self._heat.kind, notes)
+        return advance(*given, self._output, self._heat.kind)
 
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
@@ -197,7 +197,9 @@ class March:
         times: Array = self._control.output_step * (first + np.arange(rows, dtype=np.float64))
         speeds = self._profile.speed(times)
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
-        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept]])
+        warm = self._heat.numbers(rows)
+        changed = () if warm is None else (warm.clearances[kept], warm.scales[kept])
+        fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept], *changed])
         self._samples = np.concatenate([self._samples, fresh])
         signals = self._signals(times, speeds, self._q[:rows], self._v[:rows]) | self._heat.signals(rows)
         if status == FINISHED and self._current + 1 < len(self._segments):
@@ -222,8 +224,8 @@ class March:
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
-        kinds = self._case.output.signals
-        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends)
+        kinds, warm = self._case.output.signals, self._heat.numbers(len(times))
+        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
 
     def snapshot(self) -> dict[str, Array]:
         """The checkpoint, from which the run continues with the same result."""

@@ -9,10 +9,11 @@ import numpy as np
 
 from frbcli.case.bearing import Bearing, ColdClearance, FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
-from frbcli.case.thermal import Thermal, WallNode
+from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
 from frbcli.film.grid import Array
 from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import SOLIDS
+from frbcli.scene.channels import coupled, opens_to_groove
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.thermal.model import FROM_SUPPLY, HeatModel
 
@@ -101,6 +102,7 @@ class _Builder:
             expansion=expansion,
             growth=self._growth,
             hottest=thermal.hottest_film,
+            balanced=thermal.films == QUASI_STEADY,
         )
         concentric = np.array([_concentric(self._case, place.geometry) for place in self._places])
         return Heat(model, tuple(self._names), tuple(self._rings), np.array(self._start), concentric)
@@ -110,12 +112,13 @@ class _Builder:
         return [b for b in self._case.bearings for _ in range(1 if isinstance(b, SingleFilmBearing) else 2)]
 
     def _inlets(self) -> list[int]:
-        """The film that feeds each film: an outer film that coupled channels join to the inner one."""
+        """The film that feeds each film: an outer film that coupled channels join to the inner one, unless they open to
+        its groove, whose oil is that of the supply."""
         found: list[int] = []
         for bearing in self._case.bearings:
             if isinstance(bearing, FloatingRingBearing):
-                coupled = bearing.channels == "coupled"
-                found += [len(found) + 1 if coupled else FROM_SUPPLY, FROM_SUPPLY]
+                through = coupled(bearing) and not opens_to_groove(bearing)
+                found += [len(found) + 1 if through else FROM_SUPPLY, FROM_SUPPLY]
             else:
                 found.append(FROM_SUPPLY)
         return found

@@ -20,8 +20,5 @@ def heat_faults(case: Case) -> Iterator[Fault]:
         yield Fault("film.theory", case.film.theory, None, problem, remedy)
     if is_published(case):
         yield Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".')
-    if case.output.signals:
-        remedy = "Leave it out: temperatures, viscosities, power and flow are recorded with heat."
-        yield Fault("output.signals", ", ".join(case.output.signals), None, problem, remedy)
     if case.film.coupling == APART:
         yield Fault("film.coupling", APART, None, problem, "Write auto.")

@@ -104,12 +104,14 @@ def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights:
             for j in range(k):
                 w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
         return
-    at, at_first, at_last = weights[s].sum(), weights[1].sum(), weights[s - 1].sum()
+    at = at_first = at_last = 0.0
+    for p in range(weights.shape[1]):  # numba's own sum and copy take seconds to compile
+        at, at_first, at_last = at + weights[s, p], at_first + weights[1, p], at_last + weights[s - 1, p]
     if s == 2:
-        first[:] = w
         a, b, c = lagrange(-at / ahead, 0.0, at_first, at)
         for i in range(m):
             for j in range(k):
+                first[i, j] = w[i, j]
                 w[i, j] = a * before[i, j] + b * start[i, j] + c * w[i, j]
         return
     a, b, c = lagrange(0.0, at_first, at_last, at)

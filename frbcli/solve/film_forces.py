@@ -121,6 +121,16 @@ def _scaled(films: Any, f: int, scale: float, d_x: float, d_y: float, v_x: float
 @overload(film_numbers, inline="always")
 def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
     if have_scales(work):
+        if isinstance(films, types.UniTuple):  # one call less per film solve: a tenth of the time of a tabulated film
+
+            def scaled(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
+                scale = work.scales[f]
+                f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_force(
+                    films[f], motion.d_x, motion.d_y, scale * motion.v_x, scale * motion.v_y, scale * motion.omega
+                )
+                return f_x, f_y, k_xx, k_xy, k_yx, k_yy, scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy
+
+            return scaled
         return lambda films, work, f, motion, g, s, iteration: _scaled(
             films, f, work.scales[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )

@@ -43,18 +43,24 @@ from frbcli.solve.stage import FORCE, OMEGA, X_0, U
 from frbcli.solve.state import OIL, OVERHEATED, RATE, RUNNING, SLIP, RotorData
 from frbcli.thermal.exchange import (
     BOOKS,
+    BY_FORMULA,
     CLEARANCE,
+    DRAG,
     ETA,
     FLOW,
+    FORMULA,
     HOT,
+    HOTTEST,
     POWER,
+    REFERENCE,
     SCALE,
     SHARE,
+    VISCOSITY,
+    HeatArrays,
     heat_step,
     viscosity_at,
     write_clearances,
 )
-from frbcli.thermal.model import HeatModel
 
 TOLD = 5  # columns of a film in the output: temperature, viscosity, clearance, power, flow; then all other nodes
 NARROWEST = 0.02  # of its reference: a clearance below this share has closed
@@ -81,17 +87,11 @@ class CellEnds(NamedTuple):
 
 
 class LumpedHeat(NamedTuple):
-    """model: see HeatModel; ends: of each film its EndFlow, or CellEnds; concentric (F,): Q eta / C^3 of a formula in
-    their place, where by_formula; viscosity (F,) Pa s, drag (F,) N m s: those that films were made for; state (BOOKS +
-    bodies + n,): what a run carries on: books, speeds of rotor and rings, temperatures; now (FILM_ROWS, F); gain
-    (n,)."""
+    """model: see HeatArrays; ends: of each film its EndFlow, or CellEnds; state (BOOKS + bodies + n,): what a run
+    carries on: books, speeds of rotor and rings, temperatures; now (FILM_ROWS, F); gain (n,)."""
 
-    model: HeatModel
+    model: HeatArrays
     ends: Any
-    concentric: Array
-    by_formula: bool
-    viscosity: Array
-    drag: Array
     state: Array
     now: Array
     gain: Array
@@ -147,25 +147,37 @@ def _carry_heat(  # type: ignore[no-untyped-def]
             drag,
         )  # fmt: skip
 
-    return lumped if have_heat(heat) else none
+    # Only what tabulated films need is handed on: a call with the arrays of all films takes as long as their heat does.
+    def tabulated(  # type: ignore[no-untyped-def]
+        heat, films, work, turning, terms, film, bodies, wet, contact_at, contact_stiffness, g, step, clearances, drag
+    ):
+        return _carry(
+            heat, 0, 0, turning, terms, film, bodies, 0, contact_at, contact_stiffness, g, step, clearances, drag,
+        )  # fmt: skip
+
+    if not have_heat(heat):
+        return none
+    return lumped if have_cells(films) else tabulated
 
 
 @overload(write_heat, inline="always")
 def _write_heat(heat, out_heat, first, last):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda heat, out_heat, first, last: None
-    return lambda heat, out_heat, first, last: _write(heat, out_heat, first, last)
+    return lambda heat, out_heat, first, last: _write(heat.state, heat.now, heat.gain, out_heat, first, last)
 
 
-@compiled(inline=True)
+@compiled()
 def _carry(
-    heat: LumpedHeat, films: Any, work: Any, turning: Array, terms: Indices, film: Array, bodies: Array, wet: Array,
+    heat: LumpedHeat, films: Any, work: Any, turning: Array, terms: Indices, film: Array, bodies: Array, wet: Any,
     contact_at: float, contact_stiffness: float, g: float, step: float, clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
     """carry_heat of LumpedHeat: P = K slip^2 + (e x F) omega/2 - F . e', see docs/heat.md."""
-    model, now, count = heat.model, heat.now, clearances.shape[0]
+    capacity, links, made, numbers, _ = heat.model
+    ends, state, now, gain = heat.ends, heat.state, heat.now, heat.gain
+    count = clearances.shape[0]
     for b in range(bodies.shape[0]):
-        heat.state[BOOKS + b] = bodies[b]
+        state[BOOKS + b] = bodies[b]
     for f in range(count):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         v_x, v_y, total = film[U, x], film[U, y], film[OMEGA, x]
@@ -177,41 +189,38 @@ def _carry(
         moved = e_x * film[FORCE, y] - e_y * film[FORCE, x]
         now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, terms[1]) * slip * slip
         now[POWER, f] += 0.5 * moved * total - film[FORCE, x] * v_x - film[FORCE, y] * v_y
-        if heat.by_formula:
-            now[FLOW, f] = heat.concentric[f] * c * c * c / now[ETA, f]
+        if numbers[BY_FORMULA] != 0.0:
+            now[FLOW, f] = made[FORMULA, f] * c * c * c / now[ETA, f]
         else:
             w_x, w_y = r_x + 0.5 * total * d_y, r_y - 0.5 * total * d_x
-            now[FLOW, f] = c * leaving(heat.ends, films, work, f, d_x, d_y, w_x, w_y, now[SCALE, f])
+            now[FLOW, f] = c * leaving(ends, films, work, f, d_x, d_y, w_x, w_y, now[SCALE, f])
         now[SHARE, f] = oil_share(films, work, f)
-    heat_step(model, now, step, heat.state[BOOKS + bodies.shape[0] :], heat.gain, heat.state)
+    heat_step(capacity, links, made, numbers, now, step, state[BOOKS + bodies.shape[0] :], gain, state)
     return int(_follow(heat, films, drag, clearances, wet, True))
 
 
 @compiled(inline=True)
 def _follow(
-    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Array, moved: bool
+    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Any, moved: bool
 ) -> int:
     """Viscosities, clearances and what follows from them <- those of the temperatures. moved: whether films keep the
     volume of their oil. Returns OVERHEATED, with the film in the books, for one too hot or closed, else RUNNING."""
-    model, now, count = heat.model, heat.now, clearances.shape[0]
-    bodies = heat.state.shape[0] - BOOKS - model.capacity.shape[0]
-    temperatures = heat.state[BOOKS + bodies :]
-    write_clearances(model, temperatures, heat.state[BOOKS : BOOKS + bodies], now[CLEARANCE])
+    capacity, _, made, numbers, growth = heat.model
+    ends, state, now, count = heat.ends, heat.state, heat.now, clearances.shape[0]
+    bodies = state.shape[0] - BOOKS - capacity.shape[0]
+    write_clearances(made, growth, bodies, state, now)
     for f in range(count):
-        temperature, c, reference = temperatures[f], now[CLEARANCE, f], model.reference[f]
-        if not (temperature < model.hottest and c > NARROWEST * reference):
-            heat.state[HOT] = 1.0 + f
+        temperature, c, reference = state[BOOKS + bodies + f], now[CLEARANCE, f], made[REFERENCE, f]
+        if not (temperature < numbers[HOTTEST] and c > NARROWEST * reference):
+            state[HOT] = 1.0 + f
             return OVERHEATED
-        thicker, narrower = viscosity_at(model.viscosity, temperature) / heat.viscosity[f], reference / c
-        now[ETA, f], now[SCALE, f] = thicker * heat.viscosity[f], thicker * narrower * narrower
-        drag[f] = heat.drag[f] * thicker * narrower
-        if moved and wet.shape[1] > f and clearances[f] != c:
-            for layer in (OIL, RATE):
-                for i in range(wet.shape[2]):
-                    for j in range(wet.shape[3]):
-                        wet[layer, f, i, j] *= clearances[f] / c
+        thicker, narrower = viscosity_at(numbers, temperature) / made[VISCOSITY, f], reference / c
+        now[ETA, f], now[SCALE, f] = thicker * made[VISCOSITY, f], thicker * narrower * narrower
+        drag[f] = made[DRAG, f] * thicker * narrower
+        if moved:
+            keep_oil(films, wet, f, clearances[f] / c)
         clearances[f] = c
-        set_scale(heat.ends, films, f, now, reference)
+        set_scale(ends, films, f, now, reference)
     return RUNNING
 
 
@@ -224,17 +233,17 @@ def follow_temperatures(
 
 
 @compiled()
-def _write(heat: LumpedHeat, out_heat: Array, first: int, last: int) -> None:
+def _write(state: Array, now: Array, gain: Array, out_heat: Array, first: int, last: int) -> None:
     """write_heat of LumpedHeat."""
-    now, n = heat.now, heat.gain.shape[0]
-    count, begin = now.shape[1], heat.state.shape[0] - n
+    n, count = gain.shape[0], now.shape[1]
+    begin = state.shape[0] - n
     for row in range(first, last):
         for f in range(count):
-            out_heat[row, TOLD * f] = heat.state[begin + f]
+            out_heat[row, TOLD * f] = state[begin + f]
             out_heat[row, TOLD * f + 1], out_heat[row, TOLD * f + 2] = now[ETA, f], now[CLEARANCE, f]
             out_heat[row, TOLD * f + 3], out_heat[row, TOLD * f + 4] = now[POWER, f], now[FLOW, f]
         for i in range(count, n):
-            out_heat[row, (TOLD - 1) * count + i] = heat.state[begin + i]
+            out_heat[row, (TOLD - 1) * count + i] = state[begin + i]
 
 
 def leaving(
@@ -247,6 +256,28 @@ def leaving(
 def oil_share(films: Any, work: Any, f: int) -> float:
     """Share of the gap of film f that is oil."""
     raise NotImplementedError
+
+
+def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
+    """The oil of film f and its rate, over the clearance, times `narrower`: the clearance before over that now."""
+    raise NotImplementedError
+
+
+@overload(keep_oil, inline="always")
+def _keep_oil(films, wet, f, narrower):  # type: ignore[no-untyped-def]
+    if not have_cells(films):
+        return lambda films, wet, f, narrower: None
+    return lambda films, wet, f, narrower: _scale_oil(wet, f, narrower)
+
+
+@compiled()
+def _scale_oil(wet: Array, f: int, factor: float) -> None:
+    """keep_oil of films on cells."""
+    if factor != 1.0:
+        for layer in (OIL, RATE):
+            for i in range(wet.shape[2]):
+                for j in range(wet.shape[3]):
+                    wet[layer, f, i, j] *= factor
 
 
 def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:

@@ -9,7 +9,7 @@ and the damping of the films allow.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,10 +19,10 @@ from frbcli.solve.dense import solve_dense
 from frbcli.solve.films import make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.micro_step import Told, films_follow, parabola
-from frbcli.solve.ring_spin import Rings, spin_up
+from frbcli.solve.ring_spin import Rings, make_rings, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, predict, start_stage
-from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, RotorData, State
+from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, Output, RotorData, State
 from frbcli.solve.step import (
     SMALLEST_STEP,
     begin_stages,
@@ -40,6 +40,30 @@ from frbcli.solve.tableau import Tableau
 
 GROWTH = 1.25  # of a macro step at most: it cannot be taken back
 SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
+
+
+class Exchange(NamedTuple):
+    """What rotor and films tell each other: responses (n, m + rings), see below; given (m + rings,) forces of the films
+    and torques on the rings; what the films are told; the rings; and a Scratch to ask the films for torques alone."""
+
+    responses: Array
+    given: Array
+    told: Told
+    rings: Rings
+    aside: Scratch
+
+
+def make_exchange(rotor: RotorData, scratch: Scratch) -> Exchange:
+    """For a rotor and what its stages work in."""
+    (m, n), rings = scratch.selection.shape, rotor.spins.shape[0]
+    unused = np.zeros((n, 1))
+    return Exchange(
+        _responses(rotor, scratch.selection),
+        np.zeros(m + rings),
+        Told(np.zeros(3), np.zeros((3, 2 * m + 2 * rings))),
+        make_rings(rings),
+        scratch._replace(at=np.zeros((STAGE_ROWS, n)), stage_v=unused, stage_a=unused),
+    )
 
 
 @compiled()
@@ -126,9 +150,8 @@ def _amend(responses: Array, compliance: Array, clearances: Array, given: Array,
 
 
 def advance_in_turn(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
-    out_v: Array, out_oil: Array,
-) -> tuple[int, int]:  # fmt: skip
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: Output
+) -> tuple[int, int]:
     """As march.advance, for rotor and films that are solved apart; the state comes from cosimulation.in_turn.
 
     control.longest_step is the longest macro step. state.past: (3, 1 + 6 films + 3 rings) at the last macro times:
@@ -137,14 +160,15 @@ def advance_in_turn(
     """
     stages = tableau.times.shape[0]
     scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
-    status, rows = _advance(rotor, films, tableau, control, state, scratch, work, budget, out_q, out_v, out_oil)
+    exchange = make_exchange(rotor, scratch)
+    status, rows = _advance(rotor, films, tableau, control, state, scratch, work, exchange, budget, output)
     return int(status), int(rows)
 
 
 @compiled()
 def _advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
-    budget: int, out_q: Array, out_v: Array, out_oil: Array,
+    exchange: Exchange, budget: int, output: Output,
 ) -> tuple[int, int]:  # fmt: skip
     """advance_in_turn with the arrays that it works in."""
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
@@ -152,20 +176,16 @@ def _advance(
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
     weights, moments, defect = tableau.stage, tableau.times, tableau.defect
     tolerance, stiffness = control.tolerance, control.contact_stiffness
-    n, m, stages, rings = q.shape[0], 2 * clearances.shape[0], moments.shape[0], spins.shape[0]
+    m, stages, rings = 2 * clearances.shape[0], moments.shape[0], spins.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
-    responses, given, lagrange, q_new = _responses(rotor, selection), np.zeros(m + rings), np.zeros(3), np.zeros(n)
-    told = Told(np.zeros(3), np.zeros((3, 2 * m + 2 * rings)))
-    torque = np.zeros(rings)
-    turning, unused = Rings(np.zeros(1 + rings), np.zeros(1 + rings), torque), np.zeros((n, 1))
-    aside = Scratch(
-        selection, products, loads, spread, compliance, np.zeros((STAGE_ROWS, n)), film, unused, unused
-    )
+    responses, given, told = exchange.responses, exchange.given, exchange.told
+    turning, aside = exchange.rings, exchange.aside
+    lagrange, q_new = np.zeros(3), np.zeros(q.shape[0])
     written, done = 0, 0
 
     while done < budget:
-        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
+        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, output.q.shape[0] - written)
         if step == 0.0:
             return status, written
         begin_stages(v, a, stage_v, stage_a)
@@ -206,10 +226,12 @@ def _advance(
             spin_up(films, work, rotor, 0, 0.0, control, aside, turning)
 
         before = written
-        written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
-        write_oil(films, work, out_oil, before, written)
+        written = write_outputs(
+            numbers, stage_v, control.output_step, step, t_new, q, q_new, output.q, output.v, written
+        )
+        write_oil(films, work, output.oil, before, written)
         move_on(q, v, a, q_new, stage_v, stage_a)
-        _remember(past, t_new, told.motions[2], film, torque, given)
+        _remember(past, t_new, told.motions[2], film, turning.torque, given)
         off = _amend(responses, compliance, clearances, given, a)
         done += 1
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)

@@ -21,7 +21,7 @@ from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
-from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, RotorData, State
+from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, Output, RotorData, State
 from frbcli.solve.step import (
     UNSOLVED,
     begin_past,
@@ -53,12 +53,24 @@ class Own(NamedTuple):
     rings: Rings
 
 
-def make_own(rotor: RotorData, stages: int) -> Own:
-    """Own for a rotor."""
+class Space(NamedTuple):
+    """All that this loop works in; work: of the films, see make_work. In kernels its parts are taken by their names: of
+    tuples of tuples that are unpacked, numba releases the arrays too early."""
+
+    scratch: Scratch
+    work: Any
+    own: Own
+
+
+def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: Any) -> Space:
+    """For a machine in a state, which its heat has changed."""
     n, m = rotor.mass.shape[0], 2 * rotor.clearances.shape[0]
-    return Own(
+    begin_heat(heat, films, rotor, state.wet)
+    own = Own(
         np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n), make_rings(rotor.spins.shape[0])
     )
+    scales = heat.now[SCALE] if isinstance(heat, LumpedHeat) else None
+    return Space(make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages, scales), own)
 
 
 @compiled()
@@ -73,50 +85,50 @@ def _largest_eccentricity(clearances: Array, selection: Array, q: Array) -> floa
     return largest
 
 
-def advance(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
-    out_v: Array, out_oil: Array, heat: Any = NO_HEAT, out_heat: Array | None = None,
-) -> tuple[int, int]:  # fmt: skip
-    """Advance the state until the output buffers are full, `budget` steps are done, or the run ends.
+@compiled(inline=True)
+def _smallest(clearances: Array) -> float:
+    least = math.inf
+    for f in range(clearances.shape[0]):
+        least = min(least, clearances[f])
+    return least
 
-    out_q, out_v: (rows, n) buffers for displacements and velocities at the output times; there must be two rows more
-    than one step can write; out_oil: (rows, films) for the oil fraction of films that keep theirs; heat: a kind of
-    heat.py, whose state moves on, too, and out_heat (rows, columns_of(heat)) for it. Returns (status, rows written).
-    The course of the steps does not depend on how often this is called.
+
+def advance(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: Output,
+    heat: Any = NO_HEAT,
+) -> tuple[int, int]:  # fmt: skip
+    """Advance the state until the output is full, `budget` steps are done, or the run ends.
+
+    The output must have two rows more than one step can write. heat: a kind of heat.py, whose state moves on, too.
+    Returns (status, rows written). The course of the steps does not depend on how often this is called.
     """
-    stages = tableau.times.shape[0]
-    scratch = make_scratch(rotor, state.numbers, stages)
-    work = make_work(films, state.wet, stages, heat.now[SCALE] if isinstance(heat, LumpedHeat) else None)
-    begin_heat(heat, films, rotor, state.wet)
-    status, rows = _advance(
-        rotor, films, tableau, control, state, scratch, work, make_own(rotor, stages), budget, out_q, out_v, out_oil,
-        heat, np.zeros((len(out_q), 0)) if out_heat is None else out_heat,
-    )  # fmt: skip
+    space = make_space(rotor, films, state, tableau.times.shape[0], heat)
+    status, rows = _advance(rotor, films, tableau, control, state, space, budget, output, heat)
     return int(status), int(rows)
 
 
 @compiled()
 def _advance(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
-    own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array, heat: Any, out_heat: Array,
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
+    output: Output, heat: Any,
 ) -> tuple[int, int]:  # fmt: skip
-    """advance with the arrays that it works in."""
-    # The parts of the tuples are taken out once: to pass a tuple on costs more than a stage does.
-    numbers, q, v, a, past_now = state.numbers, state.q, state.v, state.a, state.past
-    wet, flows = state.wet, state.flows
-    spins, turning, grids = rotor.spins, rotor.turning, work.grids
+    """advance with the arrays that it works in.
+
+    The parts of the tuples are taken out once, and the stages stand here as they are. In a function of their own, which
+    the compiler puts in again, the tuples' counts of references made runs with tabulated films 1.7 times as long.
+    """
+    scratch, work, own = space.scratch, space.work, space.own
+    numbers, q, v, a, past_now, wet, flows, errors = state
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
-    clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
-    weights, moments, defect, three = tableau.stage, tableau.times, tableau.defect, tableau.guess
-    tolerance, contact_at, contact_stiffness = (
-        control.tolerance, control.contact_eccentricity, control.contact_stiffness)
-    m, stages = 2 * clearances.shape[0], moments.shape[0]
-    smallest = clearances.min()
-    gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(contact_stiffness)
+    clearances, gyroscopic, turning = rotor.clearances, rotor.has_gyroscopic, rotor.turning
+    weights, moments, three, defect = tableau.stage, tableau.times, tableau.guess, tableau.defect
+    observed, tolerance, allowed = rotor.observed, control.tolerance, NEWTON_SHARE * control.tolerance
+    out_q, out_v, out_oil, out_heat = output
+    gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(control.contact_stiffness)
     selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
-    newton, past, q_new, rings = own
-    bodies, angles_now, _ = rings
-    written, done = 0, 0
+    newton, past, q_new, rings = own.newton, own.past, own.q_new, own.rings
+    bodies, angles_now, spins, grids = rings.bodies, rings.angles, rotor.spins, work.grids
+    m, stages, written, done = 2 * clearances.shape[0], moments.shape[0], 0, 0
 
     while done < budget:
         status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
@@ -147,14 +159,14 @@ def _advance(
                 share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, film, newton)
                 if left == math.inf:
                     break
-                left = left_over(films, work, left, moved, unsettled, NEWTON_SHARE * tolerance)
+                left = left_over(films, work, left, moved, unsettled, allowed)
                 if share == 1.0:
                     late = accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
-                    left = max(left, g * late / smallest)
+                    left = max(left, g * late / _smallest(clearances))
                     if spins.shape[0] > 0:
                         left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                         set_speeds(turning, bodies, angles_now, film, grids)
-                    if control.linearised or left < NEWTON_SHARE * tolerance:
+                    if control.linearised or left < allowed:
                         solved = True
                         break
             if not solved:
@@ -174,18 +186,16 @@ def _advance(
         written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
-        hot = carry_heat(heat, films, work, turning, rotor.torque_terms, film, bodies, wet, contact_at,
-                         contact_stiffness, g, step, clearances, rotor.drag)
+        hot = carry_heat(heat, films, work, turning, rotor.torque_terms, film, bodies, wet,
+                         control.contact_eccentricity, control.contact_stiffness, g, step, clearances, rotor.drag)
         write_heat(heat, out_heat, before, written)
         numbers[STEP_DONE] = step
         move_on(q, v, a, q_new, stage_v, stage_a)
         keep_past(past, past_now)
         done += 1
         largest = _largest_eccentricity(clearances, selection, q)
-        status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance, largest)
-        if status != RUNNING:
-            return status, written
-        if hot != RUNNING:
-            return hot, written
+        status = count_step(numbers, errors, control, t_new, step, speed, error * tolerance, largest)
+        if status != RUNNING or hot != RUNNING:
+            return status if status != RUNNING else hot, written
         choose_next(numbers, h, error, order, math.inf)
     return RUNNING, written

@@ -6,7 +6,7 @@ a step as they are seen: what a run records beside is not known inside of one.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.extending import overload
@@ -16,30 +16,31 @@ from frbcli.film.cells.side_flow import side_flow
 from frbcli.solve.cell_films import GRID_X, GRID_Y
 from frbcli.solve.element_films import LEFT
 from frbcli.solve.film_forces import drag_integral
-from frbcli.solve.films import have_cells, have_elements, make_work
-from frbcli.solve.heat import NO_HEAT
-from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.state import NOW, OUTPUTS, RUNNING, TIME, Array, Control, RotorData, State
+from frbcli.solve.films import have_cells, have_elements
+from frbcli.solve.state import NOW, OUTPUTS, RUNNING, TIME, Array, Control, Output, RotorData, State
 from frbcli.solve.tableau import Tableau
-from frbcli.solve.time_loop import Own, _advance, make_own
+from frbcli.solve.time_loop import Space, _advance, make_space
 
 DRAG, LEAVES, NOTES = range(3)  # rows that are noted of each film: drag_integral, and the oil that leaves it
 
 
+class Notes(NamedTuple):
+    """Of a run that records more: now (n + NOTES films,) the rotor's accelerations and what is noted of its films, at
+    the end of the last step, not a number before the first one; rows (rows, the same): at the output times; far_open
+    (films,): whether the end z = 1 of the sections of films on cells is open."""
+
+    now: Array
+    rows: Array
+    far_open: Array
+
+
 def advance_watched(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, out_q: Array,
-    out_v: Array, out_oil: Array, noted: Array, out_noted: Array, far_open: Array,
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: Output,
+    heat: Any, notes: Notes,
 ) -> tuple[int, int]:  # fmt: skip
-    """As advance of time_loop.py. noted (n + NOTES films,) the rotor's accelerations and what is noted of its films, at
-    the end of the last step, not a number before the first one; out_noted (rows, the same): at the output times;
-    far_open (films,): whether the end z = 1 of the sections of films on cells is open."""
-    stages = tableau.times.shape[0]
-    own = make_own(rotor, stages)
-    scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
-    status, rows = _advance_watched(
-        rotor, films, tableau, control, state, scratch, work, own, budget, out_q, out_v, out_oil, noted, out_noted,
-        NO_HEAT, np.zeros((len(out_q), 0)), far_open,
-    )  # fmt: skip
+    """As advance of time_loop.py, with notes."""
+    space = make_space(rotor, films, state, tableau.times.shape[0], heat)
+    status, rows = _advance_watched(rotor, films, tableau, control, state, space, budget, output, heat, notes)
     return int(status), int(rows)
 
 
@@ -79,26 +80,23 @@ def _note(
 
 @compiled()
 def _advance_watched(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
-    own: Own, budget: int, out_q: Array, out_v: Array, out_oil: Array, noted: Array, out_noted: Array, heat: Any,
-    out_heat: Array, far_open: Array,
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
+    output: Output, heat: Any, notes: Notes,
 ) -> tuple[int, int]:  # fmt: skip
     numbers, q, a, flows = state.numbers, state.q, state.a, state.flows
-    status, written, now = RUNNING, 0, np.empty_like(noted)
+    noted, status, written, now = notes.now, RUNNING, 0, np.empty_like(notes.now)
     for _ in range(budget):
         t, first = numbers[TIME], numbers[OUTPUTS] - written
-        status, rows = _advance(
-            rotor, films, tableau, control, state, scratch, work, own, 1, out_q[written:], out_v[written:],
-            out_oil[written:], heat, out_heat,
-        )  # fmt: skip
+        left = Output(output.q[written:], output.v[written:], output.oil[written:], output.heat[written:])
+        status, rows = _advance(rotor, films, tableau, control, state, space, 1, left, heat)
         step = numbers[TIME] - t
         if step > 0.0:
-            _note(rotor, films, work, q, a, flows, far_open, now)
+            _note(rotor, films, space.work, q, a, flows, notes.far_open, now)
             for row in range(written, written + rows):
                 share = min(max(((first + row) * control.output_step - t) / step, 0.0), 1.0)
                 for i in range(now.shape[0]):
                     before = noted[i] if noted[i] == noted[i] else now[i]
-                    out_noted[row, i] = before + share * (now[i] - before)
+                    notes.rows[row, i] = before + share * (now[i] - before)
             noted[:] = now
         written += rows
         if status != RUNNING or step == 0.0:

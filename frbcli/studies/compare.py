@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
 from frbcli.html import Tabular
 from frbcli.results.store import Run, check_output
+from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
 from frbcli.runs.run import earlier_run, is_interrupted, runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
@@ -32,7 +34,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TESTS = ("runup",)
-THERMALS = ("none", "lumped")
+NO_HEAT = "none"
+THERMALS = (NO_HEAT, "lumped")
 FINISHED, INTERRUPTED = "finished", "interrupted"
 LAST = 0.02  # share of a run
 UNTIL = ("onset", "contact")  # afterwards two runs differ in phase, whatever their films
@@ -93,7 +96,8 @@ class VariantResult:
 
     @property
     def loss(self) -> float:
-        """Mean power in W that all films took in the last LAST of the run, of one bearing each; NaN without heat."""
+        """Mean power in W that all films took in the last LAST of the run, of one bearing each; NaN where the run
+        does not record it."""
         powers = [name for name in self.run.signals if name.startswith("power")]
         return float(sum(np.mean(_last(self.run, name)) for name in powers)) if powers else np.nan
 
@@ -258,11 +262,14 @@ def _unknown(option: str, names: Sequence[str], known: Sequence[str]) -> list[Fa
 
 
 def _with_models(case: Case, variant: Variant) -> Case:
+    signals = dict.fromkeys((*case.output.signals, POWER))
     settings = (
         f"film.theory={variant.theory}",
         f"film.cavitation={variant.cavitation}",
         f"film.coupling={variant.coupling}",
         *([f"thermal.model={variant.thermal}"] if variant.thermal else []),
+        # the loss of a run without heat is recorded by choice alone
+        *([f"output.signals=[{', '.join(map(json.dumps, signals))}]"] if variant.thermal == NO_HEAT else []),
     )
     return load_case_text(case.source_text, settings, name=case.name)
 

@@ -9,6 +9,7 @@ residuals; where they scatter more than the measurement does, from that.
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -105,9 +106,7 @@ def fit(
     """
     from scipy.optimize import least_squares  # scipy.optimize takes longer to import than a plan to make
 
-    numbers = [_number(case, key, (bounds or {}).get(key)) for key in keys]
-    if not numbers:
-        raise InputError(case.name, (Fault("--vary", "", None, "names no number.", "Write e.g. oil.viscosity."),))
+    numbers = _numbers(case, keys, bounds or {})
     with TemporaryDirectory(prefix="frb-fit-") as folder:
         trial = _Trial(case, measurement, numbers, signal, Path(folder) / "run.h5", observe)
         start = np.zeros(len(numbers))  # logarithms of the numbers over those at first
@@ -145,8 +144,9 @@ class _Trial:
         speeds = ridge_speeds(measurement)
         low, high = sorted((abs(case.speed.start), abs(case.speed.end)))
         self._speeds = speeds[(speeds >= low) & (speeds <= high)]
-        if len(self._speeds) < 2 * len(numbers):
-            problem = f"has {len(self._speeds)} speeds in common with the case, which are too few."
+        common = len(np.unique(self._speeds))  # one at a constant speed
+        if common < 2 * len(numbers):
+            problem = f"has {common} speeds in common with the case, which are too few."
             remedy = "Run the case up as it was measured."
             raise InputError(case.name, (Fault("--measured", "", None, problem, remedy),))
         length = next(iter(measurement.references.values()))
@@ -257,9 +257,8 @@ def _scatter(measured: Ridges, run: Run) -> list[Scatter]:
         rough = float(np.sqrt(np.mean(second**2) / SECOND)) if second.size else FIRST_SHARE * _largest(group)
         found.append(max(rough, LEAST_SHARE * _largest(group)))
     grown = _groups(measured)[-1]
-    if len(grown) > 1:
-        speed = measured.speed_Hz[_compared(measured)[1]]
-        found[-1] = np.hypot(found[-1], reach * np.gradient(grown, speed))
+    earlier = np.interp(measured.speed_Hz[_compared(measured)[1]] - reach, measured.speed_Hz, measured.whirl)
+    found[-1] = np.hypot(found[-1], grown - earlier)
     return [*found, reach]
 
 
@@ -267,17 +266,36 @@ def _largest(group: Values) -> float:
     return float(np.nanmax(np.abs(group), initial=1e-12))
 
 
+def _numbers(case: Case, keys: Sequence[str], bounds: Mapping[str, tuple[float, float]]) -> list[Fitted]:
+    """The numbers at first; raises InputError as `fit` does."""
+    if not keys:
+        raise InputError(case.name, (Fault("--vary", "", None, "names no number.", "Write e.g. oil.viscosity."),))
+    faults = [
+        *(Fault("--vary", key, None, "is named more than once.", "Name it once.")
+          for key in dict.fromkeys(keys) if keys.count(key) > 1),
+        *(Fault("--bounds", key, None, "is not varied.", f"Add it to --vary {','.join(keys)}, or leave its bounds out.")
+          for key in bounds if key not in keys),
+    ]  # fmt: skip
+    if faults:
+        raise InputError(case.name, tuple(faults))
+    return [_number(case, key, bounds.get(key)) for key in keys]
+
+
 def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
     known = {value.key: value for value in listed(case)}
     if key not in known:
-        near = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
+        alike = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
+        near = alike or difflib.get_close_matches(key, known, cutoff=0.8)
         remedy = f"Did you mean {', '.join(near[:4])}?" if near else "`frb check CASE --all` lists the keys."
         raise InputError(case.name, (Fault("--vary", key, None, "is no number of the case.", remedy),))
     value = known[key].value
     if not isinstance(value, float) or not value > 0.0:
         raise InputError(case.name, (Fault("--vary", key, None, "is not a number above zero.", "Vary others."),))
     low, high = bounds or (value / SPAN, value * SPAN)
-    if not 0.0 < low <= value <= high or low == high:
+    if not low < high:
+        raise InputError(case.name, (Fault("--bounds", key, None, "has a lower bound that is not below the upper one.",
+                                           f"Write --bounds {key}=LOW,HIGH."),))  # fmt: skip
+    if not 0.0 < low <= value <= high:
         problem = f"starts at {value:.6g} {known[key].unit}, which is not between its bounds."
         remedy = "Widen them, or change the case by --set."
         raise InputError(case.name, (Fault("--bounds", key, None, problem, remedy),))

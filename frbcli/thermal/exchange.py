@@ -1,13 +1,26 @@
-"""The balance of heat in a time step, compiled; rates and clearances as in model.py, which tests hold them to."""
+"""The balance of heat in a time step, compiled; rates and clearances as in model.py, which tests hold them to.
+
+The kernels are given arrays, not records: to take a record of many arrays apart costs more than a balance does.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.thermal.model import AT_ZERO, SLOPE, HeatModel
 
-ETA_0, A, C = range(3)  # of Vogel's law (3.12)
+# Rows of the links: two nodes, conductance at the reference clearance W/K, the film whose clearance divides it or -1.
+FIRST, SECOND, CONDUCTANCE, OF_FILM = range(4)
+# Rows of the films: temperature of the supply K, film that feeds it or -1, clearance at no temperature and speed m; as
+# they were made: clearance m, viscosity Pa s, Couette's resistance N m s; Q eta / C^3 of the formula m Pa s / s.
+SUPPLY, INLET, BASE, REFERENCE, VISCOSITY, DRAG, FORMULA = range(7)
+# Numbers: volumetric heat capacity of the oil at 0 K and its slope, m, hottest film K, Vogel's law (3.12); 1 where the
+# side flow is that of the formula; 1 where films are in balance at each instant.
+HEAT_AT_ZERO, HEAT_SLOPE, MIXING, HOTTEST, ETA_0, A, C, BY_FORMULA, BALANCED = range(9)
 # What a run has gone through so far, in J: dissipated by the films, carried away by the oil, taken by nodes of given
 # temperature, kept by the films; and 1 + the film that became too hot, 0 if none.
 DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
@@ -15,103 +28,169 @@ DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
 # table, share of its gap that is oil.
 POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, FILM_ROWS = range(7)
 LONGEST = 0.2  # of a time constant: explicit steps between nodes
+ITERATIONS, FURTHEST, SETTLED = 30, 30.0, 1e-9  # of a film in balance: the steps of Newton's method and its end, K
+
+
+class HeatArrays(NamedTuple):
+    """A HeatModel of n nodes, the first F of them films: capacity (n,) J/K; links (4, l), films (7, F), numbers (9,)
+    with the rows above; growth (F, bodies + n) m s^2 and m/K of the clearances, see write_clearances."""
+
+    capacity: Array
+    links: Array
+    films: Array
+    numbers: Array
+    growth: Array
+
+
+def arrays_of(model: HeatModel, viscosity: Array, drag: Array, formula: Array, by_formula: bool) -> HeatArrays:
+    """The model as the kernels take it. viscosity (F,) Pa s, drag (F,) N m s: of the films as they were made; formula
+    (F,): Q eta / C^3 of a concentric film, the side flow where by_formula."""
+    links = np.vstack([model.links.T, model.conductance, model.of_film]).astype(np.float64)
+    made = (model.reference, viscosity, drag, formula)
+    films = np.vstack([model.supply, model.inlet, model.clearance, *made]).astype(np.float64)
+    oil = (model.oil_heat[AT_ZERO], model.oil_heat[SLOPE])
+    numbers = np.array([*oil, model.mixing, model.hottest, *model.viscosity, float(by_formula), float(model.balanced)])
+    return HeatArrays(model.capacity, links, films, numbers, np.hstack([model.growth, model.expansion]))
 
 
 @compiled(inline=True)
-def viscosity_at(law: Array, temperature: float) -> float:
+def viscosity_at(numbers: Array, temperature: float) -> float:
     """Vogel's law (3.12), Pa s."""
-    return float(law[ETA_0]) * math.exp(float(law[A]) / (temperature + float(law[C])))
+    return float(numbers[ETA_0]) * math.exp(float(numbers[A]) / (temperature + float(numbers[C])))
 
 
 @compiled(inline=True)
-def write_clearances(model: HeatModel, temperatures: Array, speeds: Array, clearances: Array) -> None:
-    """clearances (F,) <- (4.24) with the temperatures (n,) in K, and the growth of bodies with the speeds in rad/s."""
-    for f in range(clearances.shape[0]):
-        total = model.clearance[f]
-        for i in range(temperatures.shape[0]):
-            total += model.expansion[f, i] * temperatures[i]
-        for b in range(speeds.shape[0]):
-            total += model.growth[f, b] * speeds[b] * speeds[b]
-        clearances[f] = total
+def write_clearances(films: Array, growth: Array, bodies: int, state: Array, now: Array) -> None:
+    """Clearances of now (FILM_ROWS, F) <- (4.24) with temperatures in K, and the growth of bodies with their speeds in
+    rad/s. state: after the books it has the speeds of `bodies` bodies, then the temperatures."""
+    for f in range(films.shape[1]):
+        total = films[BASE, f]
+        for i in range(growth.shape[1]):
+            at = state[BOOKS + i]
+            total += growth[f, i] * (at * at if i < bodies else at)
+        now[CLEARANCE, f] = total
 
 
 @compiled(inline=True)
 def write_rates(
-    model: HeatModel, temperatures: Array, power: Array, flow: Array, clearances: Array, gain: Array
+    capacity: Array, links: Array, films: Array, numbers: Array, now: Array, temperatures: Array, gain: Array
 ) -> tuple[float, float]:
-    """gain (n,) <- W that each node gains. power, flow: (F,) W and m^3/s; clearances (F,) m.
+    """gain (n,) <- W that each node gains from what the films do now (FILM_ROWS, F).
 
     Returns what the oil carries away and what nodes of given temperature take, W.
     """
-    films, carried, given = power.shape[0], 0.0, 0.0
+    count, carried, given, mixing = films.shape[1], 0.0, 0.0, numbers[MIXING]
     for i in range(gain.shape[0]):
-        gain[i] = power[i] if i < films else 0.0
-    for f in range(films):
-        source = model.inlet[f]
-        at = temperatures[source] if source >= 0 else model.supply[f]
+        gain[i] = now[POWER, i] if i < count else 0.0
+    for f in range(count):
+        source = int(films[INLET, f])
+        at = temperatures[source] if source >= 0 else films[SUPPLY, f]
         rise = temperatures[f] - at
-        heat = (model.oil_heat[AT_ZERO] + model.oil_heat[SLOPE] * (at + 0.5 * rise / model.mixing)) * flow[f]
-        gain[f] -= heat * rise / model.mixing
-        carried += heat * rise / model.mixing
+        heat = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * (at + 0.5 * rise / mixing)) * now[FLOW, f]
+        gain[f] -= heat * rise / mixing
+        carried += heat * rise / mixing
         if source >= 0:  # this oil has come through the film that feeds this one
-            warmer = temperatures[source] - model.supply[source]
+            warmer = temperatures[source] - films[SUPPLY, source]
             gain[source] -= heat * warmer
             carried += heat * warmer
-    for k in range(model.links.shape[0]):
-        i, j = model.links[k, 0], model.links[k, 1]
-        film = model.of_film[k]
-        narrowed = model.reference[film] / clearances[film] if film >= 0 else 1.0
-        passed = model.conductance[k] * narrowed * (temperatures[i] - temperatures[j])
+    for k in range(links.shape[1]):
+        i, j, film = int(links[FIRST, k]), int(links[SECOND, k]), int(links[OF_FILM, k])
+        passed = links[CONDUCTANCE, k] * (temperatures[i] - temperatures[j])
+        if film >= 0:
+            passed *= films[REFERENCE, film] / now[CLEARANCE, film]
         gain[i] -= passed
         gain[j] += passed
     for i in range(gain.shape[0]):
-        if model.capacity[i] == math.inf:
+        if capacity[i] == math.inf:
             given += gain[i]
     return carried, given
 
 
 @compiled(inline=True)
-def fastest(model: HeatModel, now: Array) -> float:
-    """An upper bound of the rates at which nodes follow each other, 1/s. now: (FILM_ROWS, F)."""
-    largest, films = 0.0, now.shape[1]
-    for i in range(model.capacity.shape[0]):
-        total = 0.0
-        for k in range(model.links.shape[0]):
-            if model.links[k, 0] == i or model.links[k, 1] == i:
-                f = model.of_film[k]
-                total += model.conductance[k] * (model.reference[f] / now[CLEARANCE, f] if f >= 0 else 1.0)
-        share = 1.0
-        if i < films:
-            total += (model.oil_heat[AT_ZERO] + model.oil_heat[SLOPE] * model.hottest) * now[FLOW, i] / model.mixing
-            share = held_share(model, now, i)
-        largest = max(largest, total / (share * model.capacity[i]))
+def fastest(capacity: Array, links: Array, films: Array, numbers: Array, now: Array, total: Array) -> float:
+    """An upper bound of the rates at which nodes follow each other, 1/s. now: (FILM_ROWS, F); total: (n,) scratch."""
+    largest, count = 0.0, films.shape[1]
+    through = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * numbers[HOTTEST]) / numbers[MIXING]
+    for i in range(total.shape[0]):
+        total[i] = through * now[FLOW, i] if i < count else 0.0
+    for k in range(links.shape[1]):
+        film, passed = int(links[OF_FILM, k]), links[CONDUCTANCE, k]
+        if film >= 0:
+            passed *= films[REFERENCE, film] / now[CLEARANCE, film]
+        total[int(links[FIRST, k])] += passed
+        total[int(links[SECOND, k])] += passed
+    for i in range(count if numbers[BALANCED] != 0.0 else 0, total.shape[0]):
+        share = held_share(films, now, i) if i < count else 1.0
+        largest = max(largest, total[i] / (share * capacity[i]))
     return largest
 
 
 @compiled(inline=True)
-def held_share(model: HeatModel, now: Array, f: int) -> float:
+def held_share(films: Array, now: Array, f: int) -> float:
     """Oil in a film over that of its full gap at the reference clearance."""
-    return float(max(now[SHARE, f], 1e-3) * now[CLEARANCE, f] / model.reference[f])
+    return float(max(now[SHARE, f], 1e-3) * now[CLEARANCE, f] / films[REFERENCE, f])
+
+
+@compiled()
+def balance_films(links: Array, films: Array, numbers: Array, now: Array, temperatures: Array) -> None:
+    """The films of temperatures (n,) <- those at which they gain nothing from what they do now (FILM_ROWS, F), by
+    Newton's method, with the power proportional to the viscosity and the flow to its inverse."""
+    for f in range(films.shape[1] - 1, -1, -1):  # a film that feeds another one comes behind it
+        source, t = int(films[INLET, f]), temperatures[f]
+        at = temperatures[source] if source >= 0 else films[SUPPLY, f]
+        held = given = 0.0  # W/K to all that keeps its temperature here, and W from it
+        for k in range(links.shape[1]):
+            i, j, film = int(links[FIRST, k]), int(links[SECOND, k]), int(links[OF_FILM, k])
+            if f in (i, j):
+                passed = links[CONDUCTANCE, k]
+                if film >= 0:
+                    passed *= films[REFERENCE, film] / now[CLEARANCE, film]
+                held += passed
+                given += passed * temperatures[i + j - f]
+        for i in range(films.shape[1]):
+            if int(films[INLET, i]) == f:  # oil that it hands on
+                passed = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * films[SUPPLY, f]) * now[FLOW, i]
+                held += passed
+                given += passed * films[SUPPLY, f]
+        for _ in range(ITERATIONS):
+            rise, below = (t - at) / numbers[MIXING], t + numbers[C]
+            thicker = viscosity_at(numbers, t) / now[ETA, f]
+            flow, slope = now[FLOW, f] / thicker, -numbers[A] / (below * below)  # slope: of the logarithm of thicker
+            heat = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * (at + 0.5 * rise)) * flow
+            left = now[POWER, f] * thicker - heat * rise - held * t + given
+            by_t = (now[POWER, f] * thicker + heat * rise) * slope - held
+            by_t -= (heat + 0.5 * numbers[HEAT_SLOPE] * flow * rise) / numbers[MIXING]
+            change = FURTHEST if by_t >= 0.0 else min(max(-left / by_t, -FURTHEST), FURTHEST)
+            t = min(t + change, numbers[HOTTEST])
+            if abs(change) < SETTLED or t == numbers[HOTTEST]:
+                break
+        temperatures[f] = t
 
 
 @compiled(inline=True)
-def heat_step(model: HeatModel, now: Array, step: float, temperatures: Array, gain: Array, books: Array) -> None:
+def heat_step(
+    capacity: Array, links: Array, films: Array, numbers: Array, now: Array, step: float, temperatures: Array,
+    gain: Array, books: Array,
+) -> None:  # fmt: skip
     """temperatures (n,) <- after a step in s in which the films dissipate and let out what `now` says; books (BOOKS,)
     add up where the heat goes. gain: (n,) scratch.
 
     Explicit steps, a share of the shortest time constant each: what one node loses is what others gain, to round-off.
     """
-    films = now.shape[1]
-    count = 1 + int(step * fastest(model, now) / LONGEST)
+    balanced = numbers[BALANCED] != 0.0
+    if balanced:
+        balance_films(links, films, numbers, now, temperatures)
+    count = 1 + int(step * fastest(capacity, links, films, numbers, now, gain) / LONGEST)
     part = step / count
     for _ in range(count):
-        carried, given = write_rates(model, temperatures, now[POWER], now[FLOW], now[CLEARANCE], gain)
+        carried, given = write_rates(capacity, links, films, numbers, now, temperatures, gain)
         books[CARRIED] += part * carried
         books[GIVEN] += part * given
         for i in range(temperatures.shape[0]):
-            if i < films:
+            if i < films.shape[1]:
                 books[DISSIPATED] += part * now[POWER, i]
-                books[IN_FILMS] += part * gain[i]
-                temperatures[i] += part * gain[i] / (held_share(model, now, i) * model.capacity[i])
-            elif model.capacity[i] != math.inf:
-                temperatures[i] += part * gain[i] / model.capacity[i]
+                if not balanced:
+                    books[IN_FILMS] += part * gain[i]
+                    temperatures[i] += part * gain[i] / (held_share(films, now, i) * capacity[i])
+            elif capacity[i] != math.inf:
+                temperatures[i] += part * gain[i] / capacity[i]

@@ -28,7 +28,7 @@ class HeatModel(NamedTuple):
     divides by, -1: none; supply (F,) K; inlet (F,) the film that feeds this one, or FROM_SUPPLY; mixing: m; oil_heat
     (2,): AT_ZERO, SLOPE; viscosity (3,): eta_0, A, C of Vogel's law; clearance (F,) m at no temperature and speed,
     expansion (F, n) m/K and growth (F, bodies) m s^2 by the squares of the speeds of rotor and rings, see
-    clearances_at; hottest: K."""
+    clearances_at; hottest: K; balanced: whether films are in balance at each instant of a run."""
 
     capacity: Array
     links: NDArray[np.int64]
@@ -44,6 +44,7 @@ class HeatModel(NamedTuple):
     expansion: Array
     growth: Array
     hottest: float
+    balanced: bool = False
 
 
 def clearances_at(model: HeatModel, temperatures: Array, speeds: Array) -> Array:

@@ -9,7 +9,7 @@ import itertools
 from pathlib import Path
 
 from frbcli.case.load import load_case
-from validation.chapter6 import RunUp, at_rest, eccentricity, held, largest_pressure_bar, run_up
+from validation.chapter6 import RunUp, at_rest, eccentricity, held, largest_pressure_bar, run_up, slow_onset
 from validation.measured import Measured, listed, number, rises
 from validation.measures import eccentricity_at_1s, threshold_Hz
 
@@ -19,6 +19,7 @@ PENALTY, TWO_PHASE = "film.cavitation=penalty", "film.cavitation=two-phase"
 MODELS = {"penalty": PENALTY, "two-phase": TWO_PHASE}
 BATH = "bearing.ends=oil-bath"
 TWO_BAR = "bearing.supply.pressure=2 bar"
+SOFT = "rotor.shaft_stiffness=1000 N/mm"
 PUBLISHED = "film.two-phase.form=published"
 STEEPNESSES = (0.9, 0.99, 0.999)
 SAME = 0.01  # relative difference of thresholds that are called the same
@@ -170,15 +171,22 @@ def _circumferential_order(circumferential: dict[str, list[RunUp]]) -> Measured:
 
 
 def _stiffness(folder: Path, axial: dict[str, list[RunUp]]) -> dict[str, Measured]:
-    soft = {m: run_up(folder, AXIAL, 5, model, "rotor.shaft_stiffness=1000 N/mm") for m, model in MODELS.items()}
+    soft = {m: run_up(folder, AXIAL, 5, model, SOFT) for m, model in MODELS.items()}
     rigid = {m: run_up(folder, RIGID_AXIAL, 10, model) for m, model in MODELS.items()}
     onsets = {m: [soft[m].onset_s, axial[m][0].onset_s, rigid[m].onset_s] for m in MODELS}
     gaps = [abs(a - b) for a, b in zip(*onsets.values(), strict=True)]
+    slow = [
+        [slow_onset(folder, name, *range_Hz, model, *settings) for model in MODELS.values()]
+        for name, range_Hz, settings in ((AXIAL, (105.0, 145.0), (SOFT,)), (RIGID_AXIAL, (205.0, 250.0), ()))
+    ]
+    apart = [abs(a / b - 1.0) for a, b in slow]
     text = "; ".join(f"{model}: onset {listed(onsets[model], '.2f')} s" for model in MODELS)
     return {
         "stiffness-order-transient": Measured(text, holds=all(rises(each) for each in onsets.values())),
         "stiffness-difference": Measured(
-            f"onsets apart by {gaps[0]:.2f} s with the soft shaft, {gaps[2]:.2f} s rigid", holds=gaps[0] < gaps[2]
+            f"onsets apart by {gaps[0]:.2f} s with the soft shaft, {gaps[2]:.2f} s rigid; in a ramp of 5 Hz/s from "
+            f"rest at {listed(slow[0], '.1f')} Hz and {listed(slow[1], '.1f')} Hz",
+            holds=gaps[0] < gaps[2] and apart[0] < apart[1],
         ),
     }
 

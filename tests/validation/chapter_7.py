@@ -2,7 +2,8 @@
 
     PYTHONPATH=.:tests python -m validation.chapter_7 FOLDER [NAME ...]
 
-runs the studies named, or all, and prints their rows; a run that FOLDER holds is taken.
+runs the studies named, or all, and prints their rows; a run that FOLDER holds is taken. NAME@1e-3 is the study with
+that target in place of the one of its case.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ from frbcli.scene.films import film_places
 
 HALF = ("film.cavitation=half-sommerfeld",)
 TWO_PHASE = ("film.cavitation=two-phase", "film.two-phase.steepness=0.9")
-PENALTY = ("film.cavitation=penalty", "film.penalty.pressure=dimensionless")
+DIMENSIONLESS = "film.penalty.pressure=dimensionless"
+PENALTY = ("film.cavitation=penalty", DIMENSIONLESS)
 SIDES = ("inner", "outer")
 
 
@@ -52,7 +54,10 @@ STUDIES: dict[str, tuple[str, tuple[str, ...]]] = {
     "tp90": ("floating-ring", TWO_PHASE),
     "tp": ("floating-ring", (*TWO_PHASE, "film.two-phase.steepness=0.95")),
     "table": ("floating-ring-table-7-1", HALF),
+    "tpinner": ("floating-ring", (*TWO_PHASE, "bearing.outer.cavitation=penalty", DIMENSIONLESS)),
+    "tpouter": ("floating-ring", (*TWO_PHASE, "bearing.inner.cavitation=penalty", DIMENSIONLESS)),
     "down": ("floating-ring", (*PENALTY, *gap("90 um"), *SLOWLY)),
+    "down-hs": ("floating-ring", (*HALF, *gap("90 um"), *SLOWLY)),
     "pen45": ("floating-ring", (*PENALTY, *gap("45 um"))),
     "pen40": ("floating-ring", (*PENALTY, *gap("40 um"))),
     "tp45": ("floating-ring", (*TWO_PHASE, *gap("45 um"))),
@@ -94,14 +99,15 @@ class Row:
 
 def case_of(name: str) -> Case:
     """The case of a study."""
-    shipped, settings = STUDIES[name]
-    return load_case(shipped, settings)
+    study, _, target = name.partition("@")
+    shipped, settings = STUDIES[study]
+    return load_case(shipped, (*settings, *((f"accuracy.target={target}",) if target else ())))
 
 
 def run_of(folder: Path, name: str) -> Run:
     """The run of a study, from `folder` or into it."""
     path, case = folder / f"{name}.h5", case_of(name)
-    run = read_run(path) if path.exists() else (rundown if name == "down" else runup)(case, path)
+    run = read_run(path) if path.exists() else (rundown if name.startswith("down") else runup)(case, path)
     lengths = {joined("clearance_m", place.name): place.geometry.clearance for place in film_places(case)}
     return replace(run, references=run.references | lengths)
 

@@ -35,9 +35,8 @@ again (some minutes); `tests/test_validation.py` checks the most important rows.
 half-Sommerfeld films are of the default accuracy, run-ups with the penalty and the two-phase model of a target of 3e-3.
 [cases](cases.md) lists the commands for every study of chapter 6.
 
-Rows on the two-phase model were measured with the oil carried upwind on cells at rest, which diffuses it. The present
-plan lets the cells of plain gaps turn ([theory](theory.md), "A grid that turns"), and the onsets of starved films may
-differ from these rows: that of `jeffcott-two-phase` is at 4.59 s in place of 4.76 s.
+Penalty films without openings are tabulated; cells of two-phase films in plain gaps turn with half the rotor speed
+([theory](theory.md), "A grid that turns"). An onset is that of a whirl of about half the rotor speed, below 0.65 of it.
 
 A row *agrees* if its deviation is within the rounding or the wording of the source, else it *differs*, and the reason
 is given below the table.

@@ -124,6 +124,20 @@ def _slope_table(radius_to_width: float, short: bool) -> tuple[Array, Array]:
     return table + rest * parabola, ring
 
 
+@compiled(fastmath={"reassoc", "contract"})
+def _leaving(
+    table: Array, ring: Array, cell: int, a: float, eccentricity: float, w_r: float, w_t: float, sigma: float
+) -> float:
+    """Integral of max(H^3 dP/dz, 0) over the turn, at a share `a` of the way from a cell of the table to the next."""
+    total = 0.0
+    for i in range(ring.shape[1]):
+        h = 1.0 + eccentricity * ring[COSINE, i]
+        even = w_r * ((1.0 - a) * table[cell, 0, i] + a * table[cell + 1, 0, i]) + sigma * h * h * h
+        odd = w_t * ((1.0 - a) * table[cell, 1, i] + a * table[cell + 1, 1, i])
+        total += ring[WEIGHT, i] * (max(even + odd, 0.0) + max(even - odd, 0.0))
+    return total
+
+
 @compiled()
 def table_end_flow(flow: TableEndFlow, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
     """Q over the clearance, m^2/s, of a film that turns with the line of centres.
@@ -137,13 +151,7 @@ def table_end_flow(flow: TableEndFlow, d_x: float, d_y: float, w_x: float, w_y: 
     w_r, w_t, sigma = c * w_x + s * w_y, c * w_y - s * w_x, flow.sigma / scale
     x = -math.log(1.0 - eccentricity) / DEPTH_STEP
     cell = min(int(x), flow.table.shape[0] - 2)
-    a, total = x - cell, 0.0
-    for i in range(flow.ring.shape[1]):
-        h = 1.0 + eccentricity * flow.ring[COSINE, i]
-        even = w_r * ((1.0 - a) * flow.table[cell, 0, i] + a * flow.table[cell + 1, 0, i]) + sigma * h * h * h
-        odd = w_t * ((1.0 - a) * flow.table[cell, 1, i] + a * flow.table[cell + 1, 1, i])
-        total += flow.ring[WEIGHT, i] * (max(even + odd, 0.0) + max(even - odd, 0.0))
-    return flow.unit * total
+    return flow.unit * _leaving(flow.table, flow.ring, cell, x - cell, eccentricity, w_r, w_t, sigma)
 
 
 @compiled()
