@@ -38,6 +38,7 @@ REFITS = 4  # of a fold with more harmonics
 # Of one film, of several: what the harmonics left out may have of the clearance, and unknowns up to which harmonics are
 # added for the trivial multiplier alone.
 TAIL, MOST_UNKNOWNS = (1e-7, 1e-6), (1100, 450)
+MOST_AT_FOLD = (2400, 450)  # the same at a fold, beside which a film may be nearly at rest for a moment
 SPARE = 0.1  # of it: what the last harmonics have where there are too many
 NARROWER = 0.6  # share of the smallest gap that one step may leave
 LARGEST = 0.9998  # eccentricity beyond which no cycle is followed
@@ -77,9 +78,11 @@ AT_REST = "It ends at rest, in another Hopf point."
 
 
 class Follower:
-    """One branch while it is followed; omega: as in Balance; free: whether it is a whirl, which may shrink to rest."""
+    """One branch while it is followed; omega: as in Balance; free: whether it is a whirl, which may shrink to rest;
+    most_at_fold: see MOST_AT_FOLD."""
 
     free = True
+    most_at_fold = MOST_AT_FOLD
 
     def __init__(
         self, machine: Machine, slowest: float, fastest: float, asked: Sequence[float] = (), omega: float | None = None
@@ -93,7 +96,7 @@ class Follower:
         """A point of the branch with all that is told of it."""
         found = self.multipliers(place)
         while found.defect > TRIVIAL:
-            finer = self.with_more(place)
+            finer = self.with_more(place, self.most_at_fold if kind == FOLD else MOST_UNKNOWNS)
             if finer is None:
                 break
             place, found = finer, self.multipliers(finer)
@@ -135,11 +138,11 @@ class Follower:
         """The unknowns y with the speed of the rotor at their end."""
         return y if self.omega is None else np.append(y[:-1], self.omega / self.machine.pace)
 
-    def with_more(self, place: Place) -> Place | None:
-        """The place with half as many harmonics more, None if those are too many."""
+    def with_more(self, place: Place, most: tuple[int, int]) -> Place | None:
+        """The place with half as many harmonics more, None if those are too many. most: see MOST_UNKNOWNS."""
         c, harmonics = self.machine.size, (len(place.y) - 2) // self.machine.size // 2
         more = resized(place, c, harmonics + harmonics // 2)
-        if len(more.y) > MOST_UNKNOWNS[self.machine.film_count > 1]:
+        if len(more.y) > most[self.machine.film_count > 1]:
             return None
         found = corrected(self.equations(more), more.y, more.tangent)
         return None if found is None else oriented(found, more.tangent)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import unpacked
+from frbcli.cycles.balance import loads_along, unpacked
 from frbcli.cycles.linearised import StateSpace
 from frbcli.cycles.machine import Machine, film_loads
 
@@ -24,6 +24,7 @@ NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
 FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, MOST_INTERVALS = 48, 4, 768
 TRIVIAL = 1e-6  # error of the trivial multiplier from which on intervals are halved
 NEUTRAL = 1e-7  # beyond 1: a multiplier that grows
+DOUBLE = 0.01  # distance of a second multiplier from 1 below which both are told apart by the motion
 
 
 @dataclass(frozen=True)
@@ -53,10 +54,15 @@ def multipliers(machine: Machine, space: StateSpace, y: Array) -> Multipliers:
     """Those of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right."""
     harmonics = (len(y) - 2) // machine.size // 2
     count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
-    found = _sorted(monodromy(machine, space, y, count))
+
+    def at(intervals: int) -> Multipliers:
+        matrix = monodromy(machine, space, y, intervals)
+        return _parted(_sorted(matrix), matrix, machine, space, y)
+
+    found = at(count)
     while found.defect > TRIVIAL and 2 * count <= MOST_INTERVALS:
         count *= 2
-        finer = _sorted(monodromy(machine, space, y, count))
+        finer = at(count)
         if finer.defect > 0.5 * found.defect:  # not of the integration, but of the harmonics
             return finer
         found = finer
@@ -94,6 +100,39 @@ def _sorted(matrix: Array) -> Multipliers:
     others = np.delete(values, trivial)
     others = others[np.argsort(-np.abs(others), kind="stable")]
     return Multipliers(np.concatenate([values[trivial : trivial + 1], others]), float(abs(values[trivial] - 1.0)))
+
+
+def _parted(found: Multipliers, matrix: Array, machine: Machine, space: StateSpace, y: Array) -> Multipliers:
+    """The multipliers with a pair about 1 told by its sum and by what becomes of the motion along the cycle.
+
+    At a fold two multipliers are 1, with one disturbance for both: an error of the matrix then enters each with its
+    root, and their sum as it is.
+    """
+    if len(found.others) == 0:
+        return found
+    near = int(np.argmin(np.abs(found.others - 1.0)))
+    if abs(found.others[near] - 1.0) > DOUBLE:
+        return found
+    along = _along(machine, space, y)
+    trivial = float(along @ (matrix @ along))
+    other = found.values[0] + found.others[near] - trivial
+    if abs(other.imag) > TRIVIAL:
+        return found
+    others = np.concatenate([np.delete(found.others, near), [other.real]])
+    others = others[np.argsort(-np.abs(others), kind="stable")]
+    return Multipliers(np.concatenate([[trivial + 0.0j], others]), float(np.linalg.norm(matrix @ along - along)))
+
+
+def _along(machine: Machine, space: StateSpace, y: Array) -> Array:
+    """(N,) unit direction in which all states move at the start of a cycle."""
+    motion, nu, omega = unpacked(y[:-2], machine.size), float(y[-2] * machine.pace), float(y[-1] * machine.pace)
+    loads, _ = loads_along(machine, motion, nu, omega)
+    harmonics = np.fft.rfft(loads.values, axis=0)[1 : len(motion)] @ space.given.T
+    rates = 1j * nu * np.arange(1, len(motion))
+    linear = space.still + omega * space.by_speed
+    states = np.linalg.solve(rates[:, None, None] * np.eye(len(linear)) - linear, harmonics[:, :, None])[:, :, 0]
+    along = (rates[:, None] * states).sum(axis=0).real
+    return np.asarray(along / np.linalg.norm(along))
 
 
 def _at(motion: Complex, tau: Array) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ sides: without it a free rotor could not be solved for k = 0, nor near its free 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.film_samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
 from frbcli.cycles.films import smooth_films
+from frbcli.cycles.planes import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.linear import LinearRotor
@@ -47,7 +48,8 @@ class Machine:
     frequency are divided; spring, dashpot: (F,) N and N s per displacement over the clearance; turning: (F, 2, 1 + R)
     shares of the speeds of rotor and rings in omega_J + omega_S and omega_J - omega_S; bodies: see System; drags: (F,)
     N m s; moment: 1 if the moments of the film forces turn the rings, else 0; inertia: (R,) s, of the rings over the
-    Couette torques per speed in concentric films, which are held: (R,) N m s.
+    Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
+    rotor as transfer takes it, see planes.py.
     """
 
     rotor: LinearRotor
@@ -63,6 +65,7 @@ class Machine:
     moment: float
     inertia: Array
     held: Array
+    parts: tuple[Part, ...]
 
     @property
     def film_count(self) -> int:
@@ -130,7 +133,7 @@ def make_machine(system: System, top: float) -> Machine:
     inertia = system.rotor.mass[list(system.spins), list(system.spins)]
     at, still, speed = np.array([[NEAR, 0.0]]), np.zeros((1, 2)), np.array([top])
     damping = [-0.5 * np.sum(film_samples(film, at, still, speed)[0, [BY_V, BY_V + 3]]) for film in films]
-    return Machine(
+    machine = Machine(
         rotor=without_spins(system.rotor, system.ring_count),
         films=films,
         names=system.names,
@@ -144,7 +147,18 @@ def make_machine(system: System, top: float) -> Machine:
         moment=1.0 if system.torque == "all" else 0.0,
         inertia=inertia / held,
         held=held,
+        parts=(),
     )
+    return replace(machine, parts=_parts(machine))
+
+
+def _parts(machine: Machine) -> tuple[Part, ...]:
+    rotor, shapes, pulls = machine.rotor, machine.places, machine.pulls
+    springs = pulls @ (np.repeat(machine.spring, 2)[:, None] * shapes)
+    dashpots = pulls @ (np.repeat(machine.dashpot, 2)[:, None] * shapes)
+    unbalance = rotor.unbalance_sin + 1j * rotor.unbalance_cos
+    loads = np.column_stack([pulls, rotor.static_load, 0.5 * unbalance])
+    return parts_of(rotor, springs, dashpots, shapes, loads)
 
 
 def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
@@ -211,26 +225,23 @@ def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> Non
 
 def transfer(machine: Machine, harmonics: int, nu: float, omega: float) -> Transfer:
     """T_k of a machine at the frequency nu and the speed omega, rad/s, for k = 0 ... harmonics."""
-    rotor, films = machine.rotor, machine.film_count
+    films = machine.film_count
     k = np.arange(harmonics + 1)
-    shapes, pulls = machine.places, machine.pulls
-    flow = rotor.damping + omega * rotor.gyroscopic
-    springs = pulls @ (np.repeat(machine.spring, 2)[:, None] * shapes)
-    dashpots = pulls @ (np.repeat(machine.dashpot, 2)[:, None] * shapes)
     s = 1j * k[:, None, None] * nu
-    z = rotor.stiffness + springs + s**2 * rotor.mass + s * (flow + dashpots)
-    unbalance = rotor.unbalance_sin + 1j * rotor.unbalance_cos
-    right = np.column_stack([pulls, rotor.static_load, 0.5 * unbalance])
-    moved = np.linalg.solve(z, np.broadcast_to(right, (harmonics + 1, *right.shape)))
-    answer = moved[:, :, : 2 * films]
-    left = _from_left(z, shapes)
-    by_nu = 1j * k[:, None, None] * (2.0 * s * rotor.mass + flow + dashpots)
     c, own = machine.size, slice(0, 2 * films)
     values = np.zeros((harmonics + 1, c, c), dtype=complex)
     by_frequency, by_speed = np.zeros_like(values), np.zeros_like(values)
-    values[:, own, own] = shapes @ answer
-    by_frequency[:, own, own] = -left @ (by_nu @ answer)
-    by_speed[:, own, own] = -left @ ((s * rotor.gyroscopic) @ answer)
+    given = np.zeros((harmonics + 1, 2 * films, 2), dtype=complex)  # by the static load and the unbalance
+    for part in machine.parts:
+        flow = part.flow + omega * part.gyroscopic
+        z = part.stiffness + s**2 * part.mass + s * flow
+        moved, left = part.answers(z)
+        answer = moved[:, :, : 2 * films]
+        by_nu = 1j * k[:, None, None] * (2.0 * s * part.mass + flow)
+        values[:, own, own] += part.shapes @ answer
+        by_frequency[:, own, own] -= left @ (by_nu @ answer)
+        by_speed[:, own, own] -= left @ (s * (part.gyroscopic @ answer))
+        given += part.shapes @ moved[:, :, 2 * films :]
     rings = np.arange(2 * films, c)
     lag = 1.0 + 1j * np.outer(k * nu, machine.inertia)
     values[:, rings, rings] = 1.0 / lag
@@ -239,13 +250,8 @@ def transfer(machine: Machine, harmonics: int, nu: float, omega: float) -> Trans
     rate[:, own] = 1j * np.outer(k, np.repeat(machine.dashpot, 2))
     kappa[:, own] = np.repeat(machine.spring, 2) + nu * rate[:, own]
     rest, turned = np.zeros(c), np.zeros(c, dtype=complex)
-    rest[own] = (shapes @ moved[0, :, -2]).real
+    rest[own] = given[0, :, 0].real
     if harmonics > 0:
-        turned[own] = shapes @ moved[1, :, -1]
+        turned[own] = given[1, :, 1]
     return Transfer(values, by_frequency, by_speed, kappa, rate, rest, turned)
 
-
-def _from_left(z: Complex, shapes: Array) -> Complex:
-    """(H + 1, 2 F, n): shapes Z^-1."""
-    turned = np.swapaxes(z, 1, 2)
-    return np.swapaxes(np.linalg.solve(turned, np.broadcast_to(shapes.T, (len(z), *shapes.T.shape))), 1, 2)

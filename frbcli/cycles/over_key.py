@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.cycles.balance import Balance, unpacked
-from frbcli.cycles.branch import Follower
+from frbcli.cycles.branch import MOST_UNKNOWNS, Follower
 from frbcli.cycles.continuation import Equations, Place, Unreachable
 from frbcli.cycles.diagram import Observer, Walk, diagram
 from frbcli.cycles.equilibria import Resting, hopf_points, settled
@@ -35,6 +35,8 @@ DIFFERENCE = 1e-5  # of the largest value
 
 class KeyFollower(Follower):
     """Follows branches over the key."""
+
+    most_at_fold = MOST_UNKNOWNS  # each of its equations takes three machines
 
     def __init__(self, family: Family, lowest: float) -> None:
         machine = family.machine(1.0)
