@@ -130,3 +130,17 @@ assert frbcli.load_case("jeffcott").name == "jeffcott"
 def test_version_is_that_of_the_project() -> None:
     project = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert frbcli.__version__ == project["version"]
+
+
+MOST_ARGUMENTS, MOST_LINES = 10, 70
+# One stage after the other with all that it works in: in functions of its own, tabulated films take 1.7 times as long.
+LONG = {("solve/time_loop.py", "_advance")}
+
+
+@pytest.mark.parametrize("file", sorted(PACKAGE.rglob("*.py")), ids=lambda file: str(file.relative_to(PACKAGE)))
+def test_functions_are_short_and_take_few_arguments(file: Path) -> None:
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef):
+            given, place = node.args, (str(file.relative_to(PACKAGE)), node.name)
+            assert len(given.posonlyargs + given.args + given.kwonlyargs) <= MOST_ARGUMENTS, place
+            assert (node.end_lineno or 0) - node.lineno < MOST_LINES or place in LONG, place

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.gathered import gathered
 from frbcli.cli.live import counting, live_lines
 from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import check_place, draw
@@ -25,6 +27,17 @@ if TYPE_CHECKING:
 
 ASKED = "asked"
 MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
+
+
+@dataclass(frozen=True)
+class Range:
+    """The number that is varied in place of the speed or beside it, see the options of the command."""
+
+    over: str
+    key: str | None
+    low: str | None
+    high: str | None
+    points: int
 
 
 @click.command()
@@ -46,14 +59,11 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
 @picture_options
 @output_options
+@gathered("varied", Range)
 def command(
     case: Case,
     speeds: tuple[float, ...],
-    over: str,
-    key: str | None,
-    low: str | None,
-    high: str | None,
-    points: int,
+    varied: Range,
     runs: tuple[str, ...],
     output: Path | None,
     no_picture: bool,
@@ -70,7 +80,8 @@ def command(
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    _check_range(over, key, low, high)
+    _check_range(varied)
+    over, key, low, high = varied.over, varied.key, varied.low, varied.high
     if (key is not None and (speeds or runs)) or (over != "speed" and (len(speeds) > 1 or runs)):
         raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
     drawn = "limit-cycles" if key is None else "stability-map"
@@ -78,7 +89,7 @@ def command(
     check_place(picture)
     require_place(csv)
     if key is not None and low is not None and high is not None:
-        _map(terminal, case, (key, low, high, points), picture, csv)
+        _map(terminal, case, (key, low, high, varied.points), picture, csv)
         return
     tracks = [track for name in runs for track in _tracks(Path(name))]
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
@@ -98,10 +109,11 @@ def command(
     terminal.emit(_document(found) | {"picture": picture, "csv": csv})
 
 
-def _check_range(over: str, key: str | None, low: str | None, high: str | None) -> None:
-    if over != "speed" and key is not None:
+def _check_range(varied: Range) -> None:
+    other = varied.over != "speed"
+    if other and varied.key is not None:
         raise click.UsageError("--and draws a map over the speed: leave --over out.")
-    if (over != "speed" or key is not None) != (low is not None and high is not None):
+    if (other or varied.key is not None) != (varied.low is not None and varied.high is not None):
         raise click.UsageError("--over KEY and --and KEY go with --from VALUE and --to VALUE.")
 
 
