@@ -620,7 +620,8 @@ def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality:
     assert kind is not None
     assert kind.criticality == criticality
     if criticality == "subcritical":
-        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=1e-6)
+        # The diagram adds harmonics until the trivial multiplier is right, which moves this fold by 1.06e-6.
+        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=2e-6)
     else:
         assert kind.fold_Hz is None
     assert threshold_kind(frbcli.load_case("jeffcott", ["film.cavitation=reynolds"]), 170.0) is None

@@ -145,6 +145,7 @@ def test_a_film_that_stays_full_has_the_eigenvalues_of_sommerfeld() -> None:
     assert rest.growth == pytest.approx(expected.real, rel=0.01)
 
 
+@pytest.mark.nightly
 def test_the_command_shoots(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
     words = ["limit-cycles", "rigid-two-phase", "--json", "-o", str(tmp_path / "oil.png")]
     settings = ("bearing.supply.pressure=2 bar", "speed.from=75 Hz", "speed.to=79 Hz")

@@ -187,6 +187,13 @@ class Follower:
         return None if found is None else self.refitted(oriented(found, place.tangent))
 
 
+class FoldFollower(Follower):
+    """Follows branches whose folds alone are asked for: without multipliers, the larger part of the cost."""
+
+    def multipliers(self, _place: Place) -> Multipliers:
+        return Multipliers(np.ones(1, dtype=complex), 0.0)
+
+
 def follow_branch(
     follower: Follower,
     start: Place,

@@ -7,7 +7,6 @@ from typing import cast
 import numpy as np
 
 from frbcli.film.cells.data import CENTRIFUGAL, VolumeFilms
-from frbcli.film.cells.mean_film import mean_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.scene.system import System
 
@@ -16,6 +15,8 @@ def smooth_films(system: System) -> tuple[FilmData, ...]:
     """The films of a system; those on cells tabulated as the mean over the angle of their openings."""
     if not isinstance(system.films, VolumeFilms):
         return cast(tuple[FilmData, ...], system.films)
+    from frbcli.film.cells.mean_film import mean_film  # with the solver of cells, which takes long to load
+
     found: list[FilmData] = []
     for i, film in enumerate(system.volumes):
         openings = film.section.holes

@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import FOLD, HOPF, Cycle, Follower, amplitude, eccentricities
+from frbcli.cycles.branch import FOLD, HOPF, Cycle, FoldFollower, amplitude, eccentricities
 from frbcli.cycles.continuation import Equations, Place, Unreachable, step_from
 from frbcli.cycles.criticality import lyapunov_coefficient
 from frbcli.cycles.diagram import Walk, criticality_of, cycle_special, hopf_special
 from frbcli.cycles.equilibria import OverSpeed, Resting, hopf_at, resting_curve, settled
 from frbcli.cycles.family import Family, value_range
 from frbcli.cycles.faults import check
-from frbcli.cycles.floquet import Multipliers
 from frbcli.cycles.machine import Machine
 from frbcli.cycles.plane_curves import (
     MOST_HARMONICS,
@@ -205,13 +204,6 @@ def _row(plane: _Plane, share: float, begun: _Begun) -> MapRow:
     return MapRow(value, tuple(special))
 
 
-class _Unjudged(Follower):
-    """Follows branches whose folds alone are asked for: without multipliers."""
-
-    def multipliers(self, _place: Place) -> Multipliers:
-        return Multipliers(np.ones(1, dtype=complex), 0.0)
-
-
 def _unwatched(_: Cycle) -> None:
     """Branches of a map are not told."""
 
@@ -224,7 +216,7 @@ def _walk(plane: _Plane, machine: Machine, resting: Resting) -> Walk:
         course=OverSpeed(machine),
         resting=resting,
         scale=0.5 / math.pi,
-        follower=_Unjudged(machine, *plane.speeds),
+        follower=FoldFollower(machine, *plane.speeds),
         branch_scale=machine.pace / (2.0 * math.pi),
     )
 

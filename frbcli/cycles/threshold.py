@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import FOLD, Cycle, Follower, first_place, follow_branch
+from frbcli.cycles.branch import FOLD, Cycle, FoldFollower, first_place, follow_branch
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.criticality import lyapunov_coefficient
 from frbcli.cycles.equilibria import resting_curve
@@ -56,5 +56,5 @@ def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
             folds.append(cycle.y[-1] * machine.pace / (2.0 * math.pi))
         return bool(folds)
 
-    follow_branch(Follower(machine, slowest, fastest), first_place(machine, hopf), until=watch)
+    follow_branch(FoldFollower(machine, slowest, fastest), first_place(machine, hopf), until=watch)
     return ThresholdKind(SUBCRITICAL, folds[0] if folds and folds[0] < threshold_Hz else None)
