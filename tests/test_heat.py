@@ -20,7 +20,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.rectangles.bearing import RectangularBearing
-from frbcli.film.rectangles.end_flow import TableEndFlow, chain_end_flow, make_end_flow, table_end_flow
+from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow
 from frbcli.film.rectangles.film import make_film
 from frbcli.linear.heat import warm_machine
 from frbcli.linear.stability import stability
@@ -370,7 +370,7 @@ def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) ->
     flow = make_end_flow(bearing, make_film(bearing, "finite", "half-sommerfeld", make_plan(case).mesh))
     assert isinstance(flow, TableEndFlow)
     w = 0.5 * omega * np.array([d[1], -d[0]])
-    found = bearing.clearance * table_end_flow(flow, *d, *w, 1.0)
+    found = bearing.clearance * end_flow(flow, *d, *w, 1.0)
     assert found == pytest.approx(outflow(film, motion.d, solution.state.pressure), rel=5e-3, abs=1e-12)
 
 
@@ -379,7 +379,7 @@ def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
     bearing = rectangle()
     flow = make_end_flow(bearing, make_film(bearing, "short", "half-sommerfeld", None))  # type: ignore[arg-type]
     assert isinstance(flow, TableEndFlow)
-    found = bearing.clearance * table_end_flow(flow, 0.4, 0.0, 0.0, -0.5 * 0.4 * 900.0, 1.0)
+    found = bearing.clearance * end_flow(flow, 0.4, 0.0, 0.0, -0.5 * 0.4 * 900.0, 1.0)
     assert found == pytest.approx(0.4 * 900.0 * 12.5e-3 * 35e-6 * 20e-3, rel=1e-3)
 
 
@@ -393,7 +393,7 @@ def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     d, omega = np.array([0.3, -0.4]), 900.0
     motion = Motion((0.3, -0.4), (0.0, 0.0), omega)
     w = 0.5 * omega * np.array([d[1], -d[0]])
-    found = system.clearances[0] * chain_end_flow(flow, *d, *w, 1.0)  # type: ignore[arg-type]
+    found = system.clearances[0] * end_flow(flow, *d, *w, 1.0)
     assert found == pytest.approx(outflow(film, motion.d, FilmSolver(film).steady(motion).state.pressure), rel=0.02)
 
 

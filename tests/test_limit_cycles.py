@@ -6,13 +6,12 @@ Gamma = mu R L^3 omega / (W C^2) / w with the load W of a bearing.
 
 from __future__ import annotations
 
-import json
 import math
 import tomllib
-from functools import cache
 
 import numpy as np
 import pytest
+from rigid_cycles import CLEARANCE, GRAVITY, MASS, RADIUS, WIDTH, UNIT_Hz, diagram, rigid
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import fsolve
@@ -20,26 +19,19 @@ from scipy.optimize import fsolve
 import frbcli
 from frbcli.case.load import load_case_text
 from frbcli.case.shipped import find_shipped
-from frbcli.cli.main import run
 from frbcli.cycles.balance import Balance, packed
 from frbcli.cycles.continuation import Place, Strides, corrected, fold_between, follow, step_from
 from frbcli.cycles.equilibria import resting_curve
-from frbcli.cycles.explain import explanations
 from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import multipliers
 from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine, film_loads, make_machine, transfer
-from frbcli.cycles.over_key import limit_cycles_over
-from frbcli.cycles.result import LimitCycles
-from frbcli.cycles.stability_map import StabilityMap
-from frbcli.cycles.threshold import threshold_kind
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.linear.stability import stability
-from frbcli.plot.run_track import run_tracks
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
@@ -49,30 +41,6 @@ from frbcli.scene.system import make_system
 from frbcli.solve.state import RUNNING, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
-
-GRAVITY, CLEARANCE, MASS, WIDTH, RADIUS = 9.81, 50e-6, 6.0, 10e-3, 25e-3
-UNIT_Hz = math.sqrt(GRAVITY / CLEARANCE) / (2.0 * math.pi)  # w = 1
-
-
-def rigid(gamma: float, low: float, high: float, **more: float) -> frbcli.Case:
-    """The rigid rotor from w = low to high."""
-    viscosity = gamma * 0.5 * MASS * GRAVITY * CLEARANCE**2 / (RADIUS * WIDTH**3) / math.sqrt(GRAVITY / CLEARANCE)
-    rotor = {"kind": "rigid", "mass": MASS, "gravity": GRAVITY, **more}
-    bearing = {"kind": "single-film", "width": WIDTH, "diameter": 2.0 * RADIUS, "clearance": CLEARANCE}
-    return frbcli.case_from_dict(
-        {
-            "rotor": rotor,
-            "bearing": {**bearing, "supply": {"kind": "none"}},
-            "oil": {"viscosity": viscosity},
-            "film": {"theory": "short", "cavitation": "half-sommerfeld"},
-            "speed": {"from": low * UNIT_Hz, "to": high * UNIT_Hz, "duration": 1.0},
-        }
-    )
-
-
-@cache
-def diagram(gamma: float, low: float, high: float) -> LimitCycles:
-    return frbcli.limit_cycles(rigid(gamma, low, high))
 
 
 def machine_of(case: frbcli.Case) -> Machine:
@@ -437,66 +405,6 @@ def test_a_step_does_not_change_to_a_part_of_the_curve_that_passes_close_by() ->
     assert step_from(lines, start, 0.03) is not None
 
 
-def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[str]) -> None:
-    words = [
-        "limit-cycles",
-        "jeffcott",
-        "--set",
-        "film.theory=short",
-        "--set",
-        "speed.to=100 Hz",
-        "--no-picture",
-        "--json",
-    ]
-    assert run(words) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert document["branches"] == document["special"] == []
-    assert "every small motion decays" in document["notes"][0]
-
-
-@pytest.mark.parametrize(
-    ("settings", "told"),
-    [
-        (["film.cavitation=two-phase", "film.two-phase.form=published"], "openings that turn"),
-        (["film.cavitation=reynolds"], "no continuous derivative"),
-        (["speed.to=0 Hz"], "no range of speeds"),
-    ],
-)
-def test_what_has_no_limit_cycles_is_told(settings: list[str], told: str) -> None:
-    with pytest.raises(frbcli.InputError, match=told):
-        frbcli.limit_cycles(frbcli.load_case("jeffcott", settings))
-
-
-def test_a_diagram_over_a_number_of_the_case_meets_that_over_the_speed() -> None:
-    """Rigid rotor at w = 2.72: Hopf point and fold over the viscosity lie where the diagrams over the speed of these
-    viscosities have theirs."""
-    case = rigid(4.538, 2.4, 2.9)
-    viscosity, speed = case.oil.viscosity, 2.72 * UNIT_Hz
-    found = limit_cycles_over(case, "oil.viscosity", f"{0.6 * viscosity!r} Pa*s", f"{1.1 * viscosity!r} Pa*s", speed)
-    assert (found.over, found.unit) == ("oil.viscosity", "Pa*s")
-    for kind in ("hopf", "fold"):
-        (point,) = found.of(kind)
-        other = diagram(4.538 * point.value / viscosity, 2.4, 2.9).of(kind)[0]
-        assert other.speed_Hz == pytest.approx(speed, rel=1e-7)
-        assert point.frequency_Hz == pytest.approx(other.frequency_Hz, rel=1e-6)
-        assert point.criticality == other.criticality
-        assert point.eccentricity_max[0] == pytest.approx(other.eccentricity_max[0], abs=1e-4)
-
-
-def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
-    (tmp_path / "rigid.toml").write_text(rigid(4.538, 2.4, 2.9).source_text)
-    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance", "--json", "--csv"]
-    words += [str(tmp_path / "over.csv"), "-o", str(tmp_path / "over.png")]
-    assert run([*words, "--from", "48 um", "--to", "60 um", "--speed", f"{2.7 * UNIT_Hz} Hz"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert (document["over"], document["unit"]) == ("bearing.clearance", "um")
-    assert 47.9 < document["equilibria"][0]["value"] < 60.1
-    assert (tmp_path / "over.csv").read_text().startswith("bearing.clearance,branch")
-    assert run(words) == 2
-    assert run([*words, "--from", "-1 um", "--to", "60 um"]) == 2
-    assert run([*words, "--from", "48 um", "--to", "60 um", "--and", "oil.viscosity"]) == 2
-
-
 def test_a_small_synchronous_motion_is_the_linear_response() -> None:
     """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
     stability."""
@@ -521,132 +429,3 @@ def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ign
     assert response[0].speed_Hz == pytest.approx(130.0)
     assert response[0].stable
     assert response[0].eccentricity_max[0] == pytest.approx(seen.max(), abs=2e-4)
-
-
-def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
-    """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
-    (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
-    low, high = (rigid(gamma, 2.4, 2.9).oil.viscosity for gamma in (1.313, 4.538))
-    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--and", "oil.viscosity", "--points", "2", "--json"]
-    picture = tmp_path / "map.png"
-    assert run([*words, "--from", f"{low!r} Pa*s", "--to", f"{high!r} Pa*s", "-o", str(picture)]) == 0
-    document = json.loads(capsys.readouterr().out)
-    first, last = document["rows"]
-    assert first["special"][0]["criticality"] == "supercritical"
-    assert last["special"][0]["criticality"] == "subcritical"
-    assert last["special"][0]["speed_Hz"] == pytest.approx(diagram(4.538, 2.4, 2.9).of("hopf")[0].speed_Hz, rel=1e-9)
-    assert picture.exists()
-    assert run([*words, "--from", "1 Pa*s", "--to", "2 m"]) == 2
-    assert run(words) == 2
-
-
-@cache
-def rigid_map() -> StabilityMap:
-    """Of the rigid rotor over its viscosity, Gamma = 0.8 to 5."""
-    low, high = (rigid(gamma, 2.3, 2.95).oil.viscosity for gamma in (0.8, 5.0))
-    return frbcli.stability_map(rigid(1.313, 2.3, 2.95), "oil.viscosity", f"{low!r} Pa*s", f"{high!r} Pa*s", 3)
-
-
-def gamma_of(value: float) -> float:
-    viscosity = rigid(1.0, 2.3, 2.95).oil.viscosity
-    assert isinstance(viscosity, float)
-    return value / viscosity
-
-
-def test_curves_of_a_map_are_those_of_the_diagrams() -> None:
-    """One curve of Hopf points and one of folds; Hopf points of both known values of Gamma lie on the first (by
-    the parabola through three points), and the folds of a diagram that the map has not seen on the second."""
-    hopf, fold = rigid_map().curves
-    assert (hopf.kind, fold.kind) == ("hopf", "fold")
-    for gamma, expected in ((4.538, 2.7413), (1.313, 2.6058)):
-        points = sorted(hopf.points, key=lambda point: abs(gamma_of(point.value) - gamma))[:5]
-        found = np.poly1d(
-            np.polyfit([gamma_of(p.value) - gamma for p in points], [p.speed_Hz / UNIT_Hz for p in points], 4)
-        )
-        assert found(0.0) == pytest.approx(expected, abs=2e-4)
-    other = diagram(4.538, 2.4, 2.9).of("fold")[0]
-    near = [p for p in fold.points if abs(p.speed_Hz - other.speed_Hz) < 0.01 * other.speed_Hz]
-    line = CubicSpline(*zip(*sorted((gamma_of(p.value), p.speed_Hz / UNIT_Hz) for p in near), strict=True))
-    assert float(line(4.538)) == pytest.approx(other.speed_Hz / UNIT_Hz, abs=1e-4)
-
-
-def test_folds_end_where_the_criticality_changes_and_turn_back_in_a_cusp() -> None:
-    """Soft below, hard above Gamma = 3.167, where the curve of folds begins; and one fold vanishes with another in a
-    cusp at Gamma = 1.06."""
-    found = rigid_map()
-    kinds = {point.kind: point for point in found.special}
-    assert set(kinds) == {"bautin", "cusp"}
-    change = gamma_of(kinds["bautin"].value)
-    for gamma, criticality in ((change - 0.02, "supercritical"), (change + 0.02, "subcritical")):
-        assert diagram(gamma, 2.6, 2.8).of("hopf")[0].criticality == criticality
-    fold = found.curves[1]
-    assert "It meets the curve of Hopf points." in fold.notes
-    ends = [(gamma_of(p.value), p.speed_Hz / UNIT_Hz) for p in (fold.points[0], fold.points[-1])]
-    nearest = min(ends, key=lambda end: abs(end[0] - change))
-    assert nearest[0] == pytest.approx(change, abs=0.02)
-    assert nearest[1] == pytest.approx(kinds["bautin"].speed_Hz / UNIT_Hz, abs=1e-3)
-    cusp = gamma_of(kinds["cusp"].value)
-    assert len(diagram(cusp - 0.05, 2.6, 2.9).of("fold")) == 0
-    assert len(diagram(cusp + 0.15, 2.6, 2.9).of("fold")) == 2
-    frame = found.to_pandas()
-    assert {"bautin", "cusp", "hopf", "fold"} == set(frame["kind"])
-
-
-def test_speeds_without_a_cycle_are_told() -> None:
-    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm"])
-    assert frbcli.limit_cycles(case, [100.0, 200.0]).notes == ("No limit cycle at 100 Hz.",)
-    with pytest.raises(frbcli.InputError, match="outside of the range"):
-        frbcli.limit_cycles(case, [400.0])
-
-
-def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.chdir(tmp_path)
-    assert run(["limit-cycles", "jeffcott", "--set", "film.theory=short", "--json", "--csv", "table.csv"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert set(document["equilibria"][0]) >= {"speed_Hz", "displacement", "stable"}
-    (branch,) = document["branches"]
-    assert set(branch["points"][0]) >= {"speed_Hz", "frequency_Hz", "eccentricity_max", "stable", "multipliers"}
-    assert [point["kind"] for point in document["special"]] == ["hopf", "fold"]
-    assert document["special"][0]["criticality"] == "subcritical"
-    assert document["special"][1]["speed_Hz"] < document["special"][0]["speed_Hz"]
-    assert (tmp_path / "jeffcott-limit-cycles.png").exists()
-    assert (tmp_path / "table.csv").read_text().startswith("branch,speed_Hz,frequency_Hz,stable")
-
-
-@pytest.mark.parametrize(("gamma", "criticality"), [(4.538, "subcritical"), (1.313, "supercritical")])
-def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality: str) -> None:
-    case, found = rigid(gamma, 2.4, 2.9), diagram(gamma, 2.4, 2.9)
-    kind = threshold_kind(case, found.of("hopf")[0].speed_Hz)
-    assert kind is not None
-    assert kind.criticality == criticality
-    if criticality == "subcritical":
-        # The diagram adds harmonics until the trivial multiplier is right, which moves this fold by 1.06e-6.
-        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=2e-6)
-    else:
-        assert kind.fold_Hz is None
-    assert threshold_kind(frbcli.load_case("jeffcott", ["film.cavitation=reynolds"]), 170.0) is None
-
-
-def test_onset_and_offset_are_explained() -> None:
-    found = diagram(4.538, 2.4, 2.9)
-    (hopf,), (fold,) = found.of("hopf"), found.of("fold")
-    seen = [("onset", hopf.speed_Hz + 20.0, hopf.frequency_Hz), ("offset", fold.speed_Hz - 3.0, fold.frequency_Hz)]
-    events = [{"kind": kind, "speed_Hz": speed, "frequency_Hz": frequency} for kind, speed, frequency in seen]
-    onset, offset = explanations(found, [*events, {"kind": "contact", "speed_Hz": 1.0, "frequency_Hz": None}])
-    assert "hard Hopf point" in onset
-    assert "20.0 Hz later" in onset
-    assert "end in the fold" in offset
-    assert "3.0 Hz away" in offset
-
-
-def test_runs_are_drawn_over_the_diagram(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.chdir(tmp_path)
-    short = ["--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
-    assert run(["rundown", "jeffcott", *short, "--no-picture", "-o", "down.h5", "--explain", "--quiet"]) == 0
-    up, down = run_tracks(frbcli.read_run("down.h5"), "down")
-    assert up.rising
-    assert not down.rising
-    whole = frbcli.read_run("down.h5").signals["eccentricity"][:].max()
-    assert max(up.largest[""].max(), down.largest[""].max()) == pytest.approx(whole)
-    assert run(["limit-cycles", "jeffcott", *short, "--runs", "down.h5", "-o", "all.svg", "--quiet"]) == 0
-    assert "down, up" in (tmp_path / "all.svg").read_text()

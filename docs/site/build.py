@@ -21,7 +21,7 @@ import click
 
 import frbcli
 from frbcli.cli.main import COMMANDS, frb
-from frbcli.linear.bearing_sheet import FilmState
+from frbcli.linear.film_state import FilmState
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"

@@ -19,8 +19,9 @@ from frbcli.cli.runs import OUTPUT, here
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.linear.bearing_sheet import Array as Matrix
-    from frbcli.linear.bearing_sheet import BearingSheet, FilmState
+    from frbcli.linear.bearing_sheet import BearingSheet
+    from frbcli.linear.film_state import Array as Matrix
+    from frbcli.linear.film_state import FilmState
 
 COLUMNS = 80
 NUMBERS = ("Hz", "eps", "att.", "So", "h", "p", "loss", "flow", "rise", "err.")
@@ -62,7 +63,8 @@ def command(
 ) -> int | None:
     """Resting position, coefficients, power loss, oil flow and pressure of every film of CASE."""
     from frbcli.errors import NotConverged
-    from frbcli.linear.bearing_sheet import bearing_sheet, heat_capacity, sommerfeld_chart
+    from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
+    from frbcli.linear.film_state import heat_capacity
     from frbcli.results.place import require_place
 
     _check_options(over, speeds, load, output, no_picture, ross)
@@ -116,7 +118,7 @@ def _check_options(
 
 def _tell(terminal: Terminal, found: BearingSheet) -> None:
     from frbcli.film.cavitation.table import law_named
-    from frbcli.linear.bearing_sheet import heat_capacity
+    from frbcli.linear.film_state import heat_capacity
 
     for film, law in zip(found.films, found.laws, strict=True):
         states = found.of(film)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -25,6 +24,7 @@ from frbcli.cycles.result import (
     LimitCycles,
     RestingPoint,
     SpecialPoint,
+    hertz,
 )
 from frbcli.cycles.seed import seed_cycle
 from frbcli.scene.films import film_places
@@ -156,9 +156,9 @@ def _resting(walk: Walk, point: Equilibrium) -> RestingPoint:
     films = 2 * machine.film_count
     return RestingPoint(
         value=point.value * walk.scale,
-        speed_Hz=_hertz(point.omega),
+        speed_Hz=hertz(point.omega),
         displacement=point.u[:films].reshape(-1, 2),
-        ring_speeds_Hz=_hertz(machine.pace) * point.u[films:],
+        ring_speeds_Hz=hertz(machine.pace) * point.u[films:],
         eigenvalues=point.eigenvalues,
         stable=point.stable,
     )
@@ -171,10 +171,10 @@ def _cycle(walk: Walk, cycle: Cycle) -> CyclePoint:
     loads, _ = loads_along(machine, motion, float(nu), float(omega))
     return CyclePoint(
         value=walk.value(cycle),
-        speed_Hz=_hertz(omega),
-        frequency_Hz=_hertz(nu),
+        speed_Hz=hertz(omega),
+        frequency_Hz=hertz(nu),
         eccentricity_max=cycle.eccentricity_max,
-        ring_speeds_Hz=_hertz(machine.pace) * motion[0, films:].real,
+        ring_speeds_Hz=hertz(machine.pace) * motion[0, films:].real,
         torque_N_m=float(loads.drive.mean()),
         stable=cycle.multipliers.stable,
         multipliers=cycle.multipliers.values,
@@ -192,8 +192,8 @@ def hopf_special(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoin
         kind=HOPF,
         branch=branch,
         value=hopf.equilibrium.value * walk.scale,
-        speed_Hz=_hertz(hopf.equilibrium.omega),
-        frequency_Hz=_hertz(hopf.nu),
+        speed_Hz=hertz(hopf.equilibrium.omega),
+        frequency_Hz=hertz(hopf.nu),
         eccentricity_max=np.hypot(d[:, 0], d[:, 1]),
         criticality=criticality_of(found),
         lyapunov=found.value.real,
@@ -208,9 +208,5 @@ def criticality_of(found: Lyapunov) -> str | None:
 
 def cycle_special(walk: Walk, cycle: Cycle, branch: int) -> SpecialPoint:
     """A special cycle of a branch."""
-    speed, frequency = _hertz(cycle.y[-1] * cycle.machine.pace), _hertz(cycle.y[-2] * cycle.machine.pace)
+    speed, frequency = hertz(cycle.y[-1] * cycle.machine.pace), hertz(cycle.y[-2] * cycle.machine.pace)
     return SpecialPoint(cycle.kind, branch, walk.value(cycle), speed, frequency, cycle.eccentricity_max)
-
-
-def _hertz(omega: float) -> float:
-    return float(omega) / (2.0 * math.pi)

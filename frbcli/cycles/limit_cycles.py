@@ -15,7 +15,7 @@ from frbcli.cycles.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.faults import check, keeps_oil
 from frbcli.cycles.machine import make_machine
 from frbcli.cycles.oil_cycles import limit_cycles_with_oil
-from frbcli.cycles.result import SPEED, LimitCycles
+from frbcli.cycles.result import SPEED, LimitCycles, hertz
 from frbcli.cycles.synchronous import synchronous_response
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.scene.plan import make_plan
@@ -36,9 +36,9 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
     slowest, fastest = check(case, with_oil=True)
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
-        problem = f"lies outside of the range, {_hertz(slowest):.4g} to {_hertz(fastest):.4g} Hz."
+        problem = f"lies outside of the range, {hertz(slowest):.4g} to {hertz(fastest):.4g} Hz."
         remedy = "Ask for a speed within it, or set speed.from and speed.to."
-        faults = tuple(Fault("speed", f"{_hertz(speed):g} Hz", None, problem, remedy) for speed in outside)
+        faults = tuple(Fault("speed", f"{hertz(speed):g} Hz", None, problem, remedy) for speed in outside)
         raise InputError(case.name or "case", faults)
     if keeps_oil(case):
         return _with_missing(limit_cycles_with_oil(case, slowest, fastest, asked, observe), speeds_Hz)
@@ -48,7 +48,7 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
         with advised(case):
             resting = resting_curve(system, machine, slowest, fastest)
     except Unreachable:
-        raise NotConverged(f"The resting positions could not be followed down from {_hertz(fastest):.4g} Hz.") from None
+        raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     walk = Walk(
         over=SPEED,
         unit="Hz",
@@ -71,7 +71,3 @@ def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles
     met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
     missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
     return replace(found, notes=(*found.notes, *missing))
-
-
-def _hertz(omega: float) -> float:
-    return omega / (2.0 * math.pi)

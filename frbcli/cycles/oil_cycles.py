@@ -11,9 +11,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import FLIP, FOLD, HOPF, TORUS
+from frbcli.cycles.branch import AT_REST, FLIP, FOLD, HOPF, TORUS
 from frbcli.cycles.continuation import Unreachable
-from frbcli.cycles.diagram import Observer
+from frbcli.cycles.diagram import SAME, Observer
 from frbcli.cycles.period_map import SAMPLES, period_map, wet_at
 from frbcli.cycles.result import (
     SPEED,
@@ -25,6 +25,7 @@ from frbcli.cycles.result import (
     LimitCycles,
     RestingPoint,
     SpecialPoint,
+    hertz,
 )
 from frbcli.cycles.shot_branch import Rest, Shooting, Shot, follow_shots
 from frbcli.errors import NotConverged
@@ -34,7 +35,6 @@ from frbcli.rotor.held import held_rotor
 RESTS = 15  # resting positions of a diagram
 LOCATED, NEAREST = 12, 1e-5  # evaluations that locate a Hopf point; its speed, relative
 FIRST_SIZES = (0.15, 0.3, 0.08)  # of the first cycle beside a Hopf point
-SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf point ends in it
 
 
 def limit_cycles_with_oil(
@@ -49,7 +49,7 @@ def limit_cycles_with_oil(
     shooting = Shooting(flow, fastest)
     rests = _resting(shooting, slowest, fastest)
     if not rests:
-        raise NotConverged(f"No resting position was found between {_hertz(slowest):.4g} and {_hertz(fastest):.4g} Hz.")
+        raise NotConverged(f"No resting position was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
     hopf = [
         _located(shooting, low, high)
         for low, high in itertools.pairwise(rests)
@@ -61,7 +61,7 @@ def limit_cycles_with_oil(
         nonlocal told
         told += 1
         if observe is not None:
-            observe(told, _speed_Hz(shooting, shot), float(shot.eccentricity_max.max()))
+            observe(told, shooting.speed_Hz(shot), float(shot.eccentricity_max.max()))
 
     branches: list[CycleBranch] = []
     special: list[SpecialPoint] = []
@@ -71,8 +71,8 @@ def limit_cycles_with_oil(
             special.append(_hopf(rest, None, None))
             continue
         shots, note = _branch(shooting, rest, (slowest, fastest), asked, tell)
-        if note.startswith("It ends at rest"):
-            ends.append(2.0 * math.pi * _speed_Hz(shooting, shots[-1]))
+        if note == AT_REST:
+            ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(rest, len(branches), shots[0] if shots else None))
         branches.append(CycleBranch(len(special) - 1, tuple(_cycle(shooting, shot) for shot in shots), note))
     for number, branch in enumerate(branches):
@@ -148,7 +148,7 @@ def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[Rest]) -> l
         f"The films keep their oil, on {around} x {along} cells: cycles are found by shooting on the time loop, "
         "with the error of the cells; multipliers are known to 5e-3."
     ]
-    between = f"{_hertz(rests[0].omega):.4g} and {_hertz(rests[-1].omega):.4g} Hz"
+    between = f"{hertz(rests[0].omega):.4g} and {hertz(rests[-1].omega):.4g} Hz"
     if hopf:
         return notes
     if all(rest.stable for rest in rests):
@@ -157,8 +157,8 @@ def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[Rest]) -> l
 
 
 def _rest(shooting: Shooting, rest: Rest) -> RestingPoint:
-    hertz, spins = _hertz(rest.omega), list(shooting.flow.system.spins)
-    return RestingPoint(hertz, hertz, rest.displacement, rest.wet.v[spins] / (2.0 * math.pi), rest.rates, rest.stable)
+    speed, spins = hertz(rest.omega), list(shooting.flow.system.spins)
+    return RestingPoint(speed, speed, rest.displacement, rest.wet.v[spins] / (2.0 * math.pi), rest.rates, rest.stable)
 
 
 def _hopf(rest: Rest, branch: int | None, first: Shot | None) -> SpecialPoint:
@@ -171,16 +171,16 @@ def _hopf(rest: Rest, branch: int | None, first: Shot | None) -> SpecialPoint:
     return SpecialPoint(
         kind=HOPF,
         branch=branch,
-        value=_hertz(rest.omega),
-        speed_Hz=_hertz(rest.omega),
-        frequency_Hz=_hertz(float(rest.rates[number].imag)) if number is not None else math.nan,
+        value=hertz(rest.omega),
+        speed_Hz=hertz(rest.omega),
+        frequency_Hz=hertz(float(rest.rates[number].imag)) if number is not None else math.nan,
         eccentricity_max=np.hypot(*rest.displacement.T),
         criticality=criticality,
     )
 
 
 def _cycle(shooting: Shooting, shot: Shot) -> CyclePoint:
-    speed, spins = _speed_Hz(shooting, shot), list(shooting.flow.system.spins)
+    speed, spins = shooting.speed_Hz(shot), list(shooting.flow.system.spins)
     return CyclePoint(
         value=speed,
         speed_Hz=speed,
@@ -197,11 +197,3 @@ def _cycle(shooting: Shooting, shot: Shot) -> CyclePoint:
 
 def _special(point: CyclePoint, branch: int) -> SpecialPoint:
     return SpecialPoint(point.kind, branch, point.value, point.speed_Hz, point.frequency_Hz, point.eccentricity_max)
-
-
-def _speed_Hz(shooting: Shooting, shot: Shot) -> float:
-    return math.exp(float(shot.p[1])) * _hertz(shooting.unit)
-
-
-def _hertz(omega: float) -> float:
-    return omega / (2.0 * math.pi)

@@ -22,6 +22,11 @@ SPEED = "speed"  # what diagrams go over
 SUBCRITICAL, SUPERCRITICAL = "subcritical", "supercritical"
 
 
+def hertz(omega: float) -> float:
+    """rad/s in Hz."""
+    return float(omega) / (2.0 * math.pi)
+
+
 @dataclass(frozen=True)
 class RestingPoint:
     """A resting position. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over

@@ -14,10 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import ASKED, FLIP, FOLD, TORUS
+from frbcli.cycles.branch import ASKED, AT_REST, FLIP, FOLD, LEFT, TORUS
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.floquet import Multipliers
 from frbcli.cycles.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
+from frbcli.cycles.result import hertz
 from frbcli.cycles.shooting import DIFFERENCE, Conditions, SlowSpace, direction_along, fixed_point, ritz, slow_space
 
 Array = NDArray[np.float64]
@@ -93,6 +94,10 @@ class Shooting:
 
     def __init__(self, flow: PeriodMap, unit: float) -> None:
         self.flow, self.unit = flow, unit
+
+    def speed_Hz(self, shot: Shot) -> float:
+        """The rotor speed of a cycle."""
+        return math.exp(float(shot.p[1])) * hertz(self.unit)
 
     def rest(self, near: Wet, omega: float) -> Rest | None:
         """The resting position at a speed, as a fixed point of the map over half a revolution: whirls of up to the
@@ -243,17 +248,17 @@ def follow_shots(
             length *= 0.5
             found = _next(shooting, shot, length)
         if found is None:
-            hertz = _hertz(shooting, shot)
-            return tuple(shots), f"It could not be followed beyond {hertz:.4g} Hz: the steps became too short."
+            last = shooting.speed_Hz(shot)
+            return tuple(shots), f"It could not be followed beyond {last:.4g} Hz: the steps became too short."
         if observe is not None:
             observe(found)
         if not lowest <= found.p[1] <= highest:
             limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
             end = shooting.at_speed(shot, found, limit_speed)
-            return (*shots, *([] if end is None else [end])), "It leaves the range."
+            return (*shots, *([] if end is None else [end])), LEFT
         shots += [*special_shots(shooting, shot, found, length, asked), found]
         if found.amplitude < SMALL:
-            return tuple(shots), "It ends at rest, in another Hopf point."
+            return tuple(shots), AT_REST
         if found.eccentricity_max.max() > limit:
             return tuple(shots), f"The journal meets its shell, at an eccentricity of {limit}."
         if shot.tangent @ found.tangent > STRAIGHT:
@@ -306,7 +311,3 @@ def _located(shooting: Shooting, shot: Shot, after: Shot, length: float, told: C
         else:
             high, at_high = middle, value
     return best
-
-
-def _hertz(shooting: Shooting, shot: Shot) -> float:
-    return math.exp(shot.p[1]) * shooting.unit / (2.0 * math.pi)

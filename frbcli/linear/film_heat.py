@@ -18,7 +18,7 @@ from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.grid import Array
 from frbcli.film.published.data import ElementFilm
-from frbcli.film.rectangles.end_flow import EndFlow, TableEndFlow, chain_end_flow, make_end_flow, table_end_flow
+from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow
 from frbcli.scene.system import System
 
 SLIP = 1  # row of System.turning
@@ -54,8 +54,7 @@ def _tabulated(system: System, ends: EndFlow, i: int, place: Array, total: float
     power = resistance * slip**2 + 0.5 * float(place[0] * force[1] - place[1] * force[0]) * total
     scale = 1.0 if system.scales is None else system.scales[i]
     w = 0.5 * total * np.array([d[1], -d[0]])
-    motion = (float(d[0]), float(d[1]), float(w[0]), float(w[1]), scale)
-    leaving = table_end_flow(ends, *motion) if isinstance(ends, TableEndFlow) else chain_end_flow(ends, *motion)
+    leaving = end_flow(ends, float(d[0]), float(d[1]), float(w[0]), float(w[1]), scale)
     return power, system.clearances[i] * leaving
 
 

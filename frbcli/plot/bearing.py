@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
 from frbcli.film.cavitation.table import law_named
-from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet, FilmState
+from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
+from frbcli.linear.film_state import FilmState
 from frbcli.plot.style import COLOURS, legend_beside, new_figure, styled
 
 Reading = Callable[[FilmState], float]

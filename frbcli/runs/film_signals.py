@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.film.gap import Section, gap_height
-from frbcli.film.rectangles.end_flow import EndFlow, TableEndFlow, chain_end_flows, table_end_flows
+from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.film_numbers import FilmNumbers, unchanged
@@ -124,8 +124,7 @@ def _flows_of_motions(
             d[k], v[k] = felt_motion(control, d[k], v[k])
         w = v + 0.5 * total[:, i : i + 1] * np.column_stack([d[:, 1], -d[:, 0]])
         motions = np.column_stack([d, scale * w])
-        flows = table_end_flows(end, motions) if isinstance(end, TableEndFlow) else chain_end_flows(end, motions)
-        found[:, i] = clearance[:, 0] / scale[:, 0] * flows
+        found[:, i] = clearance[:, 0] / scale[:, 0] * end_flows(end, motions)
     return found
 
 

@@ -75,6 +75,7 @@ class ElementWork(NamedTuple):
 
 
 def make_element_work(film: ElementFilm, stages: int) -> ElementWork:
+    """Scratch for a film and the stages of a method."""
     points = film.height.shape
     return ElementWork(
         make_room(film),

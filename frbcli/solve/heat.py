@@ -34,7 +34,7 @@ from frbcli.film.cells.data import (
     VolumeFilms,
 )
 from frbcli.film.cells.side_flow import side_flow
-from frbcli.film.rectangles.end_flow import TableEndFlow, chain_end_flow, table_end_flow
+from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.solve.cell_films import GRID_X, GRID_Y, oil_fraction
 from frbcli.solve.contact import feel
 from frbcli.solve.film_forces import drag_integral
@@ -245,7 +245,7 @@ def _write(state: Array, now: Array, gain: Array, out_heat: Array, first: int, l
 def leaving(
     ends: Any, films: Any, work: Any, f: int, d_x: float, d_y: float, w_x: float, w_y: float, scale: float
 ) -> float:
-    """Flow through the ends of film f over its clearance, m^2/s, see table_end_flow."""
+    """Flow through the ends of film f over its clearance, m^2/s, see end_flow."""
     raise NotImplementedError
 
 
@@ -298,15 +298,14 @@ def _leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[n
                 work.grids[GRID_Y, f], ends.far_open[f] != 0,
             )
         )  # fmt: skip
-    one = table_end_flow if ends[0].instance_class is TableEndFlow else chain_end_flow
     if isinstance(ends, types.UniTuple):
-        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: one(ends[f], d_x, d_y, w_x, w_y, scale)
+        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[f], d_x, d_y, w_x, w_y, scale)
     if len(ends) == 1:
-        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: one(ends[0], d_x, d_y, w_x, w_y, scale)
+        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
 
     def several(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
         if f == 0:
-            return one(ends[0], d_x, d_y, w_x, w_y, scale)
+            return end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
         return leaving(ends[1:], films, work, f - 1, d_x, d_y, w_x, w_y, scale)
 
     return several

@@ -41,6 +41,7 @@ class FilmMotion(NamedTuple):
 
 @compiled()
 def norm(x: float, y: float) -> float:
+    """Length of a vector."""
     return math.sqrt(x * x + y * y)
 
 

@@ -94,10 +94,6 @@ class Output(NamedTuple):
         """What is left behind so many rows."""
         return Output(self.q[row:], self.v[row:], self.oil[row:], self.heat[row:])
 
-    def until(self, row: int) -> Output:
-        """So many rows."""
-        return Output(self.q[:row], self.v[:row], self.oil[:row], self.heat[:row])
-
 
 def make_output(rows: int, n: int, films: int = 0, columns: int = 0) -> Output:
     """For a rotor with n degrees of freedom and so many films that keep their oil; columns of heat."""

@@ -10,9 +10,11 @@ fresh as that of the supply. With the slope of P(phi, z), scaled as in (3.9), at
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numba.extending import overload
 
 from frbcli.compiled import compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY, groove_pressure
@@ -155,15 +157,6 @@ def table_end_flow(flow: TableEndFlow, d_x: float, d_y: float, w_x: float, w_y: 
 
 
 @compiled()
-def table_end_flows(flow: TableEndFlow, motions: Array) -> Array:
-    """(k,) of table_end_flow in motions (k, 4) of d and w, with the pressures of the film."""
-    found = np.empty(motions.shape[0])
-    for i in range(motions.shape[0]):
-        found[i] = table_end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
-    return found
-
-
-@compiled()
 def chain_end_flow(flow: ChainEndFlow, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
     """The same of a film between axial grooves, which stand still; the ends of the grooves themselves are left out."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
@@ -196,10 +189,24 @@ def chain_end_flow(flow: ChainEndFlow, d_x: float, d_y: float, w_x: float, w_y: 
     return flow.unit * total
 
 
+_KINDS: dict[type, Callable[..., float]] = {TableEndFlow: table_end_flow, ChainEndFlow: chain_end_flow}
+
+
+def end_flow(flow: EndFlow, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
+    """Q over the clearance, m^2/s, of a film of either kind, see table_end_flow."""
+    return _KINDS[type(flow)](flow, d_x, d_y, w_x, w_y, scale)
+
+
+@overload(end_flow, inline="always")
+def _end_flow(flow, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
+    one = _KINDS[flow.instance_class]
+    return lambda flow, d_x, d_y, w_x, w_y, scale: one(flow, d_x, d_y, w_x, w_y, scale)
+
+
 @compiled()
-def chain_end_flows(flow: ChainEndFlow, motions: Array) -> Array:
-    """(k,) of chain_end_flow in motions (k, 4) of d and w, with the pressures of the film."""
+def end_flows(flow: EndFlow, motions: Array) -> Array:
+    """(k,) of end_flow in motions (k, 4) of d and w, with the pressures of the film."""
     found = np.empty(motions.shape[0])
     for i in range(motions.shape[0]):
-        found[i] = chain_end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
+        found[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
     return found

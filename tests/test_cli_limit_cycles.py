@@ -1,0 +1,134 @@
+"""`frb limit-cycles`, and what `frb stability` and `frb runup --explain` tell of limit cycles."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from rigid_cycles import UNIT_Hz, diagram, rigid
+
+import frbcli
+from frbcli.cli.main import run
+from frbcli.cycles.explain import explanations
+from frbcli.cycles.over_key import limit_cycles_over
+from frbcli.cycles.threshold import threshold_kind
+from frbcli.plot.run_track import run_tracks
+
+
+def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[str]) -> None:
+    words = [
+        "limit-cycles",
+        "jeffcott",
+        "--set",
+        "film.theory=short",
+        "--set",
+        "speed.to=100 Hz",
+        "--no-picture",
+        "--json",
+    ]
+    assert run(words) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["branches"] == document["special"] == []
+    assert "every small motion decays" in document["notes"][0]
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        (["film.cavitation=two-phase", "film.two-phase.form=published"], "openings that turn"),
+        (["film.cavitation=reynolds"], "no continuous derivative"),
+        (["speed.to=0 Hz"], "no range of speeds"),
+    ],
+)
+def test_what_has_no_limit_cycles_is_told(settings: list[str], told: str) -> None:
+    with pytest.raises(frbcli.InputError, match=told):
+        frbcli.limit_cycles(frbcli.load_case("jeffcott", settings))
+
+
+def test_a_diagram_over_a_number_of_the_case_meets_that_over_the_speed() -> None:
+    """Rigid rotor at w = 2.72: Hopf point and fold over the viscosity lie where the diagrams over the speed of these
+    viscosities have theirs."""
+    case = rigid(4.538, 2.4, 2.9)
+    viscosity, speed = case.oil.viscosity, 2.72 * UNIT_Hz
+    found = limit_cycles_over(case, "oil.viscosity", f"{0.6 * viscosity!r} Pa*s", f"{1.1 * viscosity!r} Pa*s", speed)
+    assert (found.over, found.unit) == ("oil.viscosity", "Pa*s")
+    for kind in ("hopf", "fold"):
+        (point,) = found.of(kind)
+        other = diagram(4.538 * point.value / viscosity, 2.4, 2.9).of(kind)[0]
+        assert other.speed_Hz == pytest.approx(speed, rel=1e-7)
+        assert point.frequency_Hz == pytest.approx(other.frequency_Hz, rel=1e-6)
+        assert point.criticality == other.criticality
+        assert point.eccentricity_max[0] == pytest.approx(other.eccentricity_max[0], abs=1e-4)
+
+
+def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+    (tmp_path / "rigid.toml").write_text(rigid(4.538, 2.4, 2.9).source_text)
+    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance", "--json", "--csv"]
+    words += [str(tmp_path / "over.csv"), "-o", str(tmp_path / "over.png")]
+    assert run([*words, "--from", "48 um", "--to", "60 um", "--speed", f"{2.7 * UNIT_Hz} Hz"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["over"], document["unit"]) == ("bearing.clearance", "um")
+    assert 47.9 < document["equilibria"][0]["value"] < 60.1
+    assert (tmp_path / "over.csv").read_text().startswith("bearing.clearance,branch")
+    assert run(words) == 2
+    assert run([*words, "--from", "-1 um", "--to", "60 um"]) == 2
+    assert run([*words, "--from", "48 um", "--to", "60 um", "--and", "oil.viscosity"]) == 2
+
+
+def test_speeds_without_a_cycle_are_told() -> None:
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm"])
+    assert frbcli.limit_cycles(case, [100.0, 200.0]).notes == ("No limit cycle at 100 Hz.",)
+    with pytest.raises(frbcli.InputError, match="outside of the range"):
+        frbcli.limit_cycles(case, [400.0])
+
+
+def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.chdir(tmp_path)
+    assert run(["limit-cycles", "jeffcott", "--set", "film.theory=short", "--json", "--csv", "table.csv"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert set(document["equilibria"][0]) >= {"speed_Hz", "displacement", "stable"}
+    (branch,) = document["branches"]
+    assert set(branch["points"][0]) >= {"speed_Hz", "frequency_Hz", "eccentricity_max", "stable", "multipliers"}
+    assert [point["kind"] for point in document["special"]] == ["hopf", "fold"]
+    assert document["special"][0]["criticality"] == "subcritical"
+    assert document["special"][1]["speed_Hz"] < document["special"][0]["speed_Hz"]
+    assert (tmp_path / "jeffcott-limit-cycles.png").exists()
+    assert (tmp_path / "table.csv").read_text().startswith("branch,speed_Hz,frequency_Hz,stable")
+
+
+@pytest.mark.parametrize(("gamma", "criticality"), [(4.538, "subcritical"), (1.313, "supercritical")])
+def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality: str) -> None:
+    case, found = rigid(gamma, 2.4, 2.9), diagram(gamma, 2.4, 2.9)
+    kind = threshold_kind(case, found.of("hopf")[0].speed_Hz)
+    assert kind is not None
+    assert kind.criticality == criticality
+    if criticality == "subcritical":
+        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=1e-6)
+    else:
+        assert kind.fold_Hz is None
+    assert threshold_kind(frbcli.load_case("jeffcott", ["film.cavitation=reynolds"]), 170.0) is None
+
+
+def test_onset_and_offset_are_explained() -> None:
+    found = diagram(4.538, 2.4, 2.9)
+    (hopf,), (fold,) = found.of("hopf"), found.of("fold")
+    seen = [("onset", hopf.speed_Hz + 20.0, hopf.frequency_Hz), ("offset", fold.speed_Hz - 3.0, fold.frequency_Hz)]
+    events = [{"kind": kind, "speed_Hz": speed, "frequency_Hz": frequency} for kind, speed, frequency in seen]
+    onset, offset = explanations(found, [*events, {"kind": "contact", "speed_Hz": 1.0, "frequency_Hz": None}])
+    assert "hard Hopf point" in onset
+    assert "20.0 Hz later" in onset
+    assert "end in the fold" in offset
+    assert "3.0 Hz away" in offset
+
+
+def test_runs_are_drawn_over_the_diagram(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.chdir(tmp_path)
+    short = ["--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
+    assert run(["rundown", "jeffcott", *short, "--no-picture", "-o", "down.h5", "--explain", "--quiet"]) == 0
+    up, down = run_tracks(frbcli.read_run("down.h5"), "down")
+    assert up.rising
+    assert not down.rising
+    whole = frbcli.read_run("down.h5").signals["eccentricity"][:].max()
+    assert max(up.largest[""].max(), down.largest[""].max()) == pytest.approx(whole)
+    assert run(["limit-cycles", "jeffcott", *short, "--runs", "down.h5", "-o", "all.svg", "--quiet"]) == 0
+    assert "down, up" in (tmp_path / "all.svg").read_text()

@@ -1,0 +1,84 @@
+"""Stability maps: curves of Hopf points and folds over the speed and a second number, against diagrams."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+from rigid_cycles import UNIT_Hz, diagram, rigid
+from scipy.interpolate import CubicSpline
+
+import frbcli
+from frbcli.cli.main import run
+from frbcli.cycles.stability_map import StabilityMap
+
+
+def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
+    (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
+    low, high = (rigid(gamma, 2.4, 2.9).oil.viscosity for gamma in (1.313, 4.538))
+    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--and", "oil.viscosity", "--points", "2", "--json"]
+    picture = tmp_path / "map.png"
+    assert run([*words, "--from", f"{low!r} Pa*s", "--to", f"{high!r} Pa*s", "-o", str(picture)]) == 0
+    document = json.loads(capsys.readouterr().out)
+    first, last = document["rows"]
+    assert first["special"][0]["criticality"] == "supercritical"
+    assert last["special"][0]["criticality"] == "subcritical"
+    assert last["special"][0]["speed_Hz"] == pytest.approx(diagram(4.538, 2.4, 2.9).of("hopf")[0].speed_Hz, rel=1e-9)
+    assert picture.exists()
+    assert run([*words, "--from", "1 Pa*s", "--to", "2 m"]) == 2
+    assert run(words) == 2
+
+
+@cache
+def rigid_map() -> StabilityMap:
+    """Of the rigid rotor over its viscosity, Gamma = 0.8 to 5."""
+    low, high = (rigid(gamma, 2.3, 2.95).oil.viscosity for gamma in (0.8, 5.0))
+    return frbcli.stability_map(rigid(1.313, 2.3, 2.95), "oil.viscosity", f"{low!r} Pa*s", f"{high!r} Pa*s", 3)
+
+
+def gamma_of(value: float) -> float:
+    viscosity = rigid(1.0, 2.3, 2.95).oil.viscosity
+    assert isinstance(viscosity, float)
+    return value / viscosity
+
+
+def test_curves_of_a_map_are_those_of_the_diagrams() -> None:
+    """One curve of Hopf points and one of folds; Hopf points of both known values of Gamma lie on the first (by
+    the parabola through three points), and the folds of a diagram that the map has not seen on the second."""
+    hopf, fold = rigid_map().curves
+    assert (hopf.kind, fold.kind) == ("hopf", "fold")
+    for gamma, expected in ((4.538, 2.7413), (1.313, 2.6058)):
+        points = sorted(hopf.points, key=lambda point: abs(gamma_of(point.value) - gamma))[:5]
+        found = np.poly1d(
+            np.polyfit([gamma_of(p.value) - gamma for p in points], [p.speed_Hz / UNIT_Hz for p in points], 4)
+        )
+        assert found(0.0) == pytest.approx(expected, abs=2e-4)
+    other = diagram(4.538, 2.4, 2.9).of("fold")[0]
+    near = [p for p in fold.points if abs(p.speed_Hz - other.speed_Hz) < 0.01 * other.speed_Hz]
+    line = CubicSpline(*zip(*sorted((gamma_of(p.value), p.speed_Hz / UNIT_Hz) for p in near), strict=True))
+    assert float(line(4.538)) == pytest.approx(other.speed_Hz / UNIT_Hz, abs=1e-4)
+
+
+def test_folds_end_where_the_criticality_changes_and_turn_back_in_a_cusp() -> None:
+    """Soft below, hard above Gamma = 3.167, where the curve of folds begins; and one fold vanishes with another in a
+    cusp at Gamma = 1.06."""
+    found = rigid_map()
+    kinds = {point.kind: point for point in found.special}
+    assert set(kinds) == {"bautin", "cusp"}
+    change = gamma_of(kinds["bautin"].value)
+    for gamma, criticality in ((change - 0.02, "supercritical"), (change + 0.02, "subcritical")):
+        assert diagram(gamma, 2.6, 2.8).of("hopf")[0].criticality == criticality
+    fold = found.curves[1]
+    assert "It meets the curve of Hopf points." in fold.notes
+    ends = [(gamma_of(p.value), p.speed_Hz / UNIT_Hz) for p in (fold.points[0], fold.points[-1])]
+    nearest = min(ends, key=lambda end: abs(end[0] - change))
+    assert nearest[0] == pytest.approx(change, abs=0.02)
+    assert nearest[1] == pytest.approx(kinds["bautin"].speed_Hz / UNIT_Hz, abs=1e-3)
+    cusp = gamma_of(kinds["cusp"].value)
+    assert len(diagram(cusp - 0.05, 2.6, 2.9).of("fold")) == 0
+    assert len(diagram(cusp + 0.15, 2.6, 2.9).of("fold")) == 2
+    frame = found.to_pandas()
+    assert {"bautin", "cusp", "hopf", "fold"} == set(frame["kind"])
