@@ -84,7 +84,7 @@ def make_element_work(film: ElementFilm, stages: int) -> ElementWork:
         np.zeros((stages, *points)),
         np.zeros((stages, *points)),
         np.zeros(NOTES),
-        np.zeros((GRIDS, 0)),
+        np.zeros((0, GRIDS)),
         np.zeros((0, 0)),
     )
 
