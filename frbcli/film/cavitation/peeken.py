@@ -23,7 +23,6 @@ class Peeken(Law):
     meaning = "Peeken's model."
     cell_words = "dissolved air comes out of the oil"
     keys = (Key("bunsen", 0.1, "Bunsen's coefficient, the share of dissolved gas", "0.1", least=0.0),)
-    order = 1.0  # oil and air mix everywhere in the cavity, and flow upwind
     cost = 1.2
     compared = (("bunsen", (0.1, 0.5, 1.0)),)  # air in oil has about 0.1
 

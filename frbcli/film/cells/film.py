@@ -47,12 +47,14 @@ class Flows:
 
 @dataclass(frozen=True)
 class VolumeSolution:
-    """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations."""
+    """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations;
+    before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py."""
 
     w: Array
     state: CellState
     iterations: int
     flows: Flows
+    before: Array
 
 
 def reference_pressure(section: Section, motion: Motion) -> float:

@@ -9,7 +9,7 @@ keeps the steps short as long as they have to be; the solution does not know of 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,6 +40,7 @@ SETTLED = 1e-12  # the same, for a residual that does not fall any more
 LARGEST = 1e9  # beyond this, w is the mark of a singular matrix
 SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iteration
 DRY = -1e-6  # an oil fraction below this is none
+REPEATED = 3  # each leaves a tenth of what the oil fractions of the one before are off by
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
 STILL_MOTION, STILL_STEP = 1e-4, 1e-6
@@ -77,14 +78,21 @@ class FilmSolver:
     def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
         """Cells whose oil fraction does not change while the journal moves as it does.
 
-        Oil is carried upwind: what passes the cavity of a steady film does not depend on the oil fraction in it.
+        Oil is carried upwind: what passes a cavity of one pressure does not depend on the oil fraction in it. Where the
+        law draws oil in, the pressure in the cavity follows from that oil: then it is carried with second order, each
+        of REPEATED solutions holding the oil fractions of the one before.
 
         start: (m, k) unknown to begin from, else a full film. Raises FilmUnsolved.
         """
-        grid = self.film.grid
+        grid, law = self.film.grid, self.film.law
         self._before = np.full(grid.shape, UPWIND)
         storage = Storage(gap_rate(motion.v, grid.centre)[:, None], np.zeros(grid.shape))
-        return self._solve(motion, self.film.full() if start is None else start, storage)
+        solution = self._solve(motion, self.film.full() if start is None else start, storage)
+        for _ in range(REPEATED if law.keeps_oil and not law.starves else 0):
+            self._before = before_upstream(solution.state.fraction, motion.omega)
+            again = self._solve(motion, solution.w, storage)
+            solution = replace(again, iterations=solution.iterations + again.iterations)
+        return solution
 
     def keep(self, motion: Motion, flowing: Motion, w: Array, rate: float, past: Array) -> tuple[VolumeSolution, Array]:
         """One step of any implicit formula: d(H theta)/dt = rate H theta - past with past (m, k) from earlier steps.
@@ -191,7 +199,7 @@ class FilmSolver:
             ends=float(self._flows[ENDS_NET]),
             still=float((area * still).sum()),
         )
-        return VolumeSolution(w, state, iterations, flows)
+        return VolumeSolution(w, state, iterations, flows, self._before)
 
     def _where(self, worst: Array) -> str:
         """Which cells do not balance."""

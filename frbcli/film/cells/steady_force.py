@@ -8,7 +8,6 @@ import numpy as np
 
 from frbcli.film.cells.balances import FLOWS, SIDES, GridMotion
 from frbcli.film.cells.block_cyclic import ENTRIES
-from frbcli.film.cells.carried import UPWIND
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
@@ -44,7 +43,7 @@ def steady_force(
     data = volume_films([film_at(film, math.hypot(*motion.d), omega)])
     m, k = film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
-    states[BEFORE_UPSTREAM] = UPWIND
+    states[BEFORE_UPSTREAM] = solution.before
     slopes = []
     for g in (CARRIED, HELD):
         scratch = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
