@@ -20,6 +20,7 @@ from frbcli.cycles.diagram import Observer, Walk, diagram
 from frbcli.cycles.equilibria import Resting, hopf_points, settled
 from frbcli.cycles.family import Family, value_range
 from frbcli.cycles.faults import check
+from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine
 from frbcli.cycles.result import LimitCycles
 from frbcli.errors import Fault, InputError, NotConverged
@@ -45,6 +46,9 @@ class KeyFollower(Follower):
 
     def machine_at(self, y: Array) -> Machine:
         return self.family.machine(float(y[-1]))
+
+    def space_at(self, y: Array) -> StateSpace:
+        return state_space(self.machine_at(y))
 
     def told(self, y: Array) -> str:
         return f"{y[-1] * self.family.high:.4g} {self.family.unit}".rstrip()
