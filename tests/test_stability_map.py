@@ -13,6 +13,8 @@ from scipy.interpolate import CubicSpline
 import frbcli
 from frbcli.cli.main import run
 from frbcli.cycles.stability_map import StabilityMap
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_system
 
 
 def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
@@ -82,3 +84,17 @@ def test_folds_end_where_the_criticality_changes_and_turn_back_in_a_cusp() -> No
     assert len(diagram(cusp + 0.15, 2.6, 2.9).of("fold")) == 2
     frame = found.to_pandas()
     assert {"bautin", "cusp", "hopf", "fold"} == set(frame["kind"])
+
+
+def test_films_with_tables_have_curves_of_folds_as_well() -> None:
+    """Jeffcott rotor in finite films: the fold of a diagram that the map has not seen lies on its curve; films of
+    other clearances share their table, whose making was most of the cost."""
+    found = frbcli.stability_map(frbcli.load_case("jeffcott"), "bearing.clearance", "35 um", "37 um", 2)
+    (fold,) = (curve for curve in found.curves if curve.kind == "fold")
+    assert fold.notes == ()
+    case = frbcli.load_case("jeffcott", ["bearing.clearance=36.2 um", "rotor.unbalance=0 g*mm", "speed.to=200 Hz"])
+    places = {round(point.value, 6): point.speed_Hz for point in fold.points}  # curves begin on the border
+    line = CubicSpline(*zip(*sorted(places.items()), strict=True))
+    assert float(line(36.2)) == pytest.approx(frbcli.limit_cycles(case).of("fold")[0].speed_Hz, rel=1e-4)
+    tables = [make_system(one, make_plan(one)).films[0].table for one in (case, frbcli.load_case("jeffcott"))]
+    assert tables[0] is tables[1]
