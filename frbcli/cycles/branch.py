@@ -98,11 +98,15 @@ class Follower:
     def cycle(self, place: Place, kind: str = "", near: Cycle | None = None) -> Cycle:
         """A point of the branch with all that is told of it. near: one close by."""
         found = self.multipliers(place, None if near is None else near.multipliers.relaxed)
+        halved = True  # whether finer intervals have been tried
         while found.defect > TRIVIAL:
             finer = self.with_more(place, self.most_at_fold if kind == FOLD else MOST_UNKNOWNS)
             if finer is None:
+                found = found if halved else self.multipliers(place, found)
                 break
-            place, found = finer, self.multipliers(finer, found, HELPS * found.defect)
+            enough = HELPS * found.defect
+            place, found = finer, self.multipliers(finer, found, enough)
+            halved = found.defect > enough
         machine, y = self.machine_at(place.y), self.as_cycle(place.y)
         return Cycle(place, machine, y, eccentricities(machine, y), found, kind)
 

@@ -24,6 +24,7 @@ NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
 FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, MOST_INTERVALS = 48, 4, 768
 TRIVIAL = 1e-6  # error of the trivial multiplier from which on intervals are halved
 HELPS, ALIKE = 0.5, 2.0  # shares of an error: below which finer ones have helped, up to which it is that of nearby
+FAR = 5.0  # times the error aimed at, from which on that of nearby is taken for it without another try
 NEUTRAL = 1e-7  # beyond 1: a multiplier that grows
 DOUBLE = 0.01  # distance of a second multiplier from 1 below which both are told apart by the motion
 
@@ -84,7 +85,7 @@ def multipliers(
         return replace(_parted(_sorted(matrix), matrix, machine, space, y), intervals=intervals, floor=floor)
 
     found = at(count)
-    known = floor < ALIKE * found.defect and found.defect < ALIKE * floor
+    known = FAR * TRIVIAL < floor < ALIKE * found.defect and found.defect < ALIKE * floor
     while not known and found.defect > enough and 2 * count <= MOST_INTERVALS:
         count *= 2
         finer = at(count)
