@@ -364,8 +364,6 @@ def _crossing(
 
     number = max(found.unstable for found in ends) - 1
     known = {0.0: ends[0].growth(number), length: ends[1].growth(number)}
-    if known[0.0] * known[length] > 0.0:  # both within the error of the trivial one
-        return None
 
     def growth(along: float) -> float:
         if along not in known:
@@ -379,6 +377,8 @@ def _crossing(
         return oriented(there, place.tangent)
 
     try:
+        if known[0.0] * known[length] > 0.0:  # one end is within the error of the trivial multiplier
+            return at(min(known, key=lambda along: abs(known[along])))
         return at(float(brentq(growth, 0.0, length, xtol=CLOSE * length)))
     except Unreachable:
         return None
