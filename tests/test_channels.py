@@ -33,6 +33,7 @@ from frbcli.scene.channels import coupled_channels
 from frbcli.scene.plan import make_plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.system import System, make_system
+from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.films import begin_stage, make_work
 from frbcli.solve.micro_step import _solve_films
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
@@ -200,7 +201,7 @@ def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> No
 
     def solved(u: Array) -> tuple[Array, Array]:
         work = make_work(system.films, state.wet, 2)
-        work.grids[0], work.grids[1] = turn, 150.0  # turn and speed of the ring
+        work.grids[:, GRID_TURN], work.grids[:, GRID_SPEED] = turn, 150.0  # turn and speed of the ring
         begin(system.films, work, state.wet, state.flows, weights, g)
         film = np.zeros((JOURNAL_ROWS, 4))
         film[U], film[X_0] = u, place

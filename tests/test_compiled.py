@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import ast
+import gc
 import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from numba.core.runtime import _nrt_python, rtsys
 
 from frbcli.case.load import load_case
 from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
+from frbcli.runs.run import runup
 
 KERNEL = """
 from frbcli.compiled import compiled
@@ -84,6 +89,52 @@ def test_every_kernel_of_the_package_is_compiled_so() -> None:
         if re.search(r"\bn?jit\(.*cache", file.read_text(encoding="utf-8")) and file.name != "compiled.py"
     ]
     assert bare == []
+
+
+NUMBERS = re.compile(r"(tuple\[)?((float|int|bool|None|\.\.\.)(, )?)+\]?")
+
+
+def kernels(folder: Path) -> Iterator[tuple[str, str, str, set[str]]]:
+    """(name, decorator, what it returns, the functions that it calls) of every kernel."""
+    for file in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.FunctionDef):
+                continue
+            calls = [call.func for call in ast.walk(node) if isinstance(call, ast.Call)]
+            called = {function.id for function in calls if isinstance(function, ast.Name)}
+            for decorator in map(ast.unparse, node.decorator_list):
+                if decorator.startswith("compiled(") and "inline=True" not in decorator.replace("force_inline", ""):
+                    yield node.name, decorator, ast.unparse(node.returns) if node.returns else "", called
+
+
+def test_arrays_that_kernels_make_have_one_who_counts_their_references() -> None:
+    """An array that a kernel makes and returns would never be given free by a kernel that counts no references; one
+    that a kernel without them returns would be given free too early by one that counts them, or by Python."""
+    import frbcli
+
+    found = list(kernels(Path(frbcli.__file__).parent))
+    counts: dict[str, set[bool]] = {}
+    for name, decorator, returned, _ in found:
+        if not NUMBERS.fullmatch(returned):
+            counts.setdefault(name, set()).add("makes_arrays=True" in decorator)
+            assert "makes_arrays=True" in decorator or "internal=True" in decorator, name
+    assert {"unit_fields", "solve_ring"} <= set(counts)
+    for name, decorator, _, called in found:
+        for given in called & set(counts):
+            assert counts[given] == {"makes_arrays=True" in decorator}, f"{name} calls {given}"
+
+
+@pytest.mark.parametrize("name", ["jeffcott", "floating-ring", "rigid-two-phase"])
+def test_a_run_leaves_no_array_behind(name: str, tmp_path: Path) -> None:
+    """Of a longer run as many live on as of a short one."""
+    _nrt_python.memsys_enable_stats()
+    left = []
+    for duration in ("2 ms", "2 ms", "10 ms"):
+        runup(load_case(name, [f"speed.duration={duration}"]), tmp_path / "run.h5")
+        gc.collect()
+        stats = rtsys.get_allocation_stats()
+        left.append(stats.mi_alloc - stats.mi_free)
+    assert left[2] == left[1]
 
 
 def test_the_first_start_is_told_and_the_next_is_not(capsys: pytest.CaptureFixture[str]) -> None:

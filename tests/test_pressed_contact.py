@@ -140,9 +140,9 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
         rows = rows_of(system, d, v, omega, g)
         for iteration in range(24):
             forces(data, work, clearances, contact_at(touches, stiffness), g, 1, iteration, rows)
-            if not cells or work.grids[BALANCE, 0] != OPEN:
+            if not cells or work.grids[0, BALANCE] != OPEN:
                 return rows
-            move_cells(work.w[0], work.fields[0], work.grids[:, 0], 0.0, 0.0, g, np.zeros(0))
+            move_cells(work.w[0], work.fields[0], work.grids[0], 0.0, 0.0, g, np.zeros(0))
         raise AssertionError(f"{kind} did not settle at {d}")
 
     return ask
@@ -277,7 +277,7 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
     past: oil at the start over g; leaps: cells may leap over their transition."""
     data: object = system.films
     work = make_work(data, np.zeros((4, 1, *w.shape)), 2)
-    work.w[0], work.past[0], grid = w, past, work.grids[:, 0]
+    work.w[0], work.past[0], grid = w, past, work.grids[0]
     grid[STAGE] = 1
     force, states, iteration = np.zeros(2), work.states[0], 0
     at = FilmMotion(felt[0], felt[1], 0.0, 0.0, 1700.0)

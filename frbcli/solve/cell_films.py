@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
 from frbcli.film.cells.balances import (
@@ -73,24 +71,6 @@ NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
 @compiled()
-def set_law(numbers: Array, grid: Array, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> None:
-    """Keep with the grid what the film's law is at this motion, see follow_law."""
-    law = np.empty(LAW_NUMBERS)
-    follow_law(numbers, d_x, d_y, v_x, v_y, omega, law)
-    for i in range(LAW_NUMBERS):
-        grid[LAW + i] = law[i]
-
-
-@compiled()
-def law_of(grid: Array) -> Array:
-    """(LAW_NUMBERS,) the law that set_law has kept, in one piece."""
-    law = np.empty(LAW_NUMBERS)
-    for i in range(LAW_NUMBERS):
-        law[i] = grid[LAW + i]
-    return law
-
-
-@compiled()
 def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights: Array, s: int, ahead: float) -> None:
     """w of stage s: by the straight line through the step before, and once that serves as a third point by parabolas,
     through both steps and the first stage, later through the last stage in place of the step before.
@@ -127,7 +107,7 @@ def cell_numbers(
     """film_numbers of films.py for a film with cells."""
     numbers, ring, width, cells = films.numbers[f], films.ring[f], films.width[f], films.cells[f]
     w, past, states, fields = work.w[f], work.past[f], work.states[f], work.fields[f]
-    stencil, grid, slopes = work.stencil, work.grids[:, f], work.slopes[f]
+    stencil, grid, slopes = work.stencil, work.grids[f], work.slopes[f]
     flows = work.stage_flows[int(grid[STAGE]), f]
     d_x, d_y, v_x, v_y, omega = motion
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
@@ -138,9 +118,9 @@ def cell_numbers(
     v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
     remembers = numbers[REMEMBERS] != 0.0
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
-        set_law(numbers, grid, d_x, d_y, v_x, v_y, omega)
+        follow_law(numbers, d_x, d_y, v_x, v_y, omega, grid[LAW:])
     drop, rate = numbers[CENTRIFUGAL] * spin * spin, 1.0 / g if remembers else 0.0
-    cell_states(numbers, cells, law_of(grid), drop, w, states)
+    cell_states(numbers, cells, grid[LAW:], drop, w, states)
     if iteration == 0:
         hold(states, omega - 2.0 * spin)
     against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
@@ -229,7 +209,7 @@ def store_ahead(
     what all cells gain; it contains the small change of the flow through openings.
     """
     m, k = rates.shape
-    past, states, fields, grid = work.past[f], work.states[f], work.fields[f], work.grids[:, f]
+    past, states, fields, grid = work.past[f], work.states[f], work.fields[f], work.grids[f]
     c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
     d_x, d_y = grid[GRID_X] - g * x, grid[GRID_Y] - g * y
@@ -254,15 +234,15 @@ def left_of_cells(grids: Array, smooth: float, moved: float) -> float:
     already has followed with older slopes: then corrections become smaller by the same ratio again and again.
     """
     left = KEPT * smooth
-    for f in range(grids.shape[1]):
-        held = grids[BALANCE, f] == HELD
-        before = max(grids[MOVED, f] if held else moved, 1e-300)
-        grids[RATIO, f] = min((moved if held else smooth) / before, 1.0)
-        grids[MOVED, f] = moved
-        if grids[BALANCE, f] == OPEN:
+    for f in range(grids.shape[0]):
+        held = grids[f, BALANCE] == HELD
+        before = max(grids[f, MOVED] if held else moved, 1e-300)
+        grids[f, RATIO] = min((moved if held else smooth) / before, 1.0)
+        grids[f, MOVED] = moved
+        if grids[f, BALANCE] == OPEN:
             left = math.inf
         elif held:
-            left = max(left, moved * grids[RATIO, f])
+            left = max(left, moved * grids[f, RATIO])
     return left
 
 

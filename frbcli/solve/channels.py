@@ -22,12 +22,8 @@ from frbcli.film.cells.channel_flow import (
     push_of_channel,
 )
 from frbcli.film.cells.data import FILM, SLOT, VolumeFilms
-from frbcli.solve.cell_films import (
-    GRID_SPEED,
-    GRID_TURN,
-    law_of,
-    set_law,
-)
+from frbcli.film.cells.states import follow_law
+from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN, LAW
 from frbcli.solve.dense import solve_dense
 
 
@@ -38,10 +34,10 @@ def set_laws(films: VolumeFilms, grids: Array, x_0: Array, u: Array, omega: Arra
         d_x = (x_0[2 * f] + g * u[2 * f]) / clearances[f]
         d_y = (x_0[2 * f + 1] + g * u[2 * f + 1]) / clearances[f]
         v_x, v_y = u[2 * f] / clearances[f], u[2 * f + 1] / clearances[f]
-        set_law(films.numbers[f], grids[:, f], d_x, d_y, v_x, v_y, omega[2 * f])
+        follow_law(films.numbers[f], d_x, d_y, v_x, v_y, omega[2 * f], grids[f, LAW:])
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def set_pressures(films: VolumeFilms, grids: Array, w: Array, channel: Array) -> None:
     """channel (films, m, k) <- the channels' pressures over the cells of their feed holes, by the films as they are."""
     count = films.feed_holes.shape[0]
@@ -49,9 +45,9 @@ def set_pressures(films: VolumeFilms, grids: Array, w: Array, channel: Array) ->
     for q in range(count):
         f = int(films.feed_holes[q, FILM])
         means[q] = feed_hole_pressure(
-            films.numbers[f], films.cells[f], law_of(grids[:, f]), w[f], films.feed_holes[q], films.feed_hole_cells[q]
+            films.numbers[f], films.cells[f], grids[f, LAW:], w[f], films.feed_holes[q], films.feed_hole_cells[q]
         )
-    channel_pressures(films.channels, films.feed_holes, grids[GRID_SPEED], means)
+    channel_pressures(films.channels, films.feed_holes, grids[:, GRID_SPEED], means)
     for q in range(count):
         f = int(films.feed_holes[q, FILM])
         for n in range(films.feed_hole_cells.shape[1]):
@@ -60,7 +56,7 @@ def set_pressures(films: VolumeFilms, grids: Array, w: Array, channel: Array) ->
                 channel[f, i, j] = means[q]
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def join(
     films: VolumeFilms, work: Any, clearances: Array, follows_x: Array, follows_y: Array, force: Array
 ) -> None:
@@ -78,7 +74,7 @@ def join(
         for column in range(1 + journals):
             answers[q, column] = 0.0
         answers[q, 0] = own[BY_ITSELF]
-        c, s = math.cos(grids[GRID_TURN, f]), math.sin(grids[GRID_TURN, f])
+        c, s = math.cos(grids[f, GRID_TURN]), math.sin(grids[f, GRID_TURN])
         x, y = (c * own[1] - s * own[2]) / clearances[f], (s * own[1] + c * own[2]) / clearances[f]
         answers[q, 1 + 2 * f] = follows_x[2 * f] * x + follows_x[2 * f + 1] * y
         answers[q, 2 + 2 * f] = follows_y[2 * f] * x + follows_y[2 * f + 1] * y
@@ -99,7 +95,7 @@ def join(
         f, slot = int(films.feed_holes[q, FILM]), int(films.feed_holes[q, SLOT])
         changes[f, slot] = answers[q, 0]
         x, y = push_of_channel(films.numbers[f], films.ring[f], films.cells[f], states[f], fields[f], slot)
-        c, s = math.cos(grids[GRID_TURN, f]), math.sin(grids[GRID_TURN, f])
+        c, s = math.cos(grids[f, GRID_TURN]), math.sin(grids[f, GRID_TURN])
         push_x, push_y = c * x - s * y, s * x + c * y
         force[2 * f] += push_x * answers[q, 0]
         force[2 * f + 1] += push_y * answers[q, 0]

@@ -84,7 +84,7 @@ def make_element_work(film: ElementFilm, stages: int) -> ElementWork:
         np.zeros((stages, *points)),
         np.zeros((stages, *points)),
         np.zeros(NOTES),
-        np.zeros((GRIDS, 0)),
+        np.zeros((0, GRIDS)),
         np.zeros((0, 0)),
     )
 
@@ -93,7 +93,9 @@ def begin_elements(films, work, wet, flows, weights, s, step, g, ahead, lag):  #
     """begin_stage of films.py."""
     now, before, nodes, w, guess = wet[W, 0], wet[W_BEFORE, 0], films.elements.nodes, work.w[HERE], work.w[CHANGE]
     if s == 1:
-        work.rates[0] = wet[RATE, 0]
+        for e in range(nodes.shape[0]):
+            for a in range(9):
+                work.rates[0, e, a] = wet[RATE, 0, e, a]
     else:
         _keep_rates(films, work, s - 1, g)
     for e in range(nodes.shape[0]):
@@ -104,14 +106,17 @@ def begin_elements(films, work, wet, flows, weights, s, step, g, ahead, lag):  #
             work.past[e, a] = (wet[OIL, 0, e, a] + step * total) / g
             change = ahead * (now[e, a] - before[e, a]) if s == 1 else lag * (w[n] - now[e, a])
             guess[n] = now[e, a] + min(max(change, -LARGEST_GUESS), LARGEST_GUESS)
-    w[:] = guess
+    for n in range(w.shape[0]):
+        w[n] = guess[n]
 
 
 @compiled(internal=True)
 def _keep_rates(film: ElementFilm, work: ElementWork, s: int, g: float) -> None:
     """Oil fraction and rate of stage s, which is solved."""
     set_oil_fraction(film, work.room, work.w[HERE], work.thetas[s])
-    work.rates[s] = work.thetas[s] / g - work.past
+    for e in range(work.past.shape[0]):
+        for a in range(9):
+            work.rates[s, e, a] = work.thetas[s, e, a] / g - work.past[e, a]
 
 
 @compiled(internal=True)
@@ -153,14 +158,18 @@ def _takes_place(film: ElementFilm, work: ElementWork, g: float, iteration: int)
     if iteration == 0:
         sizes[:] = size
     else:
-        if not (size < sizes.max() or notes[SHARE] < SMALLEST_SHARE):
+        largest = sizes[0]
+        for k in range(1, sizes.shape[0]):
+            largest = max(largest, sizes[k])
+        if not (size < largest or notes[SHARE] < SMALLEST_SHARE):
             notes[KEPT] = 0.5
             return False
         sizes[int(notes[CORRECTIONS]) % MEMORY] = size
         notes[CORRECTIONS] += 1.0
     if size < notes[SMALLEST]:
         notes[SMALLEST], notes[LEAST], notes[SINCE], notes[IS_BEST] = size, notes[TERMS], 0.0, 1.0
-        work.w[BEST] = work.w[HERE]
+        for n in range(work.w.shape[1]):
+            work.w[BEST, n] = work.w[HERE, n]
     return True
 
 
@@ -168,17 +177,25 @@ def _takes_place(film: ElementFilm, work: ElementWork, g: float, iteration: int)
 def back_off(work: ElementWork, rows: Array) -> bool:
     """step_back of film_forces.py; rows: of stage.py."""
     notes, w, best_u = work.notes, work.w, work.notes[BEST_U:SIZES]
+    m, nodes = rows.shape[1], w.shape[1]
     if notes[IS_BEST] != 0.0:
-        notes[IS_BEST], best_u[:] = 0.0, rows[U]
+        notes[IS_BEST] = 0.0
+        for i in range(m):
+            best_u[i] = rows[U, i]
     if notes[HOLD] == TO_HOLD:
         notes[HOLD], notes[KEPT] = RETURNED, 1.0
-        w[HERE], rows[U] = w[BEST], best_u
+        for i in range(m):
+            rows[U, i] = best_u[i]
+        for n in range(nodes):
+            w[HERE, n] = w[BEST, n]
         return True
     if notes[KEPT] == 1.0:
         return False
     back = (1.0 - notes[KEPT]) * notes[SHARE]
-    rows[U] -= back * rows[CORRECTION]
-    w[HERE] -= back * w[CHANGE]
+    for i in range(m):
+        rows[U, i] -= back * rows[CORRECTION, i]
+    for n in range(nodes):
+        w[HERE, n] -= back * w[CHANGE, n]
     notes[SHARE] *= notes[KEPT]
     notes[KEPT] = 1.0
     return True
@@ -221,11 +238,11 @@ def accept_elements(films, work, wet, flows, weights, step):  # type: ignore[no-
     """accept_films of films.py; oil that passes counts at the mean of the flows before and after."""
     last, nodes, notes = weights.shape[0] - 1, films.elements.nodes, work.notes
     _keep_rates(films, work, last, weights[last, last] * step)
-    wet[OIL, 0], wet[RATE, 0], wet[W_BEFORE, 0] = work.thetas[last], work.rates[last], wet[W, 0]
     for e in range(nodes.shape[0]):
         for a in range(9):
-            wet[W, 0, e, a] = work.w[HERE, nodes[e, a]]
-    work.past[:] = -work.rates[last]
+            wet[OIL, 0, e, a], wet[RATE, 0, e, a] = work.thetas[last, e, a], work.rates[last, e, a]
+            wet[W_BEFORE, 0, e, a], wet[W, 0, e, a] = wet[W, 0, e, a], work.w[HERE, nodes[e, a]]
+            work.past[e, a] = -work.rates[last, e, a]
     came, left = oil_passing(
         films, work.room, work.w[HERE], work.past, notes[D_X], notes[D_Y], notes[V_X], notes[V_Y], notes[SPEED]
     )

@@ -110,7 +110,9 @@ def _first_or_later(films, f, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-unt
 
 
 @compiled()
-def _scaled(films: Any, f: int, scale: float, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Any:
+def _scaled(
+    films: Any, f: int, scale: float, d_x: float, d_y: float, v_x: float, v_y: float, omega: float
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
     """film_force of film f with `scale` times the scale of its pressures: that of as many times the velocities."""
     f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _one_of(
         films, f, d_x, d_y, scale * v_x, scale * v_y, scale * omega
@@ -148,7 +150,7 @@ def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-u
         )
 
     def volumes(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
-        work.grids[STAGE, f] = s
+        work.grids[f, STAGE] = s
         return cell_numbers(films, work, f, motion, g, iteration)
 
     return volumes
@@ -216,9 +218,9 @@ def _move_film(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-d
         return lambda films, work, f, u_x, u_y, share, g: 0
 
     def volumes(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
-        unsettled = move_cells(work.w[f], work.fields[f], work.grids[:, f], u_x, u_y, g, work.changes[f])
-        if films.numbers[f, REMEMBERS] != 0.0 and work.grids[BALANCE, f] == AHEAD:
-            s = int(work.grids[STAGE, f])
+        unsettled = move_cells(work.w[f], work.fields[f], work.grids[f], u_x, u_y, g, work.changes[f])
+        if films.numbers[f, REMEMBERS] != 0.0 and work.grids[f, BALANCE] == AHEAD:
+            s = int(work.grids[f, STAGE])
             store_ahead(
                 films.ring[f], films.cells[f], work, f, u_x, u_y, g, work.stage_oil[s, f], work.stage_flows[s, f]
             )
@@ -237,7 +239,7 @@ def _drag_integral(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped
 
     def volumes(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
         return sheared(
-            films.ring[f], films.cells[f], work.states[f], work.grids[GRID_X, f], work.grids[GRID_Y, f], factor
+            films.ring[f], films.cells[f], work.states[f], work.grids[f, GRID_X], work.grids[f, GRID_Y], factor
         )
 
     return volumes

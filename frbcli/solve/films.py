@@ -41,7 +41,7 @@ CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer
 class Work(NamedTuple):
     """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k,
     k + SIDES + S); w, first, past (F, m, k) of the stage, first being w of the first stage; stage_oil (stages, F, m, k)
-    rates of the stages; stage_flows (stages, F, FLOWS); grids (GRIDS, F); slopes (F, 4). Of coupled channels with Q
+    rates of the stages; stage_flows (stages, F, FLOWS); grids (F, GRIDS); slopes (F, 4). Of coupled channels with Q
     feed holes, S of one film at most: channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F), see
     channels.py; all but changes without rows if there are none."""
 
@@ -101,7 +101,7 @@ def make_work(
     if isinstance(films, ElementFilm):
         return make_element_work(films, stages)
     if not isinstance(films, VolumeFilms):
-        none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros((GRIDS, 0)), np.zeros((0, 0)))
+        none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros((0, GRIDS)), np.zeros((0, 0)))
         return none if scales is None else Scaled(*none, scales)
     _, count, m, k = wet.shape
     feed_holes = films.feed_holes.shape[0]
@@ -117,7 +117,7 @@ def make_work(
         np.zeros((count, m, k)),
         np.zeros((stages, count, m, k)),
         np.zeros((stages, count, FLOWS)),
-        np.zeros((GRIDS, count)),
+        np.zeros((count, GRIDS)),
         np.zeros((count, 4)),
         np.zeros((coupled, m, k)),
         np.zeros((feed_holes, 1 + 2 * coupled)),

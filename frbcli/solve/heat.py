@@ -294,8 +294,8 @@ def _leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[n
         return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: (
             ends.units[f]
             * side_flow(
-                films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[GRID_X, f],
-                work.grids[GRID_Y, f], ends.far_open[f] != 0,
+                films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[f, GRID_X],
+                work.grids[f, GRID_Y], ends.far_open[f] != 0,
             )
         )  # fmt: skip
     if isinstance(ends, types.UniTuple):

@@ -22,7 +22,7 @@ def outdated(numbers: Array, g: float, speed: float, gyroscopic: bool) -> bool:
     return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def prepare(
     rotor: RotorData, selection: Array, numbers: Array, g: float, speed: float, products: Array, loads: Array,
     spread: Array, compliance: Array,

@@ -30,7 +30,7 @@ def _in_contact(
     at_x, at_y, rate_x, rate_y, xx, yy, xy, turn_xx, turn_yy, turn_xy = contact_gap(
         closes_freely_until(contact_at), motion.d_x, motion.d_y, motion.v_x, motion.v_y
     )
-    if work.grids.shape[1] > 0:  # a film with cells has one derivative, of velocity and displacement together
+    if work.grids.shape[0] > 0:  # a film with cells has one derivative, of velocity and displacement together
         turn_xx = turn_yy = turn_xy = 0.0
     f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
         films, work, f, FilmMotion(at_x, at_y, rate_x, rate_y, motion.omega), g, s, iteration

@@ -84,7 +84,7 @@ def _tell(selection: Array, spins: Indices, clearances: Array, q: Array, v: Arra
     return largest
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def _responses(rotor: RotorData, selection: Array) -> Array:
     """(n, m + rings) what forces on the journals and torques on the rings do to the accelerations."""
     m, n = selection.shape
@@ -124,7 +124,8 @@ def _recall(past: Array, told: Told) -> None:
 def _remember(past: Array, t_new: float, motion: Array, film: Array, torque: Array, given: Array) -> None:
     """past moves on to t_new; given <- what the extrapolated forces and torques were off by."""
     told, m = motion.shape[0], film.shape[1]
-    past[0], past[1] = past[1], past[2]
+    for k in range(past.shape[1]):
+        past[0, k], past[1, k] = past[1, k], past[2, k]
     past[2, 0] = t_new
     for k in range(told):
         past[2, 1 + k] = motion[k]
@@ -188,7 +189,7 @@ def advance_in_turn(
     return int(status), int(rows)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def _advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
     exchange: Exchange, budget: int, output: Output,

@@ -87,7 +87,7 @@ def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
     return error
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def films_follow(
     films: Any, work: Any, rotor: RotorData, tableau: Tableau, control: Control, state: State, piece: int, told: Told,
     film: Array, rings: Rings,

@@ -38,8 +38,8 @@ def set_speeds(turning: Array, bodies: Array, angles: Array, film: Array, grids:
             speed += turning[f, GRID, b] * bodies[b]
             angle += turning[f, GRID, b] * angles[b]
         film[OMEGA, 2 * f] = film[OMEGA, 2 * f + 1] = total
-        if grids.shape[1] > f:
-            grids[GRID_TURN, f], grids[GRID_SPEED, f] = angle, speed
+        if grids.shape[0] > f:
+            grids[f, GRID_TURN], grids[f, GRID_SPEED] = angle, speed
 
 
 @compiled(inline=True)
@@ -56,7 +56,7 @@ def guess_speeds(
         angles[1 + r] = at[Q, i] + g * bodies[1 + r]
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def spin_up(
     films: Any, work: Any, rotor: RotorData, s: int, g: float, control: Control, scratch: Scratch, rings: Rings
 ) -> float:

@@ -107,74 +107,83 @@ def advance(
     return int(status), int(rows)
 
 
+@compiled(force_inline=True, internal=True)
+def _solve_stage(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, s: int, t: float,
+    step: float, piece: int,
+) -> tuple[bool, float]:  # fmt: skip
+    """Stage s of a step from t on in a piece of the speed profile: whether it is solved, and its speed."""
+    scratch, work, own = space.scratch, space.work, space.own
+    numbers, q, v, wet, flows = state.numbers, state.q, state.v, state.wet, state.flows
+    clearances, turning, spins, grids = rotor.clearances, rotor.turning, rotor.spins, work.grids
+    weights, moments = tableau.stage, tableau.times
+    g, m, allowed = weights[1, 1] * step, 2 * clearances.shape[0], NEWTON_SHARE * control.tolerance
+    selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
+    newton, past, rings = own.newton, own.past, own.rings
+    t_s = t + moments[s] * step
+    acceleration, speed, angle = rotation(
+        rotor.profile_times, rotor.profile_speeds, rotor.profile_angles, piece, t_s
+    )
+    if outdated(numbers, g, speed, rotor.has_gyroscopic):
+        prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
+    predict(weights, s, step, q, v, stage_v, stage_a, at)
+    start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, film)
+    guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), film)
+    guess_speeds(spins, s, g, speed, angle, at, stage_a, rings.bodies, rings.angles)
+    set_speeds(turning, rings.bodies, rings.angles, film, grids)
+    begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
+                moments[s] / moments[s - 1] if s > 1 else 1.0)
+    lag = begin_lag(numbers, g, speed, at) if rotor.has_gyroscopic else 0.0
+    for iteration in range(most_iterations(films)):
+        forces(films, work, clearances, control, g, s, iteration, film)
+        numbers[SOLVES] += m // 2
+        share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, film, newton)
+        if left == math.inf:
+            return False, speed
+        left = left_over(films, work, left, moved, unsettled, allowed)
+        if share == 1.0:
+            late = accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
+            left = max(left, g * late / _smallest(clearances))
+            if spins.shape[0] > 0:
+                left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
+                set_speeds(turning, rings.bodies, rings.angles, film, grids)
+            if control.linearised or left < allowed:
+                past[HISTORY + s - 1, 0] = t_s
+                for i in range(m):
+                    past[HISTORY + s - 1, 1 + i] = film[U, i]
+                return True, speed
+    return False, speed
+
+
 @compiled()
 def _advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
     output: Output, heat: Any,
 ) -> tuple[int, int]:  # fmt: skip
-    """advance with the arrays that it works in.
-
-    The parts of the tuples are taken out once, and the stages stand here as they are. In a function of their own, which
-    the compiler puts in again, the tuples' counts of references made runs with tabulated films 1.7 times as long.
-    """
-    scratch, work, own = space.scratch, space.work, space.own
+    """advance with the arrays that it works in."""
+    work, own, scratch = space.work, space.own, space.scratch
     numbers, q, v, a, past_now, wet, flows, errors = state
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
-    clearances, gyroscopic, turning = rotor.clearances, rotor.has_gyroscopic, rotor.turning
-    weights, moments, three, defect = tableau.stage, tableau.times, tableau.guess, tableau.defect
-    observed, tolerance, allowed = rotor.observed, control.tolerance, NEWTON_SHARE * control.tolerance
+    clearances, weights, film = rotor.clearances, tableau.stage, scratch.film
+    stage_v, stage_a, q_new = scratch.stage_v, scratch.stage_a, own.q_new
     out_q, out_v, out_oil, out_heat = output
-    gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(control.contact_stiffness)
-    selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
-    newton, past, q_new, rings = own.newton, own.past, own.q_new, own.rings
-    bodies, angles_now, spins, grids = rings.bodies, rings.angles, rotor.spins, work.grids
-    m, stages, written, done = 2 * clearances.shape[0], moments.shape[0], 0, 0
+    gamma, order = weights[1, 1], float(tableau.error_order)
+    stages, written, done = tableau.times.shape[0], 0, 0
 
     while done < budget:
         status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
         if step == 0.0:
             return status, written
-        begin_past(past_now, past)
+        begin_past(past_now, own.past)
         begin_stages(v, a, stage_v, stage_a)
         g, solved, speed = gamma * step, True, 0.0
         for s in range(1, stages):
-            t_s = t + moments[s] * step
-            acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
-            if outdated(numbers, g, speed, gyroscopic):
-                prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
-            predict(weights, s, step, q, v, stage_v, stage_a, at)
-            start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, film)
-            guess(past, three, s, selection, q, clearances, g, t_s, limit, film)
-            guess_speeds(spins, s, g, speed, angle, at, stage_a, bodies, angles_now)
-            set_speeds(turning, bodies, angles_now, film, grids)
-            begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
-                        moments[s] / moments[s - 1] if s > 1 else 1.0)
-            # Not before it is needed: a branch ahead of the inlined parts above keeps the compiler from leaving out the
-            # counts of references to their arrays, which take a quarter of the time.
-            lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
-            solved = False
-            for iteration in range(most_iterations(films)):
-                forces(films, work, clearances, control, g, s, iteration, film)
-                numbers[SOLVES] += m // 2
-                share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, film, newton)
-                if left == math.inf:
-                    break
-                left = left_over(films, work, left, moved, unsettled, allowed)
-                if share == 1.0:
-                    late = accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
-                    left = max(left, g * late / _smallest(clearances))
-                    if spins.shape[0] > 0:
-                        left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
-                        set_speeds(turning, bodies, angles_now, film, grids)
-                    if control.linearised or left < allowed:
-                        solved = True
-                        break
+            solved, speed = _solve_stage(rotor, films, tableau, control, state, space, s, t, step, piece)
             if not solved:
                 break
-            past[HISTORY + s - 1, 0] = t_s
-            for i in range(m):
-                past[HISTORY + s - 1, 1 + i] = film[U, i]
-        error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance if solved else UNSOLVED
+        error = UNSOLVED
+        if solved:
+            error = local_error(tableau.defect, rotor.observed, stage_v, stage_a, step, g) / control.tolerance
         if not error <= 1.0:  # not a number counts as too large
             if reject(numbers, step, error, order):
                 continue
@@ -187,14 +196,14 @@ def _advance(
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
         taken = Taken(step, g, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness)
-        hot = carry_heat(heat, films, work, turning, film, bodies, wet, taken, clearances, rotor.drag)
+        hot = carry_heat(heat, films, work, rotor.turning, film, own.rings.bodies, wet, taken, clearances, rotor.drag)
         write_heat(heat, out_heat, before, written)
         numbers[STEP_DONE] = step
         move_on(q, v, a, q_new, stage_v, stage_a)
-        keep_past(past, past_now)
+        keep_past(own.past, past_now)
         done += 1
-        largest = _largest_eccentricity(clearances, selection, q)
-        status = count_step(numbers, errors, control, t_new, step, speed, error * tolerance, largest)
+        largest = _largest_eccentricity(clearances, scratch.selection, q)
+        status = count_step(numbers, errors, control, t_new, step, speed, error * control.tolerance, largest)
         if status != RUNNING or hot != RUNNING:
             return status if status != RUNNING else hot, written
         choose_next(numbers, h, error, order, math.inf)

@@ -56,8 +56,8 @@ def _oil_leaving(films, work, flows, f, far_open):  # type: ignore[no-untyped-de
         return lambda films, work, flows, f, far_open: flows[NOW, f, LEFT]
     if have_cells(films):
         return lambda films, work, flows, f, far_open: side_flow(
-            films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[GRID_X, f],
-            work.grids[GRID_Y, f], far_open[f] != 0.0,
+            films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[f, GRID_X],
+            work.grids[f, GRID_Y], far_open[f] != 0.0,
         )  # fmt: skip
     return lambda films, work, flows, f, far_open: 0.0
 
@@ -78,7 +78,7 @@ def _note(
         noted[n + LEAVES * count + f] = oil_leaving(films, work, flows, f, far_open)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def _advance_watched(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
     output: Output, heat: Any, notes: Notes,

@@ -77,7 +77,7 @@ def _fill(stencil: Array, i: int, block: Array, columns: Any) -> None:
             block[a, a + 1] = stencil[ABOVE, i, a]
 
 
-@compiled(fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
 def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row: Any) -> None:
     """fields (m, k, k + r): its last r layers <- the solutions for them as right-hand sides.
 
@@ -148,7 +148,7 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
                 fields[i, a, c] = held[a, c]
 
 
-@compiled(fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
 def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
     """As solve_blocks, for columns of a length and right-hand sides of a number known to the compiler, see vectors.py.
 

@@ -82,7 +82,7 @@ def damp(cells: Array, rate: float, stencil: Array) -> None:
             stencil[CENTRE, i, j] += rate * cells[UNKNOWN, i, j] * cells[AREA, i, j]
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def film_newton(
     films: VolumeFilms, f: int, w: Array, motion: GridMotion, past: Array, states: Array, stencil: Array,
     blocks: Array, fields: Array, flows: Array,

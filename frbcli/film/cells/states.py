@@ -29,7 +29,7 @@ def whirl_share(d_x: float, d_y: float, v_x: float, v_y: float, speed: float) ->
     return place * place * (3.0 - 2.0 * place)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def follow_law(numbers: Array, d_x: float, d_y: float, v_x: float, v_y: float, speed: float, law: Array) -> None:
     """law (LAW_NUMBERS,) <- what a film's law is at the displacement d, its rate v and the speed omega_J + omega_S."""
     motion = np.empty(MOTION)
@@ -70,7 +70,7 @@ def hold(states: Array, omega: float) -> None:
             states[BEFORE_UPSTREAM, i, j] = min(states[FRACTION, before, j], 1.0)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def pressure_of(numbers: Array, law: Array, w: float) -> float:
     """Pressure of one cell with the unknown w."""
     unknown, state = np.empty(1), np.empty(STATES)

@@ -31,7 +31,7 @@ class MeanFilm(NamedTuple):
     weights: Array
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def mean_force(
     film: MeanFilm, eccentricity: float, w_r: float, w_t: float, omega: float,
 ) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip

@@ -92,7 +92,7 @@ def _settle(
     return LIMIT
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def row_forces(
     law: Array, unit: float, stencil: Array, loads: Array, area: Array, push: Array, width: Array,
     velocities: Array, forces: Array,

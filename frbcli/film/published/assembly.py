@@ -80,7 +80,7 @@ def artificial_diffusion(length: float, half: float, height: float, steep: float
     return GAMMA * length * beta * share, by_beta * unit, by_height
 
 
-@compiled(fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
 def assemble(
     elements: Elements,
     step: Step,

@@ -16,7 +16,7 @@ from frbcli.film.published.ring import make_ring, solve_ring
 from frbcli.film.published.unknown import pressures_of
 
 
-@compiled(internal=True)
+@compiled(inline=True)
 def _set_gap(film: ElementFilm, room: Room, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Gap:
     sine, cosine = film.elements.sine, film.elements.cosine
     height, slope, rate = room.gap[0], room.gap[1], room.gap[2]
@@ -28,7 +28,7 @@ def _set_gap(film: ElementFilm, room: Room, d_x: float, d_y: float, v_x: float, 
     return Gap(height, slope, rate, 0.5 * omega)
 
 
-@compiled(internal=True)
+@compiled(internal=True, makes_arrays=True)
 def set_pressures(film: ElementFilm, room: Room, w: Array) -> None:
     """PRESSURE and BY_W of the room <- of the unknowns w (nodes,)."""
     room.nodes[PRESSURE], room.nodes[BY_W] = pressures_of(film.unknowns, film.step, w)
@@ -74,7 +74,7 @@ def force(film: ElementFilm, room: Room) -> tuple[float, float]:
     return f_x, f_y
 
 
-@compiled(internal=True)
+@compiled(internal=True, makes_arrays=True)
 def solve(film: ElementFilm, room: Room) -> tuple[float, float, float, float, float, float]:
     """room.solution <- correction of the unknowns, and what the velocities do to them, from what residual has
     assembled. Returns the force after the correction and its derivatives by the velocity (xx, xy, yx, yy); the
@@ -134,7 +134,7 @@ def oil_held(film: ElementFilm, d_x: float, d_y: float, theta: Array) -> float:
     return film.volume * total
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def oil_passing(
     film: ElementFilm, room: Room, w: Array, past: Array, d_x: float, d_y: float, v_x: float, v_y: float,
     omega: float,

@@ -45,7 +45,7 @@ def make_unknowns(mesh: QuadraticMesh, fixed: NDArray[np.bool_], step: Step, ref
     return Unknowns(fixed, free.ravel() & ~fixed, given, exponent, amount, reference)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def unknowns_of(unknowns: Unknowns, step: Step, pressure: Array) -> Array:
     """(nodes,) unknowns of the pressures (nodes,) of the nodes."""
     w = np.empty_like(pressure)
@@ -57,7 +57,7 @@ def unknowns_of(unknowns: Unknowns, step: Step, pressure: Array) -> Array:
     return w
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def pressures_of(unknowns: Unknowns, step: Step, w: Array) -> tuple[Array, Array]:
     """(nodes,) scaled gauge pressures of the nodes and their derivatives by the unknowns, none where they are given."""
     pressure, slope = np.empty_like(w), np.empty_like(w)

@@ -203,7 +203,7 @@ def mode_fields(
             first = e + 1
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def chain_force(
     table: Array, grid: Array, d_x: float, d_y: float, w_x: float, w_y: float, level: float, clipped: bool,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip

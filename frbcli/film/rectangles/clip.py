@@ -15,7 +15,7 @@ from frbcli.film.grid import Array
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, element_lengths, gauss_angles
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def force_weights(vertices: Array) -> Array:
     """(2, 3, m) integrals of each element's shape functions times cos(Theta) and sin(Theta)."""
     m = vertices.shape[0]

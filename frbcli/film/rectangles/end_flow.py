@@ -156,7 +156,7 @@ def table_end_flow(flow: TableEndFlow, d_x: float, d_y: float, w_x: float, w_y: 
     return flow.unit * _leaving(flow.table, flow.ring, cell, x - cell, eccentricity, w_r, w_t, sigma)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def chain_end_flow(flow: ChainEndFlow, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
     """The same of a film between axial grooves, which stand still; the ends of the grooves themselves are left out."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
@@ -203,7 +203,7 @@ def _end_flow(flow, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
     return lambda flow, d_x, d_y, w_x, w_y, scale: one(flow, d_x, d_y, w_x, w_y, scale)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def end_flows(flow: EndFlow, motions: Array) -> Array:
     """(k,) of end_flow in motions (k, 4) of d and w, with the pressures of the film."""
     found = np.empty(motions.shape[0])

@@ -140,7 +140,7 @@ def _weighted(unit: Array, active: Array, sums: Array) -> None:
         sums[4, c] = one - middle
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def fields_force(
     table: Array, grid: Array, eccentricity: float, w_r: float, w_t: float, sigma: float, level: float,
 ) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip

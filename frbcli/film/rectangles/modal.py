@@ -29,7 +29,7 @@ SHAPE = np.stack(
 SLOPE = np.stack([4 * GAUSS_POINTS - 3, 4 - 8 * GAUSS_POINTS, 4 * GAUSS_POINTS - 1])
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def gauss_angles(vertices: Array) -> Array:
     """(m, 3) angles of the quadrature points of the m elements between the vertices (m,) of one turn."""
     m = vertices.shape[0]
@@ -41,7 +41,7 @@ def gauss_angles(vertices: Array) -> Array:
     return angles
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def element_lengths(vertices: Array) -> Array:
     """(m,) lengths of the elements between the vertices of one turn."""
     m = vertices.shape[0]
@@ -66,7 +66,7 @@ def _element(length: float, cube: Array, decay: float, local: Array) -> None:
             local[i, j] = entry
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
     """Solve -d/dphi(H^3 dP/dphi) + decay H^3 P = load on the ring of m quadratic elements.
 
@@ -124,7 +124,7 @@ def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
     return pressure
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads: Array) -> Array:
     """Pressure of a unit radial and a unit tangential w, and their derivatives by the eccentricity, mode by mode.
 

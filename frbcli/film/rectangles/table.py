@@ -50,7 +50,7 @@ def ring_contraction(eccentricity: float) -> float:
     return float(max((1.0 - eccentricity) / (1.0 + eccentricity), 1e-6) ** 0.3)
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def clipped_forces(
     fields: Array, shapes: Array, weights_z: Array, directions: Array, stretch: float, stretch_rate: float,
     vertices: Array, clipped: bool,
