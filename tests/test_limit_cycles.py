@@ -20,12 +20,14 @@ import frbcli
 from frbcli.case.load import load_case_text
 from frbcli.case.shipped import find_shipped
 from frbcli.cycles.balance import Balance, packed
+from frbcli.cycles.branch import Cycle, FoldFollower, first_place, follow_branch
 from frbcli.cycles.continuation import Place, Strides, corrected, fold_between, follow, step_from
 from frbcli.cycles.equilibria import resting_curve
 from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import multipliers
 from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine, film_loads, make_machine, transfer
+from frbcli.cycles.reduced_states import reduced_space
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.rectangles.film import evaluate
@@ -221,6 +223,28 @@ def test_multipliers_next_to_rest_are_those_of_the_eigenvalues() -> None:
     np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
+def test_multipliers_of_a_long_shaft_are_those_of_all_its_states() -> None:
+    """turbocharger-heavy with 30 modes in each plane: the states that its films see tell the same multipliers, the
+    trivial one and those outside of the unit circle; of few modes all are kept."""
+    case = tomllib.loads(turbocharger().source_text)
+    case["rotor"]["modes"] = 30
+    machine = machine_of(long := frbcli.case_from_dict(case))
+    system = make_system(long, make_plan(long))
+    hopf = resting_curve(system, machine, 0.13 * machine.pace, 0.15 * machine.pace).hopf[0]
+    cycles: list[Cycle] = []
+    follower = FoldFollower(machine, 0.0, machine.pace)
+    follow_branch(follower, first_place(machine, hopf), cycles.append, until=lambda _: len(cycles) == 16)
+    full, less = state_space(machine), reduced_space(machine)
+    assert len(less.still) < 0.5 * len(full.still)
+    for cycle in cycles[3::6]:
+        all_, few = (multipliers(machine, space, cycle.y).values for space in (full, less))
+        assert abs(few[0] - all_[0]) < 1e-7
+        np.testing.assert_allclose(few[:12], all_[:12], atol=1e-6)
+        assert np.abs(few).max() > 1.0
+    small = machine_of(turbocharger())
+    np.testing.assert_array_equal(reduced_space(small).still, state_space(small).still)
+
+
 @pytest.mark.parametrize("gamma", [4.538, 1.313])
 def test_the_trivial_multiplier_is_one(gamma: float) -> None:
     """To 1e-6, at folds as well, where a second multiplier is 1."""
@@ -407,7 +431,7 @@ def test_a_step_does_not_change_to_a_part_of_the_curve_that_passes_close_by() ->
 
 def test_a_small_synchronous_motion_is_the_linear_response() -> None:
     """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
-    stability."""
+    stability and is zero where that changes."""
     case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=1e-3 g*mm", "speed.from=50 Hz"])
     points = frbcli.limit_cycles(case).synchronous[::4]
     linear = frbcli.response(case, sorted(point.speed_Hz for point in points))
@@ -415,7 +439,10 @@ def test_a_small_synchronous_motion_is_the_linear_response() -> None:
     for number, point in enumerate(reversed(points)):
         found = 2.0 * np.abs(point.harmonics[1, 0]) * case.bearings[0].clearance
         np.testing.assert_allclose(found, np.abs(linear.motion[number, journal]), rtol=1e-4)
-        assert point.stable == (linear.growth[number] < 0.0)
+        if point.kind:
+            assert abs(linear.growth[number]) < 1e-4
+        else:
+            assert point.stable == (linear.growth[number] < 0.0)
 
 
 def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ignore[no-untyped-def]

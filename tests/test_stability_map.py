@@ -1,4 +1,4 @@
-"""Stability maps: curves of Hopf points and folds over the speed and a second number, against diagrams."""
+"""Stability maps: curves of Hopf points and folds over two numbers, the speed or of the case, against diagrams."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from rigid_cycles import UNIT_Hz, diagram, rigid
 from scipy.interpolate import CubicSpline
 
 import frbcli
+from frbcli.case.load import load_case_text
 from frbcli.cli.main import run
-from frbcli.cycles.stability_map import StabilityMap
+from frbcli.cycles.stability_map import Across, StabilityMap
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_system
 
 
 def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
@@ -82,3 +85,63 @@ def test_folds_end_where_the_criticality_changes_and_turn_back_in_a_cusp() -> No
     assert len(diagram(cusp + 0.15, 2.6, 2.9).of("fold")) == 2
     frame = found.to_pandas()
     assert {"bautin", "cusp", "hopf", "fold"} == set(frame["kind"])
+
+
+def test_films_with_tables_have_curves_of_folds_as_well() -> None:
+    """Jeffcott rotor in finite films: the fold of a diagram that the map has not seen lies on its curve; films of
+    other clearances share their table, whose making was most of the cost."""
+    found = frbcli.stability_map(frbcli.load_case("jeffcott"), "bearing.clearance", "35 um", "37 um", 2)
+    (fold,) = (curve for curve in found.curves if curve.kind == "fold")
+    assert fold.notes == ()
+    case = frbcli.load_case("jeffcott", ["bearing.clearance=36.2 um", "rotor.unbalance=0 g*mm", "speed.to=200 Hz"])
+    places = {round(point.value, 6): point.speed_Hz for point in fold.points}  # curves begin on the border
+    line = CubicSpline(*zip(*sorted(places.items()), strict=True))
+    assert float(line(36.2)) == pytest.approx(frbcli.limit_cycles(case).of("fold")[0].speed_Hz, rel=1e-4)
+    tables = [make_system(one, make_plan(one)).films[0].table for one in (case, frbcli.load_case("jeffcott"))]
+    assert tables[0] is tables[1]
+
+
+@cache
+def map_of_two_keys() -> StabilityMap:
+    """Of the rigid rotor at w = 2.72 over viscosity and clearance."""
+    case = rigid(4.538, 2.4, 2.9)
+    viscosity = case.oil.viscosity
+    assert isinstance(viscosity, float)
+    across = Across("oil.viscosity", f"{0.6 * viscosity!r} Pa*s", f"{1.1 * viscosity!r} Pa*s", 2.72 * UNIT_Hz)
+    return frbcli.stability_map(case, "bearing.clearance", "49.9 um", "50.1 um", 3, across=across)
+
+
+@pytest.mark.parametrize("kind", ["hopf", "fold"])
+def test_a_map_over_two_keys_meets_diagrams_over_the_speed(kind: str) -> None:
+    """A machine with both numbers of a point of a curve has its Hopf point, or its fold, at the speed of the map."""
+    found = map_of_two_keys()
+    assert (found.over, found.over_unit, found.key, found.unit) == ("oil.viscosity", "Pa*s", "bearing.clearance", "um")
+    curve = next(curve for curve in found.curves if curve.kind == kind)
+    assert curve.points[0].value != pytest.approx(curve.points[-1].value, rel=1e-3)
+    for point in [point for point in curve.points if not point.kind][1:-1:2]:
+        assert point.speed_Hz == pytest.approx(2.72 * UNIT_Hz)
+        settings = [f"oil.viscosity={point.over!r} Pa*s", f"bearing.clearance={point.value!r} um"]
+        case = load_case_text(rigid(4.538, 2.4, 2.9).source_text, settings, "rigid")
+        other = min(frbcli.limit_cycles(case).of(kind), key=lambda one: abs(one.speed_Hz - point.speed_Hz))
+        assert other.speed_Hz == pytest.approx(point.speed_Hz, rel=1e-6 if kind == "hopf" else 1e-5)
+        assert other.frequency_Hz == pytest.approx(point.frequency_Hz, rel=1e-5)
+        assert other.criticality == point.criticality
+
+
+def test_the_command_draws_maps_over_two_keys(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+    (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
+    over = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance", "--from", "48 um", "--to"]
+    over += ["52 um", "--points", "2", "--speed", f"{2.65 * UNIT_Hz} Hz", "--json", "-o", str(tmp_path / "map.png")]
+    words = [*over, "--and", "bearing.width", "--csv", str(tmp_path / "map.csv")]
+    assert run([*words, "--and-from", "9 mm", "--and-to", "11 mm"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["over"], document["and"]) == ("bearing.clearance", "bearing.width")
+    point = document["curves"][0]["points"][0]
+    assert 47.9 < point["over_value"] < 52.1
+    assert 8.9 < point["value"] < 11.1
+    assert (tmp_path / "map.png").exists()
+    assert (tmp_path / "map.csv").read_text().startswith("bearing.clearance,over_unit,bearing.width,unit")
+    assert run(words) == 2
+    assert run([*over, "--and-from", "9 mm", "--and-to", "11 mm"]) == 2
+    assert run([*over, "--and", "bearing.clearance", "--and-from", "48 um", "--and-to", "52 um"]) == 2
+    assert "both numbers of the map" in capsys.readouterr().err

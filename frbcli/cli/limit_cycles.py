@@ -22,7 +22,7 @@ from frbcli.cli.runs import OUTPUT, here
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint
-    from frbcli.cycles.stability_map import MapPoint
+    from frbcli.cycles.stability_map import MapPoint, StabilityMap
     from frbcli.plot.run_track import RunTrack
 
 ASKED = "asked"
@@ -31,13 +31,21 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
 @dataclass(frozen=True)
 class Range:
-    """The number that is varied in place of the speed or beside it, see the options of the command."""
+    """The numbers that are varied in place of the speed or beside it, see the options of the command."""
 
     over: str
     key: str | None
     low: str | None
     high: str | None
+    and_low: str | None
+    and_high: str | None
     points: int
+
+    @property
+    def second(self) -> tuple[str, str, str] | None:
+        """The key of --and with its range, which is that of --from and --to beside the speed."""
+        low, high = (self.low, self.high) if self.over == "speed" else (self.and_low, self.and_high)
+        return None if self.key is None or low is None or high is None else (self.key, low, high)
 
 
 @click.command()
@@ -47,9 +55,11 @@ class Range:
 @click.option("--over", default="speed", metavar="KEY",
               help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
 @click.option("--and", "key", metavar="KEY",
-              help="Curves of Hopf points and folds over speed and this key, e.g. bearing.clearance.")  # fmt: skip
+              help="Curves of Hopf points and folds over --over and this key, e.g. bearing.clearance.")  # fmt: skip
 @click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
 @click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
+@click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and beside --over KEY.")
+@click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and beside --over KEY.")
 @click.option("--points", type=click.IntRange(2, 500), default=3,
               help="Number of values of --and whose diagrams tell where curves begin. [3]")  # fmt: skip
 @click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
@@ -82,19 +92,21 @@ def command(
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
     _check_range(varied)
     over, key, low, high = varied.over, varied.key, varied.low, varied.high
-    if (key is not None and (speeds or runs)) or (over != "speed" and (len(speeds) > 1 or runs)):
+    along_speed = over == "speed"
+    if ((key is not None or not along_speed) and (len(speeds) > 1 or runs)) or (key and along_speed and speeds):
         raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
     drawn = "limit-cycles" if key is None else "stability-map"
     picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
     check_place(picture)
     require_place(csv)
-    if key is not None and low is not None and high is not None:
-        _map(terminal, case, (key, low, high, varied.points), picture, csv)
+    at = speeds[0] if speeds else case.speed.end
+    if varied.second is not None:
+        across = None if along_speed or low is None or high is None else (over, low, high, at)
+        _map(terminal, case, (*varied.second, varied.points), across, (picture, csv))
         return
     tracks = [track for name in runs for track in _tracks(Path(name))]
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        if over != "speed" and low is not None and high is not None:
-            at = speeds[0] if speeds else case.speed.end
+        if not along_speed and low is not None and high is not None:
             found = limit_cycles_over(case, over, low, high, at, _showing(show))
         else:
             found = limit_cycles(case, speeds, _showing(show))
@@ -110,42 +122,32 @@ def command(
 
 
 def _check_range(varied: Range) -> None:
-    other = varied.over != "speed"
-    if other and varied.key is not None:
-        raise click.UsageError("--and draws a map over the speed: leave --over out.")
-    if (other or varied.key is not None) != (varied.low is not None and varied.high is not None):
+    other, map_ = varied.over != "speed", varied.key is not None
+    if (other or map_) != (varied.low is not None and varied.high is not None):
         raise click.UsageError("--over KEY and --and KEY go with --from VALUE and --to VALUE.")
+    if (other and map_) != (varied.and_low is not None and varied.and_high is not None):
+        raise click.UsageError("--and-from and --and-to are the range of --and KEY beside --over KEY, both or none.")
 
 
 def _map(
-    terminal: Terminal, case: Case, over: tuple[str, str, str, int], picture: Path | None, csv: Path | None
+    terminal: Terminal,
+    case: Case,
+    second: tuple[str, str, str, int],
+    first: tuple[str, str, str, float] | None,
+    files: tuple[Path | None, Path | None],
 ) -> None:
-    """The map over the speed and a second number: key, from, to, points."""
-    from frbcli.cycles.stability_map import stability_map
+    """The map over the speed or a first number (key, from, to, speed in Hz) and a second one (key, from, to, points).
+
+    files: picture and table.
+    """
+    from frbcli.cycles.stability_map import Across, stability_map
     from frbcli.scene.films import film_places
 
+    picture, csv = files
+    across = None if first is None else Across(*first)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = stability_map(case, *over, counting(terminal, show))
-    rows = [
-        (f"{row.value:.4g} {found.unit}".strip(), point.kind, f"{point.speed_Hz:.2f}", f"{point.frequency_Hz:.2f}",
-         point.criticality or "")
-        for row in found.rows
-        for point in row.special
-    ]  # fmt: skip
-    rows += [
-        (f"{point.value:.4g} {found.unit}".strip(), point.kind, f"{point.speed_Hz:.2f}", f"{point.frequency_Hz:.2f}",
-         "on a curve")
-        for point in found.special
-    ]  # fmt: skip
-    terminal.table(case.title or case.name, (found.key, "point", "Hz", "whirl Hz", ""), rows)
-    for curve in found.curves:
-        values = [point.value for point in curve.points]
-        told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
-        named = "Hopf points" if curve.kind == "hopf" else "folds"
-        terminal.result(_wrapped(" ".join([f"Curve of {named}: {told}", *curve.notes])))
-    for row in found.rows:
-        if row.problem:
-            terminal.result(_wrapped(f"{row.value:.4g} {found.unit}: {row.problem}"))
+        found = stability_map(case, *second, counting(terminal, show), across)
+    _tell_map(terminal, found)
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)
         terminal.result(f"table: {csv}")
@@ -154,38 +156,64 @@ def _map(
 
         picture = draw(terminal, lambda: stability_map_figure(found), picture)
     names = tuple(place.name for place in film_places(case))
-    terminal.emit(
-        {
-            "command": "limit-cycles",
-            "case": case.name,
-            "over": "speed",
-            "and": found.key,
-            "unit": found.unit,
-            "rows": [
-                {
-                    "value": row.value,
-                    "special": [_special(names, p) for p in row.special],
-                    "problem": row.problem or None,
-                }
-                for row in found.rows
-            ],
-            "curves": [
-                {
-                    "kind": curve.kind,
-                    "points": [_map_point(names, point) for point in curve.points],
-                    "notes": curve.notes,
-                }
-                for curve in found.curves
-            ],
-            "special": [_map_point(names, point) for point in found.special],
-            "picture": picture,
-            "csv": csv,
-        }
-    )
+    terminal.emit(_map_document(names, found) | {"picture": picture, "csv": csv})
+
+
+def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
+    rows = [
+        (f"{row.value:.4g} {found.unit}".strip(), point.kind, f"{point.value:.6g}", f"{point.frequency_Hz:.2f}",
+         point.criticality or "")
+        for row in found.rows
+        for point in row.special
+    ]  # fmt: skip
+    rows += [
+        (f"{point.value:.4g} {found.unit}".strip(), point.kind, f"{point.over:.6g}", f"{point.frequency_Hz:.2f}",
+         "on a curve")
+        for point in found.special
+    ]  # fmt: skip
+    columns = (found.key, "point", found.over_unit or found.over, "whirl Hz", "")
+    terminal.table(found.case.title or found.case.name, columns, rows)
+    for curve in found.curves:
+        values = [point.value for point in curve.points]
+        told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
+        named = "Hopf points" if curve.kind == "hopf" else "folds"
+        terminal.result(_wrapped(" ".join([f"Curve of {named}: {told}", *curve.notes])))
+    for row in found.rows:
+        if row.problem:
+            terminal.result(_wrapped(f"{row.value:.4g} {found.unit}: {row.problem}"))
+
+
+def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, object]:
+    return {
+        "command": "limit-cycles",
+        "case": found.case.name,
+        "over": found.over,
+        "over_unit": found.over_unit,
+        "and": found.key,
+        "unit": found.unit,
+        "rows": [
+            {
+                "value": row.value,
+                "special": [_special(names, point) for point in row.special],
+                "problem": row.problem or None,
+            }
+            for row in found.rows
+        ],
+        "curves": [
+            {
+                "kind": curve.kind,
+                "points": [_map_point(names, point) for point in curve.points],
+                "notes": curve.notes,
+            }
+            for curve in found.curves
+        ],
+        "special": [_map_point(names, point) for point in found.special],
+    }
 
 
 def _map_point(names: tuple[str, ...], point: MapPoint) -> dict[str, object]:
     return {
+        "over_value": point.over,
         "value": point.value,
         "speed_Hz": point.speed_Hz,
         "frequency_Hz": point.frequency_Hz,

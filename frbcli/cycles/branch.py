@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from frbcli.cycles.continuation import (
     Equations,
     Place,
     Strides,
+    Unreachable,
     corrected,
     fold_between,
     next_length,
@@ -26,9 +28,10 @@ from frbcli.cycles.continuation import (
     step_from,
 )
 from frbcli.cycles.equilibria import HopfPoint
-from frbcli.cycles.floquet import TRIVIAL, Multipliers, multipliers
-from frbcli.cycles.linearised import state_space
+from frbcli.cycles.floquet import HELPS, TRIVIAL, Multipliers, multipliers
+from frbcli.cycles.linearised import StateSpace
 from frbcli.cycles.machine import Machine
+from frbcli.cycles.reduced_states import reduced_space
 
 Array = NDArray[np.float64]
 
@@ -45,7 +48,7 @@ LARGEST = 0.9998  # eccentricity beyond which no cycle is followed
 NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
 SMALL = 2e-3  # amplitude over the clearance below which a branch has come back to rest
 MOMENTS = 256  # of a period at which eccentricities are taken
-HALVINGS = 14  # to locate a flip or a torus point: of the step
+CLOSE = 6e-5  # share of the step to which a flip or a torus point is located
 FOLD, FLIP, TORUS, HOPF = "fold", "flip", "torus", "hopf"
 ASKED = "asked"  # a cycle at a speed that was asked for
 
@@ -92,21 +95,33 @@ class Follower:
         self.range = (slowest / machine.pace, fastest / machine.pace)
         self.asked = tuple(speed / machine.pace for speed in asked)
 
-    def cycle(self, place: Place, kind: str = "") -> Cycle:
-        """A point of the branch with all that is told of it."""
-        found = self.multipliers(place)
+    def cycle(self, place: Place, kind: str = "", near: Cycle | None = None) -> Cycle:
+        """A point of the branch with all that is told of it. near: one close by."""
+        found = self.multipliers(place, None if near is None else near.multipliers.relaxed)
+        halved = True  # whether finer intervals have been tried
         while found.defect > TRIVIAL:
             finer = self.with_more(place, self.most_at_fold if kind == FOLD else MOST_UNKNOWNS)
             if finer is None:
+                found = found if halved else self.multipliers(place, found)
                 break
-            place, found = finer, self.multipliers(finer)
+            enough = HELPS * found.defect
+            place, found = finer, self.multipliers(finer, found, enough)
+            halved = found.defect > enough
         machine, y = self.machine_at(place.y), self.as_cycle(place.y)
         return Cycle(place, machine, y, eccentricities(machine, y), found, kind)
 
-    def multipliers(self, place: Place) -> Multipliers:
-        """Those of the cycle at a place."""
-        machine = self.machine_at(place.y)
-        return multipliers(machine, state_space(machine), self.as_cycle(place.y))
+    def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
+        """Those of the cycle at a place. near, enough: see floquet.py."""
+        machine, y = self.machine_at(place.y), self.as_cycle(place.y)
+        return multipliers(machine, self.space_at(place.y), y, near, max(TRIVIAL, enough))
+
+    def space_at(self, _y: Array) -> StateSpace:
+        """The states whose multipliers those of the cycle y are."""
+        return self._space
+
+    @cached_property
+    def _space(self) -> StateSpace:
+        return reduced_space(self.machine)
 
     def machine_at(self, _y: Array) -> Machine:
         """The machine whose cycle y is."""
@@ -190,7 +205,7 @@ class Follower:
 class FoldFollower(Follower):
     """Follows branches whose folds alone are asked for: without multipliers, the larger part of the cost."""
 
-    def multipliers(self, _place: Place) -> Multipliers:
+    def multipliers(self, _place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
         return Multipliers(np.ones(1, dtype=complex), 0.0)
 
 
@@ -223,7 +238,7 @@ def follow_branch(
             found, note = at_speed(follower, place, found, limit), LEFT
             if found is None:
                 break
-        cycle = follower.cycle(found)
+        cycle = follower.cycle(found, near=cycles[-1] if cycles else None)
         known = len(cycles)
         cycles += special_cycles(follower, cycles[-1] if cycles else None, place, cycle, length)
         cycles.append(cycle)
@@ -306,12 +321,12 @@ def special_cycles(follower: Follower, before: Cycle | None, place: Place, after
     if place.tangent[-1] * after.place.tangent[-1] < 0.0:
         fold = follower.fold(resized_like(place, after.place, follower.machine.size), length)
         if fold is not None:
-            found.append(follower.cycle(fold, FOLD))
+            found.append(follower.cycle(fold, FOLD, after))
     ends = sorted((place.y[-1], after.y[-1]))
     for speed in follower.asked if not found else ():  # beside a fold there are two of them, or none
         there = at_speed(follower, place, after.place, speed) if ends[0] < speed <= ends[1] else None
         if there is not None:
-            found.append(follower.cycle(there, ASKED))
+            found.append(follower.cycle(there, ASKED, after))
     found.sort(key=lambda cycle: abs(cycle.y[-1] - place.y[-1]))
     if before is None:
         return found
@@ -323,9 +338,9 @@ def special_cycles(follower: Follower, before: Cycle | None, place: Place, after
     if kind == FOLD:  # a real multiplier at 1 away from a fold is one that the harmonics have not resolved
         return found
     finer = resized_like(place, after.place, follower.machine.size)
-    place_there = _bisected(follower, finer, before.multipliers.unstable, length)
+    place_there = _crossing(follower, finer, length, (before.multipliers, after.multipliers))
     if place_there is not None:
-        found.append(follower.cycle(place_there, kind))
+        found.append(follower.cycle(place_there, kind, after))
     return found
 
 
@@ -341,20 +356,32 @@ def _kind(cycle: Cycle) -> str:
     return FLIP if nearest.real < 0.0 else FOLD
 
 
-def _bisected(follower: Follower, place: Place, unstable: int, length: float) -> Place | None:
-    """Where the number of growing disturbances changes from `unstable` within a step."""
-    low, high, found = 0.0, length, None
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        there = step_from(follower.equations(place), place, middle)
+def _crossing(
+    follower: Follower, place: Place, length: float, ends: tuple[Multipliers, Multipliers]
+) -> Place | None:
+    """Where a multiplier crosses the unit circle within a step, between those at its ends."""
+    from scipy.optimize import brentq
+
+    number = max(found.unstable for found in ends) - 1
+    known = {0.0: ends[0].growth(number), length: ends[1].growth(number)}
+
+    def growth(along: float) -> float:
+        if along not in known:
+            known[along] = follower.multipliers(at(along), ends[1]).growth(number)
+        return known[along]
+
+    def at(along: float) -> Place:
+        there = step_from(follower.equations(place), place, along)
         if there is None:
-            return None
-        there = oriented(there, place.tangent)
-        if follower.multipliers(there).unstable == unstable:
-            low = middle
-        else:
-            high, found = middle, there
-    return found
+            raise Unreachable
+        return oriented(there, place.tangent)
+
+    try:
+        if known[0.0] * known[length] > 0.0:  # one end is within the error of the trivial multiplier
+            return at(min(known, key=lambda along: abs(known[along])))
+        return at(float(brentq(growth, 0.0, length, xtol=CLOSE * length)))
+    except Unreachable:
+        return None
 
 
 def at_speed(follower: Follower, place: Place, beyond: Place, speed: float) -> Place | None:

@@ -19,16 +19,27 @@ NUMBER = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*")
 
 
 class Family:
-    """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`."""
+    """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`;
+    settings: of other keys, KEY=VALUE."""
 
-    def __init__(self, case: Case, key: str, high: float, unit: str, omega: float) -> None:
+    def __init__(
+        self, case: Case, key: str, high: float, unit: str, omega: float, settings: tuple[str, ...] = ()
+    ) -> None:
         self.case, self.key, self.high, self.unit, self.omega = case, key, high, unit, omega
+        self.settings = settings
         self._made: dict[float, Machine] = {}
+
+    def setting(self, share: float) -> str:
+        """KEY=VALUE of a share of the largest value."""
+        return f"{self.key}={share * self.high!r} {self.unit}".strip()
+
+    def beside(self, setting: str) -> Family:
+        """The machines with another setting of another key."""
+        return Family(self.case, self.key, self.high, self.unit, self.omega, (setting,))
 
     def system(self, share: float) -> System:
         """The system at a share of the largest value. Raises InputError if the case cannot have it."""
-        setting = f"{self.key}={share * self.high!r} {self.unit}".strip()
-        case = load_case_text(self.case.source_text, [setting], self.case.name)
+        case = load_case_text(self.case.source_text, [*self.settings, self.setting(share)], self.case.name)
         check(case)
         return make_system(case, make_plan(case))
 
@@ -52,6 +63,14 @@ def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float
     if unit != other or not first < last:
         problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'
         raise InputError(case.name or "case", (Fault(key, f"{low} to {high}", None, problem, remedy),))
+    return first, last, unit
+
+
+def positive_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
+    """The same of a key that is followed, whose values are above zero."""
+    first, last, unit = value_range(case, key, low, high)
+    if first <= 0.0:
+        raise InputError(case.name or "case", (Fault(key, low, None, "must be above 0 here.", "Begin above it."),))
     return first, last, unit
 
 

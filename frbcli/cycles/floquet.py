@@ -8,7 +8,7 @@ One multiplier is 1, of a shift in time; how far it is off tells the error of th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,16 +23,21 @@ Complex = NDArray[np.complex128]
 NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
 FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, MOST_INTERVALS = 48, 4, 768
 TRIVIAL = 1e-6  # error of the trivial multiplier from which on intervals are halved
+HELPS, ALIKE = 0.5, 2.0  # shares of an error: below which finer ones have helped, up to which it is that of nearby
+FAR = 5.0  # times the error aimed at, from which on that of nearby is taken for it without another try
 NEUTRAL = 1e-7  # beyond 1: a multiplier that grows
 DOUBLE = 0.01  # distance of a second multiplier from 1 below which both are told apart by the motion
 
 
 @dataclass(frozen=True)
 class Multipliers:
-    """values: (N,) by falling size, the trivial one first; defect: how far that is from 1."""
+    """values: (N,) by falling size, the trivial one first; defect: how far that is from 1; intervals: of the period
+    that suffice for them; floor: the defect that finer ones have not lowered here or close by, 0 if none is known."""
 
     values: Complex
     defect: float
+    intervals: int = FEWEST_INTERVALS
+    floor: float = 0.0
 
     @property
     def others(self) -> Complex:
@@ -40,9 +45,19 @@ class Multipliers:
         return self.values[1:]
 
     @property
+    def relaxed(self) -> Multipliers:
+        """The same as told to a cycle close by, which tries intervals of double length first."""
+        return replace(self, intervals=self.intervals // 2)
+
+    @property
     def unstable(self) -> int:
         """How many disturbances grow."""
         return int(np.count_nonzero(np.abs(self.others) > 1.0 + max(NEUTRAL, self.defect)))
+
+    def growth(self, number: int) -> float:
+        """How far the multiplier number 0, 1, ... by falling size lies outside of the unit circle."""
+        sizes = np.abs(self.others)
+        return float(sizes[number]) - 1.0 if number < len(sizes) else -1.0
 
     @property
     def stable(self) -> bool:
@@ -50,21 +65,32 @@ class Multipliers:
         return self.unstable == 0
 
 
-def multipliers(machine: Machine, space: StateSpace, y: Array) -> Multipliers:
-    """Those of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right."""
+def multipliers(
+    machine: Machine, space: StateSpace, y: Array, near: Multipliers | None = None, enough: float = TRIVIAL
+) -> Multipliers:
+    """Those of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right.
+
+    space: all states (linearised.py) or those that films see (reduced_states.py); near: those of a cycle close by, or
+    of the same with fewer harmonics, whose intervals are tried first; enough: error with which no finer ones are tried.
+    """
     harmonics = (len(y) - 2) // machine.size // 2
     count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
+    floor = 0.0
+    if near is not None:
+        count = max(count, near.intervals)
+        floor = near.floor
 
     def at(intervals: int) -> Multipliers:
         matrix = monodromy(machine, space, y, intervals)
-        return _parted(_sorted(matrix), matrix, machine, space, y)
+        return replace(_parted(_sorted(matrix), matrix, machine, space, y), intervals=intervals, floor=floor)
 
     found = at(count)
-    while found.defect > TRIVIAL and 2 * count <= MOST_INTERVALS:
+    known = FAR * TRIVIAL < floor < ALIKE * found.defect and found.defect < ALIKE * floor
+    while not known and found.defect > enough and 2 * count <= MOST_INTERVALS:
         count *= 2
         finer = at(count)
-        if finer.defect > 0.5 * found.defect:  # not of the integration, but of the harmonics
-            return finer
+        if finer.defect > HELPS * found.defect:  # not of the integration, but of the harmonics
+            return replace(finer, intervals=found.intervals, floor=finer.defect)
         found = finer
     return found
 
@@ -81,10 +107,10 @@ def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Arra
     # x_j = x_0 + h sum of a_jl (A_0 x_l + B g_l)
     right = np.hstack([np.tile(np.eye(size), (s, 1)), h * np.kron(weights, space.given)])
     by_start, by_loads = np.hsplit(np.linalg.solve(np.eye(s * size) - h * np.kron(weights, linear), right), [size])
-    reads, rates = np.kron(np.eye(s), space.read), np.kron(np.eye(s), space.read_rate)
-    by_u, by_v = _diagonal(loads.by_u, count, s), _diagonal(loads.by_v, count, s)
-    matrix = np.eye(s * c) - by_u @ (reads @ by_loads) - by_v @ (rates @ by_loads)
-    answer = np.linalg.solve(matrix, by_u @ (reads @ by_start) + by_v @ (rates @ by_start))
+    by_u, by_v = (slope.reshape(count, s, c, c) for slope in (loads.by_u, loads.by_v))
+    columns = np.hstack([by_loads, by_start]).reshape(s, size, -1)
+    felt = (by_u @ (space.read @ columns) + by_v @ (space.read_rate @ columns)).reshape(count, s * c, -1)
+    answer = np.linalg.solve(np.eye(s * c) - felt[:, :, : s * c], felt[:, :, s * c :])
     steps = by_start[-size:] + by_loads[-size:] @ answer
     while len(steps) > 1:
         if len(steps) % 2:
@@ -147,12 +173,3 @@ def _weights() -> Array:
     """(3, 3): a_jl, exact for parabolas between the nodes."""
     powers = np.arange(1, len(NODES) + 1)
     return np.asarray((NODES[:, None] ** powers / powers) @ np.linalg.inv(NODES[:, None] ** (powers - 1)))
-
-
-def _diagonal(slopes: Array, count: int, s: int) -> Array:
-    """(count, s c, s c) with the slopes (count s, c, c) of each interval's nodes on the diagonal."""
-    c = slopes.shape[1]
-    found = np.zeros((count, s, c, s, c))
-    for node in range(s):
-        found[:, node, :, node, :] = slopes.reshape(count, s, c, c)[:, node]
-    return found.reshape(count, s * c, s * c)

@@ -227,21 +227,23 @@ def transfer(machine: Machine, harmonics: int, nu: float, omega: float) -> Trans
     """T_k of a machine at the frequency nu and the speed omega, rad/s, for k = 0 ... harmonics."""
     films = machine.film_count
     k = np.arange(harmonics + 1)
-    s = 1j * k[:, None, None] * nu
+    rates = (1j * nu * k).astype(complex)
+    s = rates[:, None, None]
     c, own = machine.size, slice(0, 2 * films)
     values = np.zeros((harmonics + 1, c, c), dtype=complex)
     by_frequency, by_speed = np.zeros_like(values), np.zeros_like(values)
     given = np.zeros((harmonics + 1, 2 * films, 2), dtype=complex)  # by the static load and the unbalance
     for part in machine.parts:
-        flow = part.flow + omega * part.gyroscopic
-        z = part.stiffness + s**2 * part.mass + s * flow
-        moved, left = part.answers(z)
-        answer = moved[:, :, : 2 * films]
-        by_nu = 1j * k[:, None, None] * (2.0 * s * part.mass + flow)
-        values[:, own, own] += part.shapes @ answer
-        by_frequency[:, own, own] -= left @ (by_nu @ answer)
-        by_speed[:, own, own] -= left @ (s * (part.gyroscopic @ answer))
-        given += part.shapes @ moved[:, :, 2 * films :]
+        n = len(part.basis)
+        right, left = part.answers(part.dynamic(rates, omega))
+        mass, flow, turned = np.split(part.matrices[:3].reshape(3 * n, n) @ right, 3, axis=1)
+        by_nu = 1j * k[:, None, None] * (2.0 * s * mass + flow + omega * turned)
+        moved = part.seen @ (part.basis.T @ right) @ part.given
+        values[:, own, own] += moved[:, :, : 2 * films]
+        given += moved[:, :, 2 * films :]
+        loaded = part.given[:, : 2 * films]
+        by_frequency[:, own, own] -= part.seen @ (left @ by_nu) @ loaded
+        by_speed[:, own, own] -= part.seen @ (left @ (s * turned)) @ loaded
     rings = np.arange(2 * films, c)
     lag = 1.0 + 1j * np.outer(k * nu, machine.inertia)
     values[:, rings, rings] = 1.0 / lag
@@ -249,9 +251,9 @@ def transfer(machine: Machine, harmonics: int, nu: float, omega: float) -> Trans
     kappa, rate = np.ones((harmonics + 1, c), dtype=complex), np.zeros((harmonics + 1, c), dtype=complex)
     rate[:, own] = 1j * np.outer(k, np.repeat(machine.dashpot, 2))
     kappa[:, own] = np.repeat(machine.spring, 2) + nu * rate[:, own]
-    rest, turned = np.zeros(c), np.zeros(c, dtype=complex)
+    rest, unbalance = np.zeros(c), np.zeros(c, dtype=complex)
     rest[own] = given[0, :, 0].real
     if harmonics > 0:
-        turned[own] = given[1, :, 1]
-    return Transfer(values, by_frequency, by_speed, kappa, rate, rest, turned)
+        unbalance[own] = given[1, :, 1]
+    return Transfer(values, by_frequency, by_speed, kappa, rate, rest, unbalance)
 

@@ -18,11 +18,12 @@ from frbcli.cycles.branch import MOST_UNKNOWNS, Follower
 from frbcli.cycles.continuation import Equations, Place, Unreachable
 from frbcli.cycles.diagram import Observer, Walk, diagram
 from frbcli.cycles.equilibria import Resting, hopf_points, settled
-from frbcli.cycles.family import Family, value_range
+from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
+from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine
 from frbcli.cycles.result import LimitCycles
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import NotConverged
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.remedies import advised
@@ -45,6 +46,9 @@ class KeyFollower(Follower):
 
     def machine_at(self, y: Array) -> Machine:
         return self.family.machine(float(y[-1]))
+
+    def space_at(self, y: Array) -> StateSpace:
+        return state_space(self.machine_at(y))
 
     def told(self, y: Array) -> str:
         return f"{y[-1] * self.family.high:.4g} {self.family.unit}".rstrip()
@@ -75,12 +79,10 @@ def limit_cycles_over(
     """
     begun = time.process_time()
     check(case)
-    first, last, unit = value_range(case, key, low, high)
-    if first <= 0.0:
-        raise InputError(case.name or "case", (Fault(key, low, None, "must be above 0 here.", "Begin above it."),))
+    first, last, unit = positive_range(case, key, low, high)
     family = Family(case, key, last, unit, 2.0 * math.pi * speed_Hz)
     try:
-        resting = _resting(family, first / last)
+        resting = resting_over(family, first / last)
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed over {key}.") from None
     walk = Walk(
@@ -96,8 +98,9 @@ def limit_cycles_over(
     return diagram(case, walk, observe, lambda: time.process_time() - begun)
 
 
-def _resting(family: Family, lowest: float) -> Resting:
-    """Resting positions over the key, ascending, sought from the largest value on."""
+def resting_over(family: Family, lowest: float) -> Resting:
+    """Resting positions over the key, ascending, sought from the largest value on. Raises Unreachable,
+    NotConverged."""
     with advised(family.case):
         system, machine = family.system(1.0), family.machine(1.0)
         q = resting_position(system, family.omega)

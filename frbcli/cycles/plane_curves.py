@@ -1,4 +1,4 @@
-"""Curves of Hopf points and of folds in the plane of the speed and a second number of the case.
+"""Curves of Hopf points and of folds in a plane of two numbers, see map_planes.py.
 
 Both are curves of solutions as in continuation.py, with one equation more than the resting positions or the cycles
 that lie on them. That a matrix A is singular is asked by g = 0 of
@@ -9,7 +9,7 @@ which is regular on the curve if b and c are near to the vectors that A has no p
 Bifurcations of Dynamical Equilibria, 2000). Of a Hopf point A = 1 - T_1 (dg/du + i nu dg/du' + kappa), as small as the
 films; of a fold, the derivative of the harmonic balance by the motion and its frequency at a constant speed.
 
-The unknowns end with Omega / pace and the second number over its largest value.
+The unknowns end with both numbers over their largest values; that of the speed is the pace.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ from frbcli.cycles.continuation import (
     step_from,
 )
 from frbcli.cycles.equilibria import equations as resting_equations
-from frbcli.cycles.machine import Machine, film_loads, transfer
+from frbcli.cycles.machine import film_loads, transfer
+from frbcli.cycles.map_planes import Plane
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Machines = Callable[[float], Machine]  # of the second number over its largest value
 
 STRIDES = Strides(first=0.02, shortest=1e-5, longest=0.06, points=300)
-DIFFERENCE = 1e-5  # of the unknowns of Hopf points, of the second number, and along the vector v of folds
+DIFFERENCE = 1e-5  # of the unknowns of Hopf points, of numbers of the case, and along the vector v of folds
 MOST_HARMONICS, TAIL = 48, 1e-6  # of folds; what the harmonics left out may have of the clearance
 
 
@@ -52,24 +52,22 @@ class Curve:
     notes: tuple[str, str]
 
 
-def hopf_equations(machines: Machines, y: Array) -> Equations:
-    """Those of a Hopf point y = (u, nu / pace, Omega / pace, share), with the bordering vectors of a y near to it."""
-    at = machines(float(y[-1]))
-    left, _, right = np.linalg.svd(_at_rest(at, y))
+def hopf_equations(plane: Plane, y: Array) -> Equations:
+    """Those of a Hopf point y = (u, nu / pace, numbers), with the bordering vectors of a y near to it."""
+    left, _, right = np.linalg.svd(_at_rest(plane, y))
     b, c = left[:, -1], right[-1].conj()
 
     def residual(y: Array) -> Array:
-        machine = machines(float(y[-1]))
-        rest, _ = resting_equations(machine)(np.append(y[:-3], y[-2]))
+        machine, here = plane.machine(y), plane.cycle(y)
+        rest, _ = resting_equations(machine)(np.append(here[:-2], here[-1]))
         size = len(b)
         matrix = np.zeros((size + 1, size + 1), dtype=complex)
-        matrix[:size, :size], matrix[:size, size], matrix[size, :size] = _at_rest(machine, y), b, c.conj()
+        matrix[:size, :size], matrix[:size, size], matrix[size, :size] = _at_rest(plane, y), b, c.conj()
         g = np.linalg.solve(matrix, np.eye(size + 1)[-1])[-1]
         return np.concatenate([rest, [g.real, g.imag]])
 
     def equations(y: Array) -> tuple[Array, Array]:
-        if not y[-1] > DIFFERENCE:
-            raise Unreachable
+        _require_positive(y)
         steps = DIFFERENCE * np.eye(len(y))
         columns = [(residual(y + step) - residual(y - step)) / (2.0 * DIFFERENCE) for step in steps]
         return residual(y), np.transpose(columns)
@@ -77,46 +75,53 @@ def hopf_equations(machines: Machines, y: Array) -> Equations:
     return equations
 
 
-def _at_rest(machine: Machine, y: Array) -> Complex:
+def _require_positive(y: Array) -> None:
+    if not np.all(y[-2:] > DIFFERENCE):
+        raise Unreachable
+
+
+def _at_rest(plane: Plane, y: Array) -> Complex:
     """1 - T_1 (dg/du + i nu dg/du' + kappa) at rest."""
-    nu, omega = float(y[-3] * machine.pace), float(y[-2] * machine.pace)
+    machine, here = plane.machine(y), plane.cycle(y)
+    nu, omega = float(here[-2] * machine.pace), float(here[-1] * machine.pace)
     passing = transfer(machine, 1, nu, omega)
-    u = y[None, :-3]
+    u = here[None, :-2]
     loads = film_loads(machine, u, np.zeros_like(u), omega)
     inner = loads.by_u[0] + 1j * nu * loads.by_v[0] + np.diag(passing.kappa[1])
     return np.asarray(np.eye(len(inner)) - passing.values[1] @ inner)
 
 
-def fold_equations(machines: Machines, y: Array) -> Equations:
-    """Those of a fold y = (motion, nu / pace, Omega / pace, share), see balance.py, with the bordering vectors and the
-    phase of a y near to it."""
-    size = machines(float(y[-1])).size
-    reference = unpacked(y[:-3], size)
+def fold_equations(plane: Plane, y: Array) -> Equations:
+    """Those of a fold y = (motion, nu / pace, numbers), see balance.py, with the bordering vectors and the phase of a y
+    near to it."""
+    reference = unpacked(y[:-3], plane.machine(y).size)
 
     def balance(y: Array) -> tuple[Array, Array]:
-        return Balance(machines(float(y[-1])), reference)(y[:-1])
+        return Balance(plane.machine(y), reference)(plane.cycle(y))
 
     _, slope = balance(y)
     b, c, n = _nearly_null(slope[:, :-1].T), _nearly_null(slope[:, :-1]), len(y) - 2
     last = np.eye(n + 1)[-1]
 
     def equations(y: Array) -> tuple[Array, Array]:
-        if not y[-1] > DIFFERENCE:
-            raise Unreachable
+        _require_positive(y)
         residual, slope = balance(y)
         bordered = np.zeros((n + 1, n + 1))
         bordered[:n, :n], bordered[:n, n], bordered[n, :n] = slope[:, :-1], b, c
         v, w = np.linalg.solve(bordered, last), np.linalg.solve(bordered.T, last)
-        along, share = np.zeros(len(y)), np.zeros(len(y))
-        along[:n], share[-1] = v[:n] / np.linalg.norm(v[:n]), 1.0
+        along = np.zeros(len(y))
+        along[:n] = v[:n] / np.linalg.norm(v[:n])
         ahead, behind = (balance(y + side * DIFFERENCE * along) for side in (1.0, -1.0))
-        more, less = (balance(y + side * DIFFERENCE * share) for side in (1.0, -1.0))
         matrix = np.zeros((n + 1, n + 2))
         matrix[:n, :-1] = slope
-        matrix[:n, -1] = (more[0] - less[0]) / (2.0 * DIFFERENCE)
         scale = np.linalg.norm(v[:n]) / (2.0 * DIFFERENCE)
         matrix[n, :-1] = -scale * w[:n] @ (ahead[1] - behind[1])
-        matrix[n, -1] = -w[:n] @ (more[1] - less[1])[:, :-1] @ v[:n] / (2.0 * DIFFERENCE)
+        for number in plane.by_difference:
+            step = np.zeros(len(y))
+            step[number] = DIFFERENCE
+            more, less = balance(y + step), balance(y - step)
+            matrix[:n, number] = (more[0] - less[0]) / (2.0 * DIFFERENCE)
+            matrix[n, number] = -w[:n] @ (more[1] - less[1])[:, :-1] @ v[:n] / (2.0 * DIFFERENCE)
         return np.append(residual, v[n]), matrix
 
     return equations
@@ -204,16 +209,16 @@ def _stepped(
         return None
 
 
-def fitted_fold(machines: Machines, place: Place) -> Place | None:
+def fitted_fold(plane: Plane, place: Place) -> Place | None:
     """A fold with as many harmonics as it needs, up to a largest number."""
     for _ in range(8):
-        machine = machines(float(place.y[-1]))
+        machine = plane.machine(place.y)
         harmonics = (len(place.y) - 3) // machine.size // 2
-        if harmonics >= MOST_HARMONICS or left_out(machine, place.y[:-1]) < TAIL:
+        if harmonics >= MOST_HARMONICS or left_out(machine, plane.cycle(place.y)) < TAIL:
             return place
         more = min(MOST_HARMONICS, harmonics + max(2, harmonics // 3))
         y, tangent = (with_harmonics(vector, machine.size, more) for vector in (place.y, place.tangent))
-        found = corrected(fold_equations(machines, y), y, tangent / np.linalg.norm(tangent))
+        found = corrected(fold_equations(plane, y), y, tangent / np.linalg.norm(tangent))
         if found is None:
             return None
         place = oriented(found, tangent)

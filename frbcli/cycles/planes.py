@@ -18,34 +18,34 @@ Complex = NDArray[np.complex128]
 
 SMALLEST = 16  # degrees of freedom from which on two parts are solved faster than one
 ALIKE = 1e-9  # by which planes that count as the same may differ, relative
+INDEPENDENT = 1e-13  # share of the largest singular value above which a direction counts
 
 
 @dataclass(frozen=True)
 class Part:
-    """mass, flow, gyroscopic, stiffness: (n, n) of the part, flow with the dashpots beside the films and stiffness with
-    the springs there; shapes (2 F, n) and loads (n, l): see transfer of machine.py; symmetric: whether all matrices
-    are."""
+    """matrices: (4, n, n) mass, damping, gyroscopic and stiffness of the part, with the dashpots and springs beside the
+    films; basis (n, b): of all directions in which it is seen and loaded, shapes (2 F, n) = seen (2 F, b) basis^T and
+    loads (n, l) = basis given (b, l), see transfer of machine.py; symmetric: whether all matrices are;
+    planes: the degrees of freedom (n,) of x and of y that it is made of, None of the whole rotor."""
 
-    mass: Complex
-    flow: Complex
-    gyroscopic: Complex
-    stiffness: Complex
-    shapes: Complex
-    loads: Complex
+    matrices: Complex
+    basis: Complex
+    seen: Complex
+    given: Complex
     symmetric: bool
+    planes: tuple[NDArray[np.int64], NDArray[np.int64]] | None
+
+    def dynamic(self, s: Complex, omega: Array | float) -> Complex:
+        """(m, n, n) between motions exp(s t), s (m,), and loads, at speeds omega in rad/s."""
+        shares = np.array([s**2, s, s * omega, np.ones(len(s))])
+        return np.asarray((shares.T @ self.matrices.reshape(4, -1)).reshape(-1, *self.matrices.shape[1:]))
 
     def answers(self, z: Complex) -> tuple[Complex, Complex]:
-        """z^-1 loads (H + 1, n, l) and shapes z^-1 (H + 1, 2 F, n) of matrices z (H + 1, n, n) made of those here."""
-        wanted, count = self.loads, len(z)
-        if self.symmetric:
-            both = np.hstack([wanted, self.shapes.T])
-            found = np.linalg.solve(z, np.broadcast_to(both, (count, *both.shape)))
-            cut = wanted.shape[1]
-            return np.asarray(found[:, :, :cut]), np.asarray(np.swapaxes(found[:, :, cut:], 1, 2))
-        across = np.broadcast_to(self.shapes.T, (count, *self.shapes.T.shape))
-        left = np.linalg.solve(np.swapaxes(z, 1, 2), across)
-        answer = np.linalg.solve(z, np.broadcast_to(wanted, (count, *wanted.shape)))
-        return np.asarray(answer), np.asarray(np.swapaxes(left, 1, 2))
+        """z^-1 basis (H + 1, n, b) and basis^T z^-1 (H + 1, b, n) of matrices z (H + 1, n, n)."""
+        wanted = np.broadcast_to(self.basis, (len(z), *self.basis.shape))
+        right = np.linalg.solve(z, wanted)
+        left = right if self.symmetric else np.linalg.solve(np.swapaxes(z, 1, 2), wanted)
+        return np.asarray(right), np.asarray(np.swapaxes(left, 1, 2))
 
 
 def parts_of(rotor: LinearRotor, springs: Array, dashpots: Array, shapes: Array, loads: Complex) -> tuple[Part, ...]:
@@ -53,20 +53,30 @@ def parts_of(rotor: LinearRotor, springs: Array, dashpots: Array, shapes: Array,
     matrices = (rotor.mass, rotor.damping + dashpots, rotor.gyroscopic, rotor.stiffness + springs)
     planes = _planes(shapes, matrices) if rotor.size >= SMALLEST else None
     if planes is None:
-        return (_part([matrix.astype(complex) for matrix in matrices], shapes, loads),)
+        return (_part(np.array(matrices, dtype=complex), shapes, loads),)
     x, y = planes
     found = []
     for turn in (1j, -1j):
-        own = [matrix[np.ix_(x, x)] - turn * matrix[np.ix_(x, y)] for matrix in matrices]
+        own = np.array([matrix[np.ix_(x, x)] - turn * matrix[np.ix_(x, y)] for matrix in matrices])
         seen, given = shapes[:, x] - turn * shapes[:, y], loads[x] + turn * loads[y]
-        found.append(_part(own, seen / np.sqrt(2.0), given / np.sqrt(2.0)))
+        found.append(_part(own, seen / np.sqrt(2.0), given / np.sqrt(2.0), planes))
     return tuple(found)
 
 
-def _part(matrices: list[Complex], shapes: Array | Complex, loads: Complex) -> Part:
-    mass, flow, gyroscopic, stiffness = matrices
+def _part(
+    matrices: Complex,
+    shapes: Array | Complex,
+    loads: Complex,
+    planes: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None,
+) -> Part:
     symmetric = all(np.abs(each - each.T).max() <= ALIKE * np.abs(each).max(initial=0.0) for each in matrices)
-    return Part(mass, flow, gyroscopic, stiffness, shapes.astype(complex), loads.astype(complex), symmetric)
+    directions = np.hstack([shapes.T.astype(complex), loads])
+    sizes = np.linalg.norm(directions, axis=0)
+    left, singular, _ = np.linalg.svd(directions / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
+    basis = left[:, singular > INDEPENDENT * singular[0]]
+    shares = np.conj(basis).T @ directions
+    cut = len(shapes)
+    return Part(matrices, basis, shares[:, :cut].T, shares[:, cut:], symmetric, planes)
 
 
 def _planes(shapes: Array, matrices: tuple[Array, ...]) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:

@@ -1,26 +1,26 @@
-"""A stability map: the curves of Hopf points and of folds over the rotor speed and a second number of the case, and
-where the resting position is unstable."""
+"""A stability map: the curves of Hopf points and of folds over two numbers, the rotor speed and one of the case or two
+of the case, and where the resting position is unstable."""
 
 from __future__ import annotations
 
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import FOLD, HOPF, Cycle, FoldFollower, amplitude, eccentricities
+from frbcli.cycles.branch import FOLD, HOPF, Cycle, amplitude, eccentricities
 from frbcli.cycles.continuation import Equations, Place, Unreachable, step_from
 from frbcli.cycles.criticality import lyapunov_coefficient
-from frbcli.cycles.diagram import Walk, criticality_of, cycle_special, hopf_special
-from frbcli.cycles.equilibria import OverSpeed, Resting, hopf_at, resting_curve, settled
-from frbcli.cycles.family import Family, value_range
+from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
+from frbcli.cycles.equilibria import hopf_at, settled
+from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
-from frbcli.cycles.machine import Machine
+from frbcli.cycles.map_planes import KeyPlane, Plane, SpeedPlane
 from frbcli.cycles.plane_curves import (
     MOST_HARMONICS,
     fitted_fold,
@@ -29,7 +29,7 @@ from frbcli.cycles.plane_curves import (
     hopf_equations,
     with_harmonics,
 )
-from frbcli.cycles.result import SPEED, SpecialPoint
+from frbcli.cycles.result import SPEED, SpecialPoint, hertz
 from frbcli.errors import Fault, InputError, NotConverged
 
 if TYPE_CHECKING:
@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 BAUTIN, CUSP = "bautin", "cusp"
-SHADED = 41  # values of the second number, and
-SPEEDS = 200  # speeds, at which the growth at rest is told
+ACROSS = 200  # values of the first number at which the growth at rest is told
 KNOWN = 4e-3  # distance in the plane, over its size, and of the frequency: a point lies on a curve that is known
 SMALL = 0.04  # amplitude over the clearance below which a curve of folds has come to that of Hopf points
 MET = "It meets the curve of Hopf points."
@@ -47,9 +46,11 @@ MET = "It meets the curve of Hopf points."
 
 @dataclass(frozen=True)
 class MapPoint:
-    """A point of a curve. value: of the second number; eccentricity_max: (F,); criticality, lyapunov: of Hopf points,
-    see SpecialPoint; kind: "", "bautin" where the criticality changes, "cusp" where a curve of folds turns back."""
+    """A point of a curve. over, value: of the first and the second number, the speed in Hz; eccentricity_max: (F,);
+    criticality, lyapunov: of Hopf points, see SpecialPoint; kind: "", "bautin" where the criticality changes, "cusp"
+    where a curve of folds turns back."""
 
+    over: float
     value: float
     speed_Hz: float
     frequency_Hz: float
@@ -80,19 +81,22 @@ class MapRow:
 
 @dataclass(frozen=True)
 class Growth:
-    """values: (V,); speeds_Hz: (S,); rate: (V, S) 1/s, of the whirl that grows fastest at rest, NaN where no resting
-    position is known."""
+    """values: (V,) of the second number; over: (S,) of the first; rate: (V, S) 1/s, of the whirl that grows fastest at
+    rest, NaN where no resting position is known."""
 
     values: Array
-    speeds_Hz: Array
+    over: Array
     rate: Array
 
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """curves: of Hopf points and folds; rows: ascending in the value of the key, in `unit`."""
+    """over, over_unit: the first number, "speed" in Hz or a key; key, unit: the second one; curves: of Hopf points and
+    folds; rows: ascending in the value of the key, in `unit`."""
 
     case: Case
+    over: str
+    over_unit: str
     key: str
     unit: str
     films: tuple[str, ...]
@@ -111,6 +115,7 @@ class StabilityMap:
 
         return pd.DataFrame(
             {
+                **({} if self.over == SPEED else {self.over: point.over, "over_unit": self.over_unit}),
                 self.key: point.value,
                 "unit": self.unit,
                 "curve": number,
@@ -126,53 +131,82 @@ class StabilityMap:
         )
 
 
+@dataclass(frozen=True)
+class Across:
+    """A first number of a map in place of the speed: a key from `low` to `high`, text with units, above zero, at a
+    speed of the rotor in Hz."""
+
+    key: str
+    low: str
+    high: str
+    speed_Hz: float
+
+
 def stability_map(
-    case: Case, key: str, low: str, high: str, count: int = 3, observe: Callable[[int, int], None] | None = None
+    case: Case,
+    key: str,
+    low: str,
+    high: str,
+    count: int = 3,
+    observe: Callable[[int, int], None] | None = None,
+    across: Across | None = None,
 ) -> StabilityMap:
     """The map of a case over its speed range and a key from `low` to `high`, as text with their unit, above zero.
 
     count: of values of the key at which diagrams are computed that curves begin in; observe: called with the number of
-    each of them and their number. Raises InputError if the values are none, or if the case cannot have one of them.
+    each of them and their number; across: in place of the speed. Raises InputError if the values are none, or if the
+    case cannot have one of them.
     """
-    slowest, fastest = check(case)
-    first, last, unit = value_range(case, key, low, high)
-    if first <= 0.0:
-        raise InputError(case.name or "case", (Fault(key, low, None, "must be above 0 here.", "Begin above it."),))
-    plane = _Plane(Family(case, key, last, unit, fastest), (slowest, fastest), (first / last, 1.0))
+    plane, family = _plane(case, (key, low, high), across)
+    lowest = float(plane.corners[0][1])
     rows, begun = [], _Begun([], [])
-    for number, share in enumerate(np.linspace(first / last, 1.0, count)):
-        rows.append(_row(plane, float(share), begun))
+    for number, share in enumerate(np.linspace(lowest, 1.0, count)):
+        rows.append(_row(plane, family, float(share), begun))
         if observe is not None:
             observe(number + 1, count)
+    map_ = _Map(plane, family.high)
     curves: list[MapCurve] = []
     for hopf in begun.hopf:
-        curves += _new_curve(plane, curves, HOPF, hopf)
+        curves += _new_curve(map_, curves, HOPF, hopf)
     for fold in begun.folds:
-        curves += _new_curve(plane, curves, FOLD, fold)
-    names = plane.family.machine(1.0).names
-    return StabilityMap(case, key, unit, names, tuple(curves), tuple(rows), _growth(plane))
+        curves += _new_curve(map_, curves, FOLD, fold)
+    return StabilityMap(
+        case=case,
+        over=plane.over,
+        over_unit=plane.unit,
+        key=key,
+        unit=family.unit,
+        films=plane.machine(plane.corners[1]).names,
+        curves=tuple(curves),
+        rows=tuple(rows),
+        growth=_growth(map_),
+    )
+
+
+def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> tuple[Plane, Family]:
+    """The plane, and the machines over its second number."""
+    slowest, fastest = check(case)
+    key = second[0]
+    low, high, unit = positive_range(case, *second)
+    if across is None:
+        family = Family(case, key, high, unit, fastest)
+        return SpeedPlane(family, (slowest, fastest), (low / high, 1.0)), family
+    if across.key == key:
+        problem, remedy = "is both numbers of the map.", "Name another key."
+        raise InputError(case.name or "case", (Fault(key, across.key, None, problem, remedy),))
+    least, most, other = positive_range(case, across.key, across.low, across.high)
+    omega = 2.0 * math.pi * across.speed_Hz
+    family = Family(case, key, high, unit, omega)
+    first = Family(case, across.key, most, other, omega)
+    return KeyPlane(first, family, (least / most, low / high)), family
 
 
 @dataclass(frozen=True)
-class _Plane:
-    """speeds: rad/s; shares: of the largest value of the second number."""
+class _Map:
+    """high: the largest value of the second number."""
 
-    family: Family
-    speeds: tuple[float, float]
-    shares: tuple[float, float]
-
-    @property
-    def pace(self) -> float:
-        return self.family.omega
-
-    @property
-    def corners(self) -> tuple[Array, Array]:
-        """The lowest and the highest of the last two unknowns of a curve."""
-        low, high = ((speed / self.pace, share) for speed, share in zip(self.speeds, self.shares, strict=True))
-        return np.array(low), np.array(high)
-
-    def at(self, y: Array) -> Machine:
-        return self.family.machine(float(y[-1]))
+    plane: Plane
+    high: float
 
 
 @dataclass(frozen=True)
@@ -183,23 +217,23 @@ class _Begun:
     folds: list[Array]
 
 
-def _row(plane: _Plane, share: float, begun: _Begun) -> MapRow:
+def _row(plane: Plane, family: Family, share: float, begun: _Begun) -> MapRow:
     """The special points at a share, which are added to `begun`, too."""
-    value, machine = share * plane.family.high, plane.family.machine(share)
+    value = share * family.high
     try:
-        resting = resting_curve(plane.family.system(share), machine, *plane.speeds)
+        walk = plane.walk(share)
     except (NotConverged, Unreachable) as error:
         return MapRow(value, (), str(error) or "The resting positions could not be followed.")
-    walk = _walk(plane, machine, resting)
     special: list[SpecialPoint] = []
-    for number, hopf in enumerate(resting.hopf):
+    for number, hopf in enumerate(walk.resting.hopf):
         here = hopf.equilibrium
-        begun.hopf.append(np.concatenate([here.u, [hopf.nu / plane.pace, here.omega / plane.pace, share]]))
+        machine, over = walk.course.machine(here.value), here.value * walk.scale / walk.branch_scale
+        begun.hopf.append(np.concatenate([here.u, [hopf.nu / machine.pace, over, share]]))
         special.append(hopf_special(walk, hopf, number))
         branch = walk.branch_from(hopf, _unwatched)
         for cycle in branch.cycles:
             if cycle.kind == FOLD:
-                begun.folds.append(np.append(cycle.y, share))
+                begun.folds.append(np.append(cycle.place.y, share))
                 special.append(cycle_special(walk, cycle, number))
     return MapRow(value, tuple(special))
 
@@ -208,42 +242,29 @@ def _unwatched(_: Cycle) -> None:
     """Branches of a map are not told."""
 
 
-def _walk(plane: _Plane, machine: Machine, resting: Resting) -> Walk:
-    return Walk(
-        over=SPEED,
-        unit="Hz",
-        films=machine.names,
-        course=OverSpeed(machine),
-        resting=resting,
-        scale=0.5 / math.pi,
-        follower=FoldFollower(machine, *plane.speeds),
-        branch_scale=machine.pace / (2.0 * math.pi),
-    )
-
-
-def _new_curve(plane: _Plane, known: Sequence[MapCurve], kind: str, start: Array) -> list[MapCurve]:
+def _new_curve(map_: _Map, known: Sequence[MapCurve], kind: str, start: Array) -> list[MapCurve]:
     """The curve through a point, unless it is known or not found."""
-    machines, size = plane.family.machine, plane.at(start).size
+    plane, size = map_.plane, map_.plane.machine(start).size
     if kind == FOLD and (len(start) - 3) // size // 2 > MOST_HARMONICS:
         start = with_harmonics(start, size, MOST_HARMONICS)
-    if any(_lies_on(plane, curve, _point(plane, kind, start)) for curve in known if curve.kind == kind):
+    if any(_lies_on(map_, curve, _point(map_, kind, start)) for curve in known if curve.kind == kind):
         return []
 
     def equations(y: Array) -> Equations:
-        return (hopf_equations if kind == HOPF else fold_equations)(machines, y)
+        return (hopf_equations if kind == HOPF else fold_equations)(plane, y)
 
     def met(place: Place) -> str:
-        return MET if kind == FOLD and amplitude(plane.at(place.y), place.y[:-1]) < SMALL else ""
+        return MET if kind == FOLD and amplitude(plane.machine(place.y), plane.cycle(place.y)) < SMALL else ""
 
     if kind == HOPF:
         found = follow_both(equations, start, plane.corners)
     else:
-        found = follow_both(equations, start, plane.corners, lambda place: fitted_fold(machines, place), met)
+        found = follow_both(equations, start, plane.corners, lambda place: fitted_fold(plane, place), met)
     if found is None:
         return []
-    points = [_point(plane, kind, place.y) for place in found.places]
+    points = [_point(map_, kind, place.y) for place in found.places]
     between = [
-        _special_between(plane, equations, kind, pair, ends)
+        _special_between(map_, equations, kind, pair, ends)
         for pair, ends in zip(itertools.pairwise(found.places), itertools.pairwise(points), strict=True)
     ]
     told = [points[0]]
@@ -252,19 +273,20 @@ def _new_curve(plane: _Plane, known: Sequence[MapCurve], kind: str, start: Array
     return [MapCurve(kind, tuple(told), tuple(filter(None, found.notes)))]
 
 
-def _point(plane: _Plane, kind: str, y: Array) -> MapPoint:
-    machine, nu, omega = plane.at(y), float(y[-3] * plane.pace), float(y[-2] * plane.pace)
-    value, told = float(y[-1] * plane.family.high), (omega / (2.0 * math.pi), nu / (2.0 * math.pi))
+def _point(map_: _Map, kind: str, y: Array) -> MapPoint:
+    machine, here = map_.plane.machine(y), map_.plane.cycle(y)
+    nu, omega = float(here[-2] * machine.pace), float(here[-1] * machine.pace)
+    told = (float(y[-2] * map_.plane.scale), float(y[-1] * map_.high), hertz(omega), hertz(nu))
     if kind == FOLD:
-        return MapPoint(value, *told, eccentricities(machine, y[:-1]))
-    here = settled(machine, y[:-3], omega, omega)
-    found = lyapunov_coefficient(machine, hopf_at(machine, here, True, nu))
-    d = here.u[: 2 * machine.film_count].reshape(-1, 2)
-    return MapPoint(value, *told, np.hypot(d[:, 0], d[:, 1]), criticality_of(found), found.value.real)
+        return MapPoint(*told, eccentricities(machine, here))
+    rest = settled(machine, here[:-2], omega, omega)
+    found = lyapunov_coefficient(machine, hopf_at(machine, rest, True, nu))
+    d = rest.u[: 2 * machine.film_count].reshape(-1, 2)
+    return MapPoint(*told, np.hypot(d[:, 0], d[:, 1]), criticality_of(found), found.value.real)
 
 
 def _special_between(
-    plane: _Plane,
+    map_: _Map,
     equations: Callable[[Array], Equations],
     kind: str,
     pair: tuple[Place, Place],
@@ -275,7 +297,7 @@ def _special_between(
     if kind == HOPF:
         if not ends[0].lyapunov * ends[1].lyapunov < 0.0:
             return []
-        found = _zero(equations, pair, lambda one: _point(plane, HOPF, one.y).lyapunov)
+        found = _zero(equations, pair, lambda one: _point(map_, HOPF, one.y).lyapunov)
         named = BAUTIN
     else:
         along = place.tangent[-2:]
@@ -285,8 +307,7 @@ def _special_between(
         named = CUSP
     if found is None:
         return []
-    point = _point(plane, kind, found.y)
-    return [MapPoint(point.value, point.speed_Hz, point.frequency_Hz, point.eccentricity_max, kind=named)]
+    return [replace(_point(map_, kind, found.y), criticality=None, lyapunov=math.nan, kind=named)]
 
 
 def _zero(
@@ -313,13 +334,13 @@ def _zero(
         return None
 
 
-def _lies_on(plane: _Plane, curve: MapCurve, point: MapPoint) -> bool:
+def _lies_on(map_: _Map, curve: MapCurve, point: MapPoint) -> bool:
     """Whether a point is one of a curve, by its distance from the straight lines between its points."""
-    pace = plane.pace / (2.0 * math.pi)
 
     def placed(one: MapPoint) -> Array:
-        return np.array([one.speed_Hz / pace, one.value / plane.family.high, one.frequency_Hz / pace])
+        return np.array([one.over / map_.plane.scale, one.value / map_.high, one.frequency_Hz / pace])
 
+    pace = max(one.speed_Hz for one in (point, *curve.points))
     at = placed(point)
     for one, other in itertools.pairwise(curve.points):
         a, along = placed(one), placed(other) - placed(one)
@@ -330,18 +351,16 @@ def _lies_on(plane: _Plane, curve: MapCurve, point: MapPoint) -> bool:
     return False
 
 
-def _growth(plane: _Plane) -> Growth:
-    shares = np.linspace(*plane.shares, SHADED)
-    speeds = np.linspace(*plane.speeds, SPEEDS)
-    rate = np.full((SHADED, SPEEDS), np.nan)
+def _growth(map_: _Map) -> Growth:
+    plane, (low, high) = map_.plane, map_.plane.corners
+    shares, over = np.linspace(low[1], high[1], plane.shaded), plane.scale * np.linspace(low[0], high[0], ACROSS)
+    rate = np.full((len(shares), ACROSS), np.nan)
     for row, share in zip(rate, shares, strict=True):
         try:
-            machine = plane.family.machine(float(share))
-            resting = resting_curve(plane.family.system(float(share)), machine, *plane.speeds)
+            walk = plane.walk(float(share))
         except (NotConverged, Unreachable):
             continue
-        known = [point.omega for point in resting.points]
-        rates = [max(point.growth(0), -1e9) for point in resting.points]
-        row[:] = np.interp(speeds, known, rates, left=np.nan)
-    return Growth(shares * plane.family.high, speeds / (2.0 * math.pi), rate)
-
+        known = [point.value * walk.scale for point in walk.resting.points]
+        rates = [max(point.growth(0), -1e9) for point in walk.resting.points]
+        row[:] = np.interp(over, known, rates, left=np.nan)
+    return Growth(shares * map_.high, over, rate)

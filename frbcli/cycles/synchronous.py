@@ -16,7 +16,6 @@ from frbcli.cycles.branch import FIRST_HARMONICS, Branch, Follower, follow_branc
 from frbcli.cycles.continuation import Equations, Place, corrected, oriented
 from frbcli.cycles.equilibria import Equilibrium
 from frbcli.cycles.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
-from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import Machine, transfer
 
 Array = NDArray[np.float64]
@@ -44,11 +43,11 @@ class Synchronous(Follower):
 
         return at
 
-    def multipliers(self, place: Place) -> Multipliers:
+    def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
         """Of which none is trivial: the unbalance holds the motion in time. A 1 stands in its place."""
         harmonics = (len(place.y) - 2) // self.machine.size // 2
         count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
-        values = np.linalg.eigvals(monodromy(self.machine, state_space(self.machine), place.y, count)).astype(complex)
+        values = np.linalg.eigvals(monodromy(self.machine, self.space_at(place.y), place.y, count)).astype(complex)
         values = values[np.argsort(-np.abs(values), kind="stable")]
         return Multipliers(np.concatenate([[1.0 + 0.0j], values]), 0.0)
 

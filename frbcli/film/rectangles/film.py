@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
 from frbcli.film.rectangles.table import TableFilm, force_table
 
 EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
+
+# Tables depend on the shape of the film alone: films of other clearances, viscosities and speeds share them.
+_force_table, _field_table = lru_cache(maxsize=8)(force_table), lru_cache(maxsize=8)(field_table)
 
 
 def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: Mesh) -> FilmData:
@@ -38,8 +42,8 @@ def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: M
             return ShortFilm(scale, slenderness, int(clipped))
         return SuppliedShortFilm(scale, slenderness, sigma, level)
     if equal:
-        return TableFilm(scale, force_table(mesh, radius_to_width, clipped))
-    return FieldsFilm(scale, sigma, level, field_table(mesh, radius_to_width), field_grid(mesh))
+        return TableFilm(scale, _force_table(mesh, radius_to_width, clipped))
+    return FieldsFilm(scale, sigma, level, _field_table(mesh, radius_to_width), field_grid(mesh))
 
 
 def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh: Mesh) -> ChainFilm:
