@@ -32,9 +32,10 @@ from frbcli.errors import NotConverged
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 
+SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
 RESTS = 15  # resting positions of a diagram
 LOCATED, NEAREST = 12, 1e-5  # evaluations that locate a Hopf point; its speed, relative
-FIRST_SIZES = (0.15, 0.3, 0.08)  # of the first cycle beside a Hopf point
+FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
 
 
 def limit_cycles_with_oil(
@@ -74,7 +75,7 @@ def limit_cycles_with_oil(
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(rest, len(branches), shots[0] if shots else None))
-        branches.append(CycleBranch(len(special) - 1, tuple(_cycle(shooting, shot) for shot in shots), note))
+        branches.append(CycleBranch(len(special) - 1, _points(shooting, rest, shots), note))
     for number, branch in enumerate(branches):
         special += [_special(point, number) for point in branch.points if point.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
@@ -179,18 +180,43 @@ def _hopf(rest: Rest, branch: int | None, first: Shot | None) -> SpecialPoint:
     )
 
 
+def _points(shooting: Shooting, rest: Rest, shots: Sequence[Shot]) -> tuple[CyclePoint, ...]:
+    """The cycles of a branch from its Hopf point on, where they have no size."""
+    return (_born(shooting, rest), *(_cycle(shooting, shot) for shot in shots)) if shots else ()
+
+
+def _born(shooting: Shooting, rest: Rest) -> CyclePoint:
+    number, speed, spins = rest.whirling, hertz(rest.omega), list(shooting.flow.system.spins)
+    assert number is not None
+    nu = float(rest.rates[number].imag)
+    values = np.exp(np.delete(rest.rates, number) * 2.0 * math.pi / nu)
+    harmonics = np.zeros((SAMPLES // 4, *rest.displacement.shape), dtype=complex)
+    harmonics[0] = rest.displacement
+    return CyclePoint(
+        value=speed,
+        speed_Hz=speed,
+        frequency_Hz=hertz(nu),
+        eccentricity_max=np.hypot(*rest.displacement.T),
+        ring_speeds_Hz=rest.wet.v[spins] / (2.0 * math.pi),
+        torque_N_m=math.nan,
+        stable=bool(np.all(np.delete(rest.rates, number).real < SLOWLY * nu)),
+        multipliers=np.concatenate([[1.0 + 0.0j], values]),
+        harmonics=harmonics,
+    )
+
+
 def _cycle(shooting: Shooting, shot: Shot) -> CyclePoint:
     speed, spins = shooting.speed_Hz(shot), list(shooting.flow.system.spins)
     return CyclePoint(
         value=speed,
         speed_Hz=speed,
-        frequency_Hz=shooting.unit / math.exp(shot.p[0]),
+        frequency_Hz=shooting.unit * math.exp(-shot.mean_p[0]),
         eccentricity_max=shot.eccentricity_max,
         ring_speeds_Hz=shot.wet.v[spins] / (2.0 * math.pi),
         torque_N_m=math.nan,
         stable=shot.multipliers.stable,
         multipliers=shot.multipliers.values,
-        harmonics=np.fft.rfft(shot.displacements[:SAMPLES], axis=0)[: SAMPLES // 4] / SAMPLES,
+        harmonics=np.fft.rfft(shot.mean_displacements[:SAMPLES], axis=0)[: SAMPLES // 4] / SAMPLES,
         kind=shot.kind,
     )
 

@@ -19,6 +19,7 @@ from frbcli.cycles.continuation import Unreachable
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SIN, UNKNOWN, VolumeFilms
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
 from frbcli.runs.start import rotor_data, state_at
@@ -50,6 +51,7 @@ from frbcli.solve.time_loop import advance
 STEPS_PER_REVOLUTION = 100
 TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differences of the map
 FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
+SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 SAMPLES = 256  # moments at which displacements are told
 MOST_STEPS = 10**6
 
@@ -70,7 +72,7 @@ class Wet:
 
 @dataclass(frozen=True)
 class Passage:
-    """What a time has led to: the state at its end; displacements: (SAMPLES + 1, F, 2) over the clearances at equal
+    """What a time has led to: the state at its end; displacements: (samples + 1, F, 2) over the clearances at equal
     moments from its start to its end."""
 
     end: Wet
@@ -79,7 +81,8 @@ class Passage:
 
 @dataclass(frozen=True)
 class PeriodMap:
-    """The time loop of a system without unbalance; turned: (F, 1 + rings) shares in the speed of each film's cells."""
+    """The time loop of a system without unbalance; turned: (F, 1 + rings) shares in the speed of each film's cells;
+    begun: (1 + rings,) angles in rad of rotor and rings at the start, which say how the cells lie there."""
 
     system: System
     films: VolumeFilms
@@ -87,6 +90,7 @@ class PeriodMap:
     tableau: Tableau
     clearances: Array
     turned: Array
+    begun: Array
     held: NDArray[np.bool_]
 
     @property
@@ -108,29 +112,46 @@ class PeriodMap:
         q[kept] = x[:m] * self.scale
         v = x[m : m + n] / self._slow(np.ones(n), omega)
         theta[self.held] = x[m + n :] * math.sqrt(np.count_nonzero(self.held))
-        return replace(near, q=q, v=v, theta=theta)
+        w = [unknown_at(*each) for each in zip(self.system.volumes, theta, near.theta, near.w, strict=True)]
+        return replace(near, q=q, v=v, theta=theta, w=np.stack(w))
+
+    def lying(self, share: float) -> PeriodMap:
+        """The same map with cells that lie a share of their length further on at the start."""
+        angle = 2.0 * math.pi * share / self.held.shape[1]
+        begun = np.linalg.lstsq(self.turned, np.full(len(self.turned), angle), rcond=None)[0]
+        return replace(self, begun=begun)
+
+    def moved(self, wet: Wet, share: float) -> Wet:
+        """The same machine seen by cells that lie as `lying` says."""
+        angle = -2.0 * math.pi * share / self.held.shape[1]
+        theta, rate, w = (
+            np.stack([turned_back(field, angle) for field in fields]) for fields in (wet.theta, wet.rate, wet.w)
+        )
+        return replace(wet, theta=theta, rate=rate, w=w)
 
     def motion_of(self, wet: Wet, omega: float) -> Array:
         """Rate of the state's displacements and velocities in 1/s, zero for its oil."""
         moved = np.concatenate([wet.v[self._kept] / self.scale, self._slow(wet.a, omega)])
         return np.concatenate([moved, np.zeros(np.count_nonzero(self.held))])
 
-    def passage(self, wet: Wet, time: float, omega: float, steps: int) -> Passage:
+    def passage(self, wet: Wet, time: float, omega: float, steps: int, samples: int = SAMPLES) -> Passage:
         """After a time in s at a speed in rad/s. Raises Unreachable where the run ends before."""
         rotor = rotor_data(self.system, speed_profile([0.0, time], [omega, omega]))
         rotor = rotor._replace(
-            unbalance_cos=np.zeros_like(rotor.unbalance_cos), unbalance_sin=np.zeros_like(rotor.unbalance_sin)
+            unbalance_cos=np.zeros_like(rotor.unbalance_cos),
+            unbalance_sin=np.zeros_like(rotor.unbalance_sin),
+            profile_angles=rotor.profile_angles + self.begun[0],
         )
-        control = self.control._replace(output_step=time / SAMPLES, longest_step=time / steps, steps_per_revolution=1.0)
+        control = self.control._replace(output_step=time / samples, longest_step=time / steps, steps_per_revolution=1.0)
         state = self._state(wet, time)
-        output = make_output(SAMPLES + 8, len(wet.q), len(self.clearances))
+        output = make_output(samples + 8, len(wet.q), len(self.clearances))
         written, status = [], RUNNING
         while status == RUNNING:
             status, count = advance(rotor, self.films, self.tableau, control, state, MOST_STEPS, output)
             written.append(output.q[:count].copy())
         if status != FINISHED or not np.isfinite(state.q).all():
             raise Unreachable
-        q = np.concatenate(written)[: SAMPLES + 1]
+        q = np.concatenate(written)[: samples + 1]
         places = np.einsum("fij,nj->nfi", self.system.rotor.journals, q) / self.clearances[:, None]
         return Passage(self._end(state, time, omega), places)
 
@@ -145,9 +166,9 @@ class PeriodMap:
         told[self._kept] /= self.scale
         return np.asarray(told)
 
-    def _gaps(self, q: Array, angles: Array) -> Array:
-        """(F, m) H in the cells of films turned by angles (F,)."""
-        d = self.system.rotor.journals @ q / self.clearances[:, None]
+    def _gaps(self, q: Array, bodies: Array) -> Array:
+        """(F, m) H in the cells of films between rotor and rings at angles (1 + rings,)."""
+        d, angles = self.system.rotor.journals @ q / self.clearances[:, None], self.turned @ bodies
         c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
         x, y = c * d[:, :1] + s * d[:, 1:], c * d[:, 1:] - s * d[:, :1]
         ring = self.films.ring
@@ -157,7 +178,7 @@ class PeriodMap:
         count, first = len(self.clearances), FIRST_STEP * time
         films = np.zeros((WET, *wet.theta.shape))
         films[W] = films[W_BEFORE] = wet.w
-        films[OIL] = wet.theta * self._gaps(wet.q, np.zeros(count))[:, :, None]
+        films[OIL] = wet.theta * self._gaps(wet.q, self.begun)[:, :, None]
         films[RATE] = wet.rate
         numbers = np.zeros(NUMBERS)
         numbers[STEP] = numbers[STEP_DONE] = first
@@ -166,19 +187,21 @@ class PeriodMap:
         past[:, 0] = first * np.arange(1 - HISTORY, 1)
         past[:, 1:] = (self.system.rotor.journals @ wet.v).ravel()
         flows, errors = np.zeros((2, count, FLOWS)), np.zeros((2, ERROR_SPANS))
-        return State(numbers, wet.q.copy(), wet.v.copy(), wet.a.copy(), past, films, flows, errors)
+        q = wet.q.copy()
+        q[list(self.system.spins)] = self.begun[1:]
+        return State(numbers, q, wet.v.copy(), wet.a.copy(), past, films, flows, errors)
 
     def _end(self, state: State, time: float, omega: float) -> Wet:
         spins = list(self.system.spins)
-        angles = self.turned @ np.concatenate([[omega * time], state.q[spins]])
-        theta = state.wet[OIL] / self._gaps(state.q, angles)[:, :, None]
-        seen = [
-            np.stack([turned_back(field, angle) for field, angle in zip(fields, angles, strict=True)])
+        bodies = np.concatenate([[self.begun[0] + omega * time], state.q[spins]])
+        theta = state.wet[OIL] / self._gaps(state.q, bodies)[:, :, None]
+        theta, rate, w = (
+            np.stack([turned_back(*each) for each in zip(fields, self.turned @ (bodies - self.begun), strict=True)])
             for fields in (theta, state.wet[RATE], state.wet[W])
-        ]
+        )
         q = state.q.copy()
         q[spins] = 0.0
-        return Wet(q, state.v.copy(), state.a.copy(), seen[0], seen[1], seen[2])
+        return Wet(q, state.v.copy(), state.a.copy(), theta, rate, w)
 
 
 def period_map(case: Case) -> PeriodMap:
@@ -195,6 +218,7 @@ def period_map(case: Case) -> PeriodMap:
         tableau=tableau._replace(defect=np.zeros_like(tableau.defect)),
         clearances=np.array(system.clearances),
         turned=system.turning[:, GRID],
+        begun=np.zeros(1 + system.ring_count),
         held=films.cells[:, UNKNOWN] != 0.0,
     )
 
@@ -205,8 +229,25 @@ def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
         state = state_at(found.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
     except NotConverged:
         raise Unreachable from None
-    theta = state.wet[OIL] / found._gaps(q, np.zeros(len(found.clearances)))[:, :, None]
+    theta = state.wet[OIL] / found._gaps(q, found.begun)[:, :, None]
     return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W])
+
+
+def unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:
+    """(m, k) unknown of cells that hold theta; w: that of cells which held `before`.
+
+    The first step asks for it: over so short a time the oil of a cell stays, and Newton's method leaps past the steep
+    part of a law from afar. In a full cell the pressure is not told by the oil, and the unknown stays."""
+    found = np.where(theta < 1.0, w, np.maximum(w, 0.0))
+    changed = (theta < 1.0) & (np.abs(theta - before) > SAME)
+    high = np.zeros(np.count_nonzero(changed))
+    low = high - 2.0 - (film.scales.cavitation + film.scales.ambient) / film.scales.reference
+    for _ in range(HALVES):
+        middle = 0.5 * (low + high)
+        more = film.law.cells(middle, film.scales).fraction > theta[changed]
+        low, high = np.where(more, low, middle), np.where(more, middle, high)
+    found[changed] = high
+    return found
 
 
 def turned_back(field: Array, angle: float) -> Array:

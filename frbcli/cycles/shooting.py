@@ -7,7 +7,9 @@ the slow motions, and dM/dx is taken as (M V) V^T with finite differences M V. T
     dx = r + (M V) c + (dM/dp) dp,      (1 - V^T M V) c - V^T dM/dp dp = V^T r,      r = M(x) - x,
 
 with as many further equations for the parameters p as there are (recursive projection: Shroff and Keller, SIAM J.
-Numer. Anal. 30, 1993). One evaluation of the map makes one iteration. The eigenvalues of V^T M V are the multipliers.
+Numer. Anal. 30, 1993). One evaluation of the map makes one iteration. What the image changes by from one to the next
+tells of slow motions that V misses, as of oil that stays for many periods: V and M V learn of them (Broyden's update).
+The eigenvalues of V^T M V are the multipliers.
 """
 
 from __future__ import annotations
@@ -25,8 +27,9 @@ Map = Callable[[Array, Array], Array]  # (N,) of a state (N,) and parameters (P,
 DIFFERENCE = 5e-3  # by which states and parameters are disturbed, at most: less blurs the images by the cells
 MORE = 12  # images beside those of the first states
 NEW = 0.01  # part of an image outside of the space from which on it counts
-ITERATIONS = 24
-CLOSE, SLOW = 1e-6, 0.9  # a correction that ends the iteration; over the last but one, that gives it up
+ITERATIONS = 40
+CLOSE, NOISE = 1e-7, 1e-5  # corrections that end the iteration: always, and if they become no smaller
+PATIENCE = 10  # iterations in which corrections have to become half of what they were
 STRAY = 0.5  # a correction beyond which the iteration is given up
 
 
@@ -80,25 +83,51 @@ def _difference(mapped: Map, x: Array, p: Array, dx: Array, dp: Array) -> Array:
     return 0.5 * (mapped(x + dx, p + dp) - mapped(x - dx, p - dp))
 
 
-def fixed_point(
-    mapped: Map, x: Array, p: Array, space: SlowSpace, conditions: Conditions
-) -> tuple[Array, Array, Array] | None:
-    """(x, p, image) near to a guess x_0, p_0; None if it does not converge. The map may raise Unreachable."""
-    guess_x, guess_p, sizes = x, p, [np.inf, np.inf]
-    for iteration in range(ITERATIONS):
-        image = mapped(x, p)
+@dataclass(frozen=True)
+class FixedPoint:
+    """x (N,), p (P,), image (N,) of x; space: what is known of the slow motions after the iteration."""
+
+    x: Array
+    p: Array
+    image: Array
+    space: SlowSpace
+
+
+def fixed_point(mapped: Map, x: Array, p: Array, space: SlowSpace, conditions: Conditions) -> FixedPoint | None:
+    """Near to a guess x_0, p_0; None if it does not converge. The map may raise Unreachable."""
+    guess_x, guess_p, sizes = x, p, [np.inf]
+    image = mapped(x, p)
+    for _ in range(ITERATIONS):
         dx, dp = correction(space, conditions, image - x, x - guess_x, p - guess_p)
         size = float(np.linalg.norm(dx) + np.linalg.norm(dp))
-        # Corrections go to and fro where a slow motion is missed a little: every second one is looked at. Those that
-        # become no smaller are the noise of the cells if they are small.
-        stays = iteration > 3 and size > SLOW * sizes[-2]
-        if size > STRAY or (stays and size > 100.0 * CLOSE):
+        # Corrections go to and fro while motions are learned of. Those that become no smaller are the noise of the
+        # cells if they are small.
+        stays = len(sizes) > PATIENCE and size > 0.5 * min(sizes[:-PATIENCE])
+        if size > STRAY or (stays and size > NOISE):
             return None
         if size < CLOSE or stays:
-            return x, p, image
-        x, p = x + dx, p + dp
+            return FixedPoint(x, p, image, space)
+        x, p, before = x + dx, p + dp, image
+        image = mapped(x, p)
+        space = taught(space, dx, image - before - space.by_parameters @ dp)
         sizes.append(size)
     return None
+
+
+def taught(space: SlowSpace, dx: Array, change: Array) -> SlowSpace:
+    """The space that knows what the image changes by along dx, with the direction of dx in it (Broyden's update)."""
+    inside = space.states.T @ dx
+    outside = dx - space.states @ inside
+    outside = outside - space.states @ (space.states.T @ outside)  # once more, against round-off
+    length = float(np.linalg.norm(dx))
+    if length == 0.0:
+        return space
+    off = change - space.images @ inside
+    states, images = space.states, space.images
+    if float(np.linalg.norm(outside)) > NEW * length:
+        states = np.column_stack([states, outside / np.linalg.norm(outside)])
+        images = np.column_stack([images, np.zeros(len(dx))])
+    return SlowSpace(states, images + np.outer(off, states.T @ dx) / length**2, space.by_parameters)
 
 
 def correction(

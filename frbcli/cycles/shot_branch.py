@@ -3,10 +3,15 @@
 A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
 the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on
 the branch by the plane across the tangent.
+
+Cells that turn with the oil hardly move against a whirl of half the speed: a cycle depends a little on how they lie at
+its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore told as the mean of
+those with cells in several places; how far these lie apart is part of the error of the cells.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -24,20 +29,28 @@ from frbcli.cycles.shooting import DIFFERENCE, Conditions, SlowSpace, direction_
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-FIRST, SHORTEST, LONGEST = 0.1, 2e-3, 0.15  # steps along a branch
-MOST_POINTS = 80
-LONGER, STRAIGHT, SHARPEST = 1.5, 0.98, 0.8  # growth of a step where tangents differ by little; by most
+FIRST, SHORTEST, LONGEST = 0.05, 1e-3, 0.1  # steps along a branch
+MOST_POINTS = 150
+# Growth of a step where tangents differ by little, what is left of it where they differ by much; by most.
+LONGER, STRAIGHT, SHORTER, BENT, SHARPEST = 1.5, 0.98, 0.7, 0.95, 0.85
+PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
 SMALL = 0.02  # amplitude over the clearance below which a branch has come back to rest
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3
+REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
+DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are told apart by their sum
 WIDE = 0.2  # smallest gap from which on disturbances have their full size
+# A branch that turns back has a fold if its speed differs by so many times what it differs by between places of the
+# cells, of which at least so much is taken, relative.
+CLEAR, BLUR = 2.0, 2e-4
 REFINED = 6  # evaluations that locate a special point
 
 
 @dataclass(frozen=True)
 class Shot:
     """A cycle. x, p: see above, at the start of the period; wet: the machine there; displacements: see Passage; space:
-    slow motions about it; tangent: (N + 2,) of the branch; multipliers; kind: of a special one, else ""."""
+    slow motions about it; tangent: (N + 2,) of the branch; multipliers; others: (p, displacements) with the cells in
+    other PLACES; kind: of a special one, else ""."""
 
     x: Array
     p: Array
@@ -46,12 +59,29 @@ class Shot:
     space: SlowSpace
     tangent: Array
     multipliers: Multipliers
+    others: tuple[tuple[Array, Array], ...] = ()
     kind: str = ""
 
     @property
+    def mean_p(self) -> Array:
+        """(2,) mean over the places of the cells."""
+        return np.asarray(np.mean([self.p, *(p for p, _ in self.others)], axis=0))
+
+    @property
+    def mean_displacements(self) -> Array:
+        """(SAMPLES + 1, F, 2) the same."""
+        return np.asarray(np.mean([self.displacements, *(places for _, places in self.others)], axis=0))
+
+    @property
     def eccentricity_max(self) -> Array:
-        """(F,)."""
-        return np.asarray(np.hypot(self.displacements[:, :, 0], self.displacements[:, :, 1]).max(axis=0))
+        """(F,) the same."""
+        orbits = (self.displacements, *(places for _, places in self.others))
+        return np.asarray(np.mean([largest(places) for places in orbits], axis=0))
+
+    @property
+    def blur(self) -> Array:
+        """(2,) by how much p differs between places of the cells."""
+        return np.asarray(np.ptp([self.p, *(p for p, _ in self.others)], axis=0))
 
     @property
     def amplitude(self) -> float:
@@ -97,7 +127,7 @@ class Shooting:
 
     def speed_Hz(self, shot: Shot) -> float:
         """The rotor speed of a cycle."""
-        return math.exp(float(shot.p[1])) * hertz(self.unit)
+        return math.exp(float(shot.mean_p[1])) * hertz(self.unit)
 
     def rest(self, near: Wet, omega: float) -> Rest | None:
         """The resting position at a speed, as a fixed point of the map over half a revolution: whirls of up to the
@@ -115,9 +145,9 @@ class Shooting:
             found = fixed_point(mapped, x, none, space, free)
             if found is None:
                 return None
-            x, _, _ = found
+            x = found.x
             asked.settle(x)
-            space = slow_space(mapped, x, none, self._first(x))
+            space = slow_space(mapped, x, none, self._first(x, found.space))
         except Unreachable:
             return None
         values, states = ritz(space)
@@ -175,38 +205,60 @@ class Shooting:
             found = fixed_point(asked.at, x, p, shot.space, conditions)
             if found is None:
                 return None
-            x, p, _ = found
+            x, p = found.x, found.p
             asked.settle(x)
             passage, wet = asked.passage, asked.near
             gap = 1.0 - float(np.hypot(passage.displacements[:, :, 0], passage.displacements[:, :, 1]).max())
             by = DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
-            space = slow_space(asked.at, x, p, self._first(x), by)
+            space = slow_space(asked.at, x, p, self._first(x, found.space), by)
         except Unreachable:
             return None
         phase = self._phase(wet)
         tangent = direction_along(space, phase, shot.tangent)
-        return Shot(x, p, wet, passage.displacements, space, tangent, _multipliers(space, phase))
+        others = tuple(self._elsewhere(place, p, wet, space, conditions) for place in PLACES)
+        return Shot(
+            x, p, wet, passage.displacements, space, tangent, _multipliers(space, phase),
+            tuple(each for each in others if each is not None),
+        )  # fmt: skip
+
+    def _elsewhere(
+        self, place: float, p: Array, wet: Wet, space: SlowSpace, conditions: Conditions
+    ) -> tuple[Array, Array] | None:
+        """(p, displacements) of a cycle with its cells at another place of PLACES; None if it is not found."""
+        there = self.flow.moved(wet, place)
+        asked = _Asked(self, there, 2 * STEPS_PER_REVOLUTION, self.flow.lying(place))
+        try:
+            found = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions)
+        except Unreachable:
+            return None
+        return None if found is None else (found.p, asked.passage.displacements)
 
     def _phase(self, wet: Wet) -> Array:
         """The direction in which a state moves in time, of the rotor alone."""
         found = self.flow.motion_of(wet, self.unit)
         return found / float(np.linalg.norm(found))
 
-    def _first(self, x: Array) -> Array:
-        """(N, 2 n) unit states of the rotor."""
+    def _first(self, x: Array, known: SlowSpace | None = None) -> Array:
+        """(N, j) unit states of the rotor, and the slow motions that are known already, oil that stays among them."""
         size = 2 * self.flow.system.rotor.size - self.flow.system.ring_count
-        return np.eye(len(x))[:, :size]
+        rotor = np.eye(len(x))[:, :size]
+        if known is None:
+            return rotor
+        values, states = ritz(known)
+        slow = states[:, np.abs(values) > REMEMBERED]
+        return np.hstack([rotor, slow.real, slow.imag])
 
 
 class _Asked:
     """The map as shooting asks for it; near: the machine whose guesses the next evaluation takes; passage: the last."""
 
-    def __init__(self, shooting: Shooting, near: Wet, steps: int) -> None:
+    def __init__(self, shooting: Shooting, near: Wet, steps: int, flow: PeriodMap | None = None) -> None:
         self.shooting, self.near, self.steps = shooting, near, steps
+        self.flow = shooting.flow if flow is None else flow
         self.passage: Passage
 
     def image(self, x: Array, time: float, omega: float) -> Array:
-        flow, unit = self.shooting.flow, self.shooting.unit
+        flow, unit = self.flow, self.shooting.unit
         self.passage = flow.passage(flow.unpacked(x, self.near, unit), time, omega, self.steps)
         return flow.packed(self.passage.end, unit)
 
@@ -216,17 +268,32 @@ class _Asked:
 
     def settle(self, x: Array) -> None:
         """Take the guesses of the last evaluation, which has ended where it began, for the next."""
-        self.near = self.shooting.flow.unpacked(x, self.passage.end, self.shooting.unit)
+        self.near = self.flow.unpacked(x, self.passage.end, self.shooting.unit)
+
+
+def largest(displacements: Array) -> Array:
+    """(F,) largest eccentricity of an orbit (SAMPLES + 1, F, 2), between samples by parabolas."""
+    e = np.hypot(displacements[:-1, :, 0], displacements[:-1, :, 1])
+    at, films = e.argmax(axis=0), np.arange(e.shape[1])
+    before, here, after = e[at - 1, films], e[at, films], e[(at + 1) % len(e), films]
+    bend = np.maximum(2.0 * here - before - after, 1e-300)
+    return np.asarray(here + (after - before) ** 2 / (8.0 * bend))
 
 
 def _multipliers(space: SlowSpace, phase: Array) -> Multipliers:
+    """Next to a fold two multipliers are 1, with one disturbance for both, and an error enters each with its root: the
+    other one is then what their sum, which has the error itself, is beyond the trivial one."""
     values, states = ritz(space)
     near = np.abs(values - 1.0) < 0.2
     along = np.where(near, np.abs(phase @ states) / np.linalg.norm(states, axis=0), -1.0)
     trivial = int(np.argmax(along))
-    others = np.delete(values, trivial)
-    return Multipliers(np.concatenate([values[trivial : trivial + 1], others]), max(
-        BLURRED, float(abs(values[trivial] - 1.0))))  # fmt: skip
+    first, others = values[trivial], np.delete(values, trivial)
+    defect = max(BLURRED, float(abs(first - 1.0)))
+    second = int(np.argmin(np.abs(others - 1.0)))
+    if abs(others[second] - 1.0) < DOUBLE:
+        first, others[second] = 1.0, (first + others[second]).real - 1.0
+    others = others[np.argsort(-np.abs(others), kind="stable")]
+    return Multipliers(np.concatenate([[first], others]), defect)
 
 
 def follow_shots(
@@ -248,31 +315,57 @@ def follow_shots(
             length *= 0.5
             found = _next(shooting, shot, length)
         if found is None:
-            last = shooting.speed_Hz(shot)
-            return tuple(shots), f"It could not be followed beyond {last:.4g} Hz: the steps became too short."
+            note = f"It could not be followed beyond {shooting.speed_Hz(shot):.4g} Hz: the steps became too short."
+            return with_folds(shooting, shots), note
         if observe is not None:
             observe(found)
         if not lowest <= found.p[1] <= highest:
             limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
             end = shooting.at_speed(shot, found, limit_speed)
-            return (*shots, *([] if end is None else [end])), LEFT
+            return with_folds(shooting, [*shots, *([] if end is None else [end])]), LEFT
         shots += [*special_shots(shooting, shot, found, length, asked), found]
         if found.amplitude < SMALL:
-            return tuple(shots), AT_REST
+            return with_folds(shooting, shots), AT_REST
         if found.eccentricity_max.max() > limit:
-            return tuple(shots), f"The journal meets its shell, at an eccentricity of {limit}."
-        if shot.tangent @ found.tangent > STRAIGHT:
+            return with_folds(shooting, shots), f"The journal meets its shell, at an eccentricity of {limit}."
+        straight = float(shot.tangent @ found.tangent)
+        if straight > STRAIGHT:
             length = min(LONGER * length, LONGEST)
-    return tuple(shots), f"It was followed over {MOST_POINTS} cycles and goes on."
+        elif straight < BENT:
+            length *= SHORTER
+    return with_folds(shooting, shots), f"It was followed over {MOST_POINTS} cycles and goes on."
+
+
+def with_folds(shooting: Shooting, shots: Sequence[Shot]) -> tuple[Shot, ...]:
+    """The cycles of a branch with its folds: where its speed turns back by more than places of the cells differ in."""
+    speeds = np.array([float(shot.mean_p[1]) for shot in shots])
+    blur = np.array([float(shot.blur[1]) for shot in shots])
+    found = list(shots)
+    side, extreme = 0, 0  # which way the speed goes, and where it went furthest
+    for i in range(1, len(shots)):
+        gone = speeds[i] - speeds[extreme]
+        if side == 0 or side * gone >= 0.0:
+            clear = side != 0 or abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR)
+            side, extreme = (int(np.sign(gone)), i) if clear else (side, extreme)
+        elif abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR):
+            found[extreme] = _fold(shooting, shots[max(extreme - 1, 0) : extreme + 2], shots[extreme])
+            side, extreme = -side, i
+    return tuple(found)
+
+
+def _fold(shooting: Shooting, around: Sequence[Shot], furthest: Shot) -> Shot:
+    """The cycle of a few that follow each other at which the branch turns back, else the one that went furthest."""
+    for one, after in itertools.pairwise(around):
+        if one.tangent[-1] * after.tangent[-1] < 0.0:
+            size = len(one.x)
+            length = float(one.tangent[:size] @ (after.x - one.x) + one.tangent[size:] @ (after.p - one.p))
+            return replace(_located(shooting, one, after, length, lambda shot: float(shot.tangent[-1])), kind=FOLD)
+    return replace(furthest, kind=FOLD)
 
 
 def special_shots(shooting: Shooting, shot: Shot, after: Shot, length: float, asked: Sequence[float]) -> list[Shot]:
-    """Folds, flips, torus points and cycles at speeds asked for within a step."""
+    """Flips, torus points and cycles at speeds asked for within a step."""
     found: list[Shot] = []
-    fold = shot.tangent[-1] * after.tangent[-1] < 0.0
-    if fold:
-        there = _located(shooting, shot, after, length, lambda one: float(one.tangent[-1]))
-        found.append(replace(there, kind=FOLD))
     change = abs(after.multipliers.unstable - shot.multipliers.unstable)
     worse = max(shot, after, key=lambda one: one.multipliers.unstable)
     outside = worse.multipliers.others[: worse.multipliers.unstable]
@@ -281,7 +374,7 @@ def special_shots(shooting: Shooting, shot: Shot, after: Shot, length: float, as
         few = shot.multipliers.unstable
         there = _located(shooting, shot, after, length, lambda one: 0.5 - float(one.multipliers.unstable != few))
         found.append(replace(there, kind=TORUS if turning else FLIP))
-    for speed in () if fold else asked:
+    for speed in asked:
         if min(shot.p[1], after.p[1]) < math.log(speed / shooting.unit) <= max(shot.p[1], after.p[1]):
             there_too = shooting.at_speed(shot, after, speed)
             found += [] if there_too is None else [replace(there_too, kind=ASKED)]
