@@ -27,7 +27,7 @@ from frbcli.cycles.result import (
     SpecialPoint,
     hertz,
 )
-from frbcli.cycles.shot_branch import Rest, Shooting, Shot, follow_shots
+from frbcli.cycles.shot_branch import PLACES, Rest, Shooting, Shot, follow_shots
 from frbcli.errors import NotConverged
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
@@ -75,7 +75,7 @@ def limit_cycles_with_oil(
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(rest, len(branches), shots[0] if shots else None))
-        branches.append(CycleBranch(len(special) - 1, _points(shooting, rest, shots), note))
+        branches.append(CycleBranch(len(special) - 1, _points(shooting, rest, shots), _with_lost_places(note, shots)))
     for number, branch in enumerate(branches):
         special += [_special(point, number) for point in branch.points if point.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
@@ -141,6 +141,15 @@ def _branch(
         if first is not None:
             return follow_shots(shooting, first, speeds, asked, tell)
     return (), "No cycle was found beside the Hopf point."
+
+
+def _with_lost_places(note: str, shots: Sequence[Shot]) -> str:
+    """The note of a branch, which says where the mean of a cycle lacks places of its cells."""
+    lacking = sum(len(shot.others) < len(PLACES) for shot in shots)
+    if lacking == 0:
+        return note
+    told = f"{lacking} of {len(shots)} cycles are the mean over fewer than {1 + len(PLACES)} places of the cells."
+    return f"{note} {told}".strip()
 
 
 def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[Rest]) -> list[str]:
