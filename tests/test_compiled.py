@@ -147,7 +147,7 @@ def test_the_first_start_is_told_and_the_next_is_not(capsys: pytest.CaptureFixtu
     for told in (True, False):
         with compilation_shown(Terminal(), load_case("jeffcott")):
             assert kernel(2.0) == 6.0
-        assert ("Compiling the kernels, once: about 35 s of CPU time." in capsys.readouterr().err) is told
+        assert ("Compiling the kernels, once: about 20 s of CPU time." in capsys.readouterr().err) is told
 
 
 def test_what_moves_on_the_screen_counts_the_kernels() -> None:
@@ -156,5 +156,5 @@ def test_what_moves_on_the_screen_counts_the_kernels() -> None:
     shown = list[str]()
     with compilation_shown(Terminal(), load_case("jeffcott-two-phase"), shown.append):
         njit(lambda x: x + 1.0)(1.0)
-    assert shown[0] == "Compiling the kernels, once: about 80 s of CPU time."
-    assert re.fullmatch(r"Compiling the kernels, once: 1 functions in \d+ s of about 80\.", shown[1])
+    assert shown[0] == "Compiling the kernels, once: about 40 s of CPU time."
+    assert re.fullmatch(r"Compiling the kernels, once: 1 functions in \d+ s of about 40\.", shown[1])

@@ -61,7 +61,7 @@ def compiled_law(law: Any) -> CompiledLaw:
 
 def compiled_cell(law: type[Law]) -> Any:
     """`cell` of a law for kernels that are made for this law alone."""
-    return jitted(law.cell)
+    return jitted(law.cell, force_inline=True)
 
 
 def addresses(law: Law) -> tuple[float, float]:
