@@ -11,7 +11,7 @@ from frbcli.compiled import Array, compiled
 
 @compiled()
 def solve_dense(matrix: Array, right: Array) -> None:
-    """right (n, r) <- matrix^-1 right by elimination with row pivoting; matrix (n, n) is overwritten.
+    """right (n, r) <- matrix^-1 right by elimination with row pivoting. The first n columns of matrix are overwritten.
 
     A singular matrix leaves infinities or NaN in `right`: the caller looks at what it does with the result.
     """

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from frbcli.compiled import Array, compiled
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
@@ -22,20 +20,20 @@ def outdated(numbers: Array, g: float, speed: float, gyroscopic: bool) -> bool:
     return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
 
 
-@compiled(makes_arrays=True)
+@compiled()
 def prepare(
     rotor: RotorData, selection: Array, numbers: Array, g: float, speed: float, products: Array, loads: Array,
-    spread: Array, compliance: Array,
+    spread: Array, compliance: Array, elimination: Array,
 ) -> None:  # fmt: skip
     """Make the inverse E for this g and speed, keep its products, and book in the numbers for what they are.
 
     products (3, n, n), loads (3, n): of E with the matrices and loads in the order of E_...; spread (n, m): with the
-    forces on the journals; compliance (m, m): S of stage.py.
+    forces on the journals; compliance (m, m): S of stage.py; elimination (2, n, 3 n + 3 + m): to work in.
     """
     n, m = rotor.mass.shape[0], selection.shape[0]
     numbers[INVERSE_G], numbers[INVERSE_SPEED] = g, speed
     # One elimination for all right-hand sides: the three matrices, the three loads, the journals.
-    dynamic, right = np.empty((n, n)), np.empty((n, 3 * n + 3 + m))
+    dynamic, right = elimination[0], elimination[1]
     for i in range(n):
         for j in range(n):
             dynamic[i, j] = rotor.mass[i, j] + g * (

@@ -202,7 +202,7 @@ def _advance(
     tolerance, stiffness = control.tolerance, control.contact_stiffness
     stages = moments.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
+    selection, products, loads, spread, compliance, elimination, at, film, stage_v, stage_a = scratch
     responses, given, told = exchange.responses, exchange.given, exchange.told
     turning, aside = exchange.rings, exchange.aside
     lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
@@ -218,7 +218,7 @@ def _advance(
             t_s = t + moments[s] * step
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
             if outdated(numbers, g, speed, gyroscopic):
-                prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
+                prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
             predict(weights, s, step, q, v, stage_v, stage_a, at)
             start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, film)
             _extrapolate(past, t_s, lagrange, given, film)

@@ -16,16 +16,18 @@ from frbcli.solve.state import GRID, SLIP, SUM, Control, RotorData
 
 
 class Rings(NamedTuple):
-    """bodies, angles (1 + rings,): speeds and angles of the rotor and the rings in a stage; torque (rings,) on them."""
+    """bodies, angles (1 + rings,): speeds and angles of the rotor and the rings in a stage; torque (rings,) on them;
+    held (rings,): what Couette's terms fall by per speed of the ring."""
 
     bodies: Array
     angles: Array
     torque: Array
+    held: Array
 
 
 def make_rings(count: int) -> Rings:
     """For so many rings, all at rest."""
-    return Rings(np.zeros(1 + count), np.zeros(1 + count), np.zeros(count))
+    return Rings(np.zeros(1 + count), np.zeros(1 + count), np.zeros(count), np.zeros(count))
 
 
 @compiled(inline=True)
@@ -56,7 +58,7 @@ def guess_speeds(
         angles[1 + r] = at[Q, i] + g * bodies[1 + r]
 
 
-@compiled(makes_arrays=True)
+@compiled()
 def spin_up(
     films: Any, work: Any, rotor: RotorData, s: int, g: float, control: Control, scratch: Scratch, rings: Rings
 ) -> float:
@@ -68,12 +70,11 @@ def spin_up(
     Newton's method: a ring of little inertia follows it at once, and plain iterations would go to and fro.
     """
     count, clearances, film, at = rotor.spins.shape[0], rotor.clearances, scratch.film, scratch.at
-    bodies, angles, torque = rings
+    bodies, angles, torque, held = rings
     if count == 0:
         return 0.0
-    held = np.zeros(count)  # what Couette's terms fall by per speed of the ring
     for r in range(count):
-        torque[r] = 0.0
+        torque[r] = held[r] = 0.0
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         e_x, e_y = film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]

@@ -15,14 +15,16 @@ from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
 
 
 class Scratch(NamedTuple):
-    """selection (m, n): the journals' displacements from the rotor's; products, loads, spread, compliance: see prepare
-    of inverse.py; at (STAGE_ROWS, n), film (JOURNAL_ROWS, m): rows of stage.py; stage_v, stage_a (n, stages)."""
+    """selection (m, n): the journals' displacements from the rotor's; products, loads, spread, compliance, elimination:
+    see prepare of inverse.py; at (STAGE_ROWS, n), film (JOURNAL_ROWS, m): rows of stage.py; stage_v, stage_a
+    (n, stages)."""
 
     selection: Array
     products: Array
     loads: Array
     spread: Array
     compliance: Array
+    elimination: Array
     at: Array
     film: Array
     stage_v: Array
@@ -38,11 +40,12 @@ def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
         np.zeros((3, n)),
         np.zeros((n, m)),
         np.zeros((m, m)),
+        np.zeros((2, n, 3 * n + 3 + m)),
         np.zeros((STAGE_ROWS, n)),
         np.zeros((JOURNAL_ROWS, m)),
         np.zeros((n, stages)),
         np.zeros((n, stages)),
     )
     if numbers[INVERSE_G] > 0.0:
-        prepare(rotor, scratch.selection, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:5])
+        prepare(rotor, scratch.selection, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:6])
     return scratch

@@ -118,14 +118,14 @@ def _solve_stage(
     clearances, turning, spins, grids = rotor.clearances, rotor.turning, rotor.spins, work.grids
     weights, moments = tableau.stage, tableau.times
     g, m, allowed = weights[1, 1] * step, 2 * clearances.shape[0], NEWTON_SHARE * control.tolerance
-    selection, products, loads, spread, compliance, at, film, stage_v, stage_a = scratch
+    selection, products, loads, spread, compliance, elimination, at, film, stage_v, stage_a = scratch
     newton, past, rings = own.newton, own.past, own.rings
     t_s = t + moments[s] * step
     acceleration, speed, angle = rotation(
         rotor.profile_times, rotor.profile_speeds, rotor.profile_angles, piece, t_s
     )
     if outdated(numbers, g, speed, rotor.has_gyroscopic):
-        prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance)
+        prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
     predict(weights, s, step, q, v, stage_v, stage_a, at)
     start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, film)
     guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), film)

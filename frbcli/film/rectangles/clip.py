@@ -15,19 +15,11 @@ from frbcli.film.grid import Array
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, element_lengths, gauss_angles
 
 
-@compiled(makes_arrays=True)
 def force_weights(vertices: Array) -> Array:
     """(2, 3, m) integrals of each element's shape functions times cos(Theta) and sin(Theta)."""
-    m = vertices.shape[0]
-    lengths, angles = element_lengths(vertices), gauss_angles(vertices)
-    weights = np.zeros((2, 3, m))
-    for e in range(m):
-        for g in range(3):
-            for i in range(3):
-                share = GAUSS_WEIGHTS[g] * lengths[e] * SHAPE[i, g]
-                weights[0, i, e] += share * math.cos(angles[e, g])
-                weights[1, i, e] += share * math.sin(angles[e, g])
-    return weights
+    angles = gauss_angles(vertices)
+    shares = element_lengths(vertices)[:, None] * GAUSS_WEIGHTS
+    return np.stack([SHAPE @ (shares * np.cos(angles)).T, SHAPE @ (shares * np.sin(angles)).T])
 
 
 @compiled()

@@ -11,6 +11,7 @@ on the same quadratic elements. The middle nodes are condensed, the ends form a 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,26 +30,27 @@ SHAPE = np.stack(
 SLOPE = np.stack([4 * GAUSS_POINTS - 3, 4 - 8 * GAUSS_POINTS, 4 * GAUSS_POINTS - 1])
 
 
-@compiled(makes_arrays=True)
+class Ring(NamedTuple):
+    """What solve_ring works in, on m elements with r right-hand sides: middle (m, 3) row of each element over its
+    diagonal; diagonal, upper, cut (m,); condensed (m, r); local (3, 3)."""
+
+    middle: Array
+    diagonal: Array
+    upper: Array
+    cut: Array
+    condensed: Array
+    local: Array
+
+
 def gauss_angles(vertices: Array) -> Array:
     """(m, 3) angles of the quadrature points of the m elements between the vertices (m,) of one turn."""
-    m = vertices.shape[0]
-    angles = np.empty((m, 3))
-    for e in range(m):
-        end = vertices[e + 1] if e + 1 < m else vertices[0] + 2 * math.pi
-        for g in range(3):
-            angles[e, g] = vertices[e] + (end - vertices[e]) * GAUSS_POINTS[g]
+    angles: Array = vertices[:, None] + element_lengths(vertices)[:, None] * GAUSS_POINTS
     return angles
 
 
-@compiled(makes_arrays=True)
 def element_lengths(vertices: Array) -> Array:
     """(m,) lengths of the elements between the vertices of one turn."""
-    m = vertices.shape[0]
-    lengths = np.empty(m)
-    for e in range(m):
-        lengths[e] = (vertices[e + 1] if e + 1 < m else vertices[0] + 2 * math.pi) - vertices[e]
-    return lengths
+    return np.diff(vertices, append=vertices[0] + 2 * math.pi)
 
 
 @compiled()
@@ -66,18 +68,19 @@ def _element(length: float, cube: Array, decay: float, local: Array) -> None:
             local[i, j] = entry
 
 
-@compiled(makes_arrays=True)
-def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
+@compiled()
+def solve_ring(lengths: Array, cube: Array, decay: float, load: Array, ring: Ring, pressure: Array) -> None:
     """Solve -d/dphi(H^3 dP/dphi) + decay H^3 P = load on the ring of m quadratic elements.
 
     lengths: (m,); cube: (m, 3) H^3 at the quadrature points; load: (r, m, 3) r right-hand sides at the element nodes
-    (first end, middle, second end), already integrated. Returns (r, 2 m): ends at even indices, middles at odd.
+    (first end, middle, second end), already integrated. pressure (r, 2 m) <- ends at even indices, middles at odd.
     """
     m, r = lengths.shape[0], load.shape[0]
-    middle = np.empty((m, 3))  # the middle row of each element, divided by its diagonal
-    diagonal, upper = np.zeros(m), np.zeros(m)
-    condensed = np.zeros((m, r))
-    local = np.empty((3, 3))
+    middle, diagonal, upper, cut, condensed, local = ring
+    for e in range(m):
+        diagonal[e] = cut[e] = 0.0
+        for k in range(r):
+            condensed[e, k] = 0.0
     for e in range(m):
         _element(lengths[e], cube[e], decay, local)
         n = e + 1 if e + 1 < m else 0
@@ -85,7 +88,7 @@ def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
         middle[e, 0], middle[e, 1], middle[e, 2] = a, 1.0 / local[1, 1], b
         diagonal[e] += local[0, 0] - local[0, 1] * a
         diagonal[n] += local[2, 2] - local[2, 1] * b
-        upper[e] += local[0, 2] - local[0, 1] * b
+        upper[e] = local[0, 2] - local[0, 1] * b
         for k in range(r):
             condensed[e, k] += load[k, e, 0] - a * load[k, e, 1]
             condensed[n, k] += load[k, e, 2] - b * load[k, e, 1]
@@ -94,7 +97,6 @@ def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
     gamma = -diagonal[0]
     diagonal[0] -= gamma
     diagonal[m - 1] -= corner * corner / gamma
-    cut = np.zeros(m)
     cut[0], cut[m - 1] = gamma, corner
     for e in range(1, m):
         factor = upper[e - 1] / diagonal[e - 1]
@@ -110,7 +112,6 @@ def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
         cut[e] /= diagonal[e]
         for k in range(r):
             condensed[e, k] /= diagonal[e]
-    pressure = np.empty((r, 2 * m))
     scale = 1.0 / (1.0 + cut[0] + corner * cut[m - 1] / gamma)
     for k in range(r):
         part = (condensed[0, k] + corner * condensed[m - 1, k] / gamma) * scale
@@ -121,10 +122,8 @@ def solve_ring(lengths: Array, cube: Array, decay: float, load: Array) -> Array:
             pressure[k, 2 * e + 1] = (
                 middle[e, 1] * load[k, e, 1] - middle[e, 0] * pressure[k, 2 * e] - middle[e, 2] * pressure[k, n]
             )
-    return pressure
 
 
-@compiled(makes_arrays=True)
 def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads: Array) -> Array:
     """Pressure of a unit radial and a unit tangential w, and their derivatives by the eccentricity, mode by mode.
 
@@ -132,43 +131,49 @@ def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads:
     vertices: (m,); decays: (k,) (R/b)^2 lambda_k; mode_loads: (k,).
     Returns (4, k, 2 m): P_r, P_t, dP_r/deps, dP_t/deps.
     """
-    m, modes = vertices.shape[0], decays.shape[0]
+    m = len(vertices)
     lengths, angles = element_lengths(vertices), gauss_angles(vertices)
-    cube, change = np.empty((m, 3)), np.empty((m, 3))
-    load = np.zeros((2, m, 3))
-    for e in range(m):
-        for g in range(3):
-            cosine, sine = math.cos(angles[e, g]), math.sin(angles[e, g])
-            gap = 1.0 + eccentricity * cosine
-            cube[e, g] = gap**3
-            change[e, g] = 3.0 * gap * gap * cosine
-            for i in range(3):
-                weight = GAUSS_WEIGHTS[g] * lengths[e] * SHAPE[i, g]
-                load[0, e, i] -= weight * cosine
-                load[1, e, i] -= weight * sine
-    # Loops in place of slices and products of arrays, which take three seconds to compile.
-    fields = np.empty((4, modes, 2 * m))
-    local, own, defect = np.empty((3, 3)), np.empty((2, m, 3)), np.empty((2, m, 3))
-    for k in range(modes):
+    cosine, sine = np.cos(angles), np.sin(angles)
+    gap = 1.0 + eccentricity * cosine
+    shares = lengths[:, None] * GAUSS_WEIGHTS
+    load = -np.stack([(shares * cosine) @ SHAPE.T, (shares * sine) @ SHAPE.T])
+    ring = Ring(np.empty((m, 3)), np.empty(m), np.empty(m), np.empty(m), np.empty((m, 2)), np.empty((3, 3)))
+    fields = np.empty((4, len(decays), 2 * m))
+    work = np.empty((2, m, 3)), np.empty((2, m, 3)), np.empty((2, 2 * m))
+    _mode_fields(lengths, gap**3, 3.0 * gap**2 * cosine, decays, mode_loads, load, ring, work, fields)
+    return fields
+
+
+@compiled()
+def _mode_fields(
+    lengths: Array, cube: Array, change: Array, decays: Array, mode_loads: Array, load: Array, ring: Ring,
+    work: tuple[Array, Array, Array], fields: Array,
+) -> None:  # fmt: skip
+    """fields <- those of unit_fields; change (m, 3): dH^3/deps at the quadrature points; load (2, m, 3) of a mode with
+    a load of 1."""
+    m = lengths.shape[0]
+    own, defect, found = work
+    for k in range(decays.shape[0]):
         for s in range(2):
             for e in range(m):
                 for i in range(3):
                     own[s, e, i] = mode_loads[k] * load[s, e, i]
-        solution = solve_ring(lengths, cube, decays[k], own)
+        solve_ring(lengths, cube, decays[k], own, ring, found)
         # K' P + K P' = 0: the load does not depend on the eccentricity.
         for e in range(m):
-            _element(lengths[e], change[e], decays[k], local)
+            _element(lengths[e], change[e], decays[k], ring.local)
             n = 2 * (e + 1) if e + 1 < m else 0
             for s in range(2):
                 for i in range(3):
                     defect[s, e, i] = -(
-                        local[i, 0] * solution[s, 2 * e]
-                        + local[i, 1] * solution[s, 2 * e + 1]
-                        + local[i, 2] * solution[s, n]
+                        ring.local[i, 0] * found[s, 2 * e]
+                        + ring.local[i, 1] * found[s, 2 * e + 1]
+                        + ring.local[i, 2] * found[s, n]
                     )
-        derivative = solve_ring(lengths, cube, decays[k], defect)
         for s in range(2):
             for i in range(2 * m):
-                fields[s, k, i] = solution[s, i]
-                fields[2 + s, k, i] = derivative[s, i]
-    return fields
+                fields[s, k, i] = found[s, i]
+        solve_ring(lengths, cube, decays[k], defect, ring, found)
+        for s in range(2):
+            for i in range(2 * m):
+                fields[2 + s, k, i] = found[s, i]

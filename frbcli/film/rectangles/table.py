@@ -50,7 +50,6 @@ def ring_contraction(eccentricity: float) -> float:
     return float(max((1.0 - eccentricity) / (1.0 + eccentricity), 1e-6) ** 0.3)
 
 
-@compiled(makes_arrays=True)
 def clipped_forces(
     fields: Array, shapes: Array, weights_z: Array, directions: Array, stretch: float, stretch_rate: float,
     vertices: Array, clipped: bool,
@@ -60,30 +59,35 @@ def clipped_forces(
     fields: (4, k, n) of unit_fields; shapes: (k, l) modes at the axial lines with weights_z (l,); directions: (d,)
     angles of (w_r, stretch * w_t). Axis 2: components along and across the line of centres.
     """
-    lengths, weights = element_lengths(vertices), force_weights(vertices)
-    n, lines, modes = fields.shape[2], shapes.shape[1], shapes.shape[0]
-    result = np.zeros((directions.shape[0], 3, 2))
-    unit = np.empty((4, n))
-    line = np.empty((3, n))
+    unit = np.einsum("kl,fkn->lfn", shapes, fields)
+    # The tangential field of a unit stretched w_t.
+    unit[:, 3] = unit[:, 3] / stretch - unit[:, 1] * stretch_rate / stretch**2
+    unit[:, 1] /= stretch
+    result, line, part = np.zeros((len(directions), 3, 2)), np.empty((3, unit.shape[2])), np.empty((3, 2))
+    weights, lengths = force_weights(vertices), element_lengths(vertices)
+    _add_forces(unit, weights_z, directions, vertices, lengths, weights, clipped, (line, part), result)
+    return result
+
+
+@compiled()
+def _add_forces(
+    fields: Array, weights_z: Array, directions: Array, vertices: Array, lengths: Array, weights: Array, clipped: bool,
+    work: tuple[Array, Array], result: Array,
+) -> None:  # fmt: skip
+    """result += those of clipped_forces; fields (l, 4, n) of a unit stretched w on the axial lines."""
+    line, part = work
+    n = line.shape[1]
     level = 0.0 if clipped else -1e300
-    for z in range(lines):
-        for f in range(4):
-            for i in range(n):
-                unit[f, i] = 0.0
-        for k in range(modes):
-            for f in range(4):
-                for i in range(n):
-                    unit[f, i] += shapes[k, z] * fields[f, k, i]
-        for i in range(n):  # the tangential field of a unit stretched w_t
-            unit[3, i] = unit[3, i] / stretch - unit[1, i] * stretch_rate / (stretch * stretch)
-            unit[1, i] /= stretch
+    for z in range(fields.shape[0]):
+        unit = fields[z]
         for j in range(directions.shape[0]):
             cosine, sine = math.cos(directions[j]), math.sin(directions[j])
             for i in range(n):
                 line[0, i] = cosine * unit[0, i] + sine * unit[1, i]
                 line[1, i] = cosine * unit[1, i] - sine * unit[0, i]
                 line[2, i] = cosine * unit[2, i] + sine * unit[3, i]
-            part = np.zeros((3, 2))
+            for a in range(3):
+                part[a, 0] = part[a, 1] = 0.0
             clipped_line(line, level, vertices, lengths, weights, part)
             if not clipped:  # the level itself integrates to zero in exact arithmetic only
                 part[0, 0] = part[0, 1] = 0.0
@@ -98,7 +102,6 @@ def clipped_forces(
             for a in range(3):
                 for c in range(2):
                     result[j, a, c] += weights_z[z] * part[a, c]
-    return result
 
 
 def force_table(mesh: Mesh, radius_to_width: float, clipped: bool) -> Array:
