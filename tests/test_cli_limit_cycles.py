@@ -103,7 +103,8 @@ def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality:
     assert kind is not None
     assert kind.criticality == criticality
     if criticality == "subcritical":
-        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=1e-6)
+        # The diagram has five times as many harmonics there, for the multipliers.
+        assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=3e-6)
     else:
         assert kind.fold_Hz is None
     assert threshold_kind(frbcli.load_case("jeffcott", ["film.cavitation=reynolds"]), 170.0) is None

@@ -82,9 +82,12 @@ AT_REST = "It ends at rest, in another Hopf point."
 
 class Follower:
     """One branch while it is followed; omega: as in Balance; free: whether it is a whirl, which may shrink to rest;
-    most_at_fold: see MOST_AT_FOLD."""
+    tail, most_at_fold: see TAIL, MOST_AT_FOLD;
+    tail_of_folds: share of the tail that folds may have."""
 
     free = True
+    tail = TAIL
+    tail_of_folds = 1.0
     most_at_fold = MOST_AT_FOLD
 
     def __init__(
@@ -162,15 +165,16 @@ class Follower:
         found = corrected(self.equations(more), more.y, more.tangent)
         return None if found is None else oriented(found, more.tangent)
 
-    def refitted(self, place: Place) -> Place | None:
-        """The place with as many harmonics as it needs; None if that does not converge, or if they are too many."""
-        c = self.machine.size
+    def refitted(self, place: Place, share: float = 1.0) -> Place | None:
+        """The place with as many harmonics as it needs for a share of the tail; None if that does not converge, or if
+        they are too many."""
+        c, allowed = self.machine.size, share * self.tail[self.machine.film_count > 1]
         for _ in range(12):
             harmonics = (len(place.y) - 2) // c // 2
             tail = left_out(self.machine_at(place.y), self.as_cycle(place.y))
             motion = unpacked(place.y[:-2], c)
-            if tail < TAIL[self.machine.film_count > 1]:
-                used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * TAIL[self.machine.film_count > 1])
+            if tail < allowed:
+                used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * allowed)
                 wanted = max(FIRST_HARMONICS, int(used[-1]) + 2)
                 return place if wanted >= harmonics else resized(place, c, wanted)
             if harmonics >= MOST_HARMONICS:
@@ -187,7 +191,7 @@ class Follower:
         found = None
         for _ in range(REFITS):
             found = fold_between(self.equations(place), place, length)
-            fitted = None if found is None else self.refitted(found)
+            fitted = None if found is None else self.refitted(found, self.tail_of_folds)
             if found is None or fitted is None or len(fitted.y) <= len(place.y):
                 break
             place = resized_like(place, fitted, self.machine.size)
@@ -203,7 +207,11 @@ class Follower:
 
 
 class FoldFollower(Follower):
-    """Follows branches whose folds alone are asked for: without multipliers, the larger part of the cost."""
+    """Follows branches whose folds alone are asked for: without multipliers, the larger part of the cost, and with few
+    harmonics up to the fold."""
+
+    tail = (1e-5, 1e-5)
+    tail_of_folds = 1e-2
 
     def multipliers(self, _place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
         return Multipliers(np.ones(1, dtype=complex), 0.0)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import FOLD, Cycle, FoldFollower, Follower, first_place, follow_branch
+from frbcli.cycles.branch import FOLD, Cycle, FoldFollower, first_place, follow_branch
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.criticality import lyapunov_coefficient
 from frbcli.cycles.equilibria import resting_curve
@@ -52,8 +52,8 @@ def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
     folds: list[float] = []
 
     def watch(cycle: Cycle) -> bool:
-        if cycle.kind == FOLD:  # with as many harmonics as in a diagram
-            folds.append(hertz(Follower(machine, slowest, fastest).cycle(cycle.place, FOLD).y[-1] * machine.pace))
+        if cycle.kind == FOLD:
+            folds.append(hertz(cycle.y[-1] * machine.pace))
         return bool(folds)
 
     follow_branch(FoldFollower(machine, slowest, fastest), first_place(machine, hopf), until=watch)
