@@ -105,6 +105,7 @@ def _follow(made: Any, *sources: Path) -> None:
     made._cache._cache_file._source_stamp = sources_digest(*sources)
 
 
+@cache
 def sources_digest(*files: Path) -> str:
     """Of the contents of files of this package and of all that they import from it, directly or not."""
     found, waiting = set[Path](), list(files)
