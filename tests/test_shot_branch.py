@@ -1,0 +1,87 @@
+"""Branches by shooting on motions whose cycles are known: their Hopf points, folds, flips and torus points."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from known_flows import KnownFlow, round_cycles
+from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
+
+from frbcli.cycles.films import smooth_films
+from frbcli.cycles.floquet import Multipliers
+from frbcli.cycles.oil_cycles import _located
+from frbcli.cycles.shot_branch import Rest, Shooting, Shot, follow_shots
+from frbcli.film.rectangles.film_force import film_force
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_system
+
+
+def branch(flow: KnownFlow, low: float, high: float, begun: tuple[float, float]) -> tuple[Rest, tuple[Shot, ...]]:
+    """The Hopf point between two speeds and the cycles that begin there."""
+    shooting = Shooting(flow, high)  # type: ignore[arg-type]
+    rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in begun]
+    assert rests[0] is not None
+    assert rests[1] is not None
+    hopf = _located(shooting, rests[0], rests[1])
+    first = shooting.from_rest(hopf, 0.1)
+    assert first is not None
+    shots, note = follow_shots(shooting, first, (low, high))
+    assert note == "It leaves the range."
+    return hopf, shots
+
+
+@pytest.mark.parametrize(
+    ("twisted", "kind", "unstable"), [(True, "flip", 1), (False, "torus", 2)], ids=["flip", "torus"]
+)
+def test_flips_and_torus_points_are_named_and_located(twisted: bool, kind: str, unstable: int) -> None:
+    """They lie at the speed 1.3. A multiplier counts from 1.005 on, that is from 1.3005, known to 1 / 64 of a step."""
+
+    def decay(speed: float) -> tuple[float, float]:
+        return speed - 1.3, -0.4 if twisted else speed - 1.3
+
+    hopf, shots = branch(round_cycles(decay, 0.3, twisted), 0.9, 1.5, (0.9, 1.1))
+    assert hopf.omega == pytest.approx(1.0, abs=2e-4)
+    (special,) = [shot for shot in shots if shot.kind]
+    assert special.kind == kind
+    assert 1.5 * math.exp(special.p[1]) == pytest.approx(1.3005, abs=2e-3)
+    for shot in shots:
+        speed = 1.5 * math.exp(shot.p[1])
+        assert shot.eccentricity_max[0] == pytest.approx(0.5 * math.sqrt(speed - 1.0), rel=1e-6)
+        period = 4.0 * math.pi / speed
+        turns = math.pi if twisted else 0.3 * 2.0 * math.pi
+        expected = np.exp((speed - 1.3) * period + 1j * turns)
+        assert np.abs(shot.multipliers.others - expected).min() < 2e-3 * abs(expected)
+        assert shot.multipliers.unstable == (unstable if abs(expected) > 1.005 else 0)
+
+
+def test_the_fold_is_that_of_the_harmonic_balance() -> None:
+    """Rigid rotor in short bearings, Gamma = 4.538, integrated in time: Hopf point, fold, and the stability on both
+    sides of it."""
+    case = rigid(4.538, 2.4, 2.9)
+    (film,) = smooth_films(make_system(case, make_plan(case)))
+    unit = 2.0 * math.pi * UNIT_Hz
+
+    def rate(z: np.ndarray, omega: float) -> np.ndarray:
+        x, y, u, v = z / CLEARANCE
+        f_x, f_y = film_force(film, x, y, u, v, omega)[:2]
+        return np.array([z[2], z[3], 2.0 * f_x / MASS - GRAVITY, 2.0 * f_y / MASS])
+
+    known = diagram(4.538, 2.4, 2.9)
+    (threshold,), (known_fold,) = known.of("hopf"), known.of("fold")
+    hopf, shots = branch(KnownFlow(rate, CLEARANCE), 2.4 * unit, 2.75 * unit, (2.65 * unit, 2.8 * unit))
+    assert hopf.omega / unit == pytest.approx(threshold.speed_Hz / UNIT_Hz, rel=1e-5)
+    (bottom,) = [i for i, shot in enumerate(shots) if shot.kind == "fold"]
+    fold = shots[bottom]
+    assert 2.75 * math.exp(fold.p[1]) == pytest.approx(known_fold.speed_Hz / UNIT_Hz, rel=1e-5)
+    assert fold.eccentricity_max[0] == pytest.approx(known_fold.eccentricity_max[0], abs=2e-4)
+    assert not any(shot.multipliers.stable for shot in shots[1 : bottom - 1])
+    assert all(shot.multipliers.stable for shot in shots[bottom + 2 :])
+
+
+def test_multipliers_are_counted_beyond_the_defect_of_the_trivial_one() -> None:
+    values = np.array([1.004, 1.2, 1.01, 1.003, 0.4], dtype=complex)
+    assert Multipliers(values, 0.005).unstable == 2
+    assert Multipliers(values, 0.02).unstable == 1
+    assert Multipliers(values[3:], 0.005).stable
