@@ -87,7 +87,7 @@ def test_the_rotor_behind_its_films_is_the_whole_rotor(name: str) -> None:
     machine = machine_of(case)
     nu, omega, c = 0.45 * machine.pace, 0.9 * machine.pace, machine.size
     loads = np.random.default_rng(1).standard_normal(c)
-    passing, space = transfer(machine, 3, nu, omega), state_space(machine)
+    passing, space = transfer(machine, nu * np.arange(4.0), omega), state_space(machine)
     for k in (1, 2, 3):
         kept = np.linalg.solve(np.eye(c) - passing.values[k] * passing.kappa[k], passing.values[k] @ loads)
         whole = 1j * k * nu * np.eye(len(space.still)) - space.still - omega * space.by_speed
@@ -225,7 +225,8 @@ def test_multipliers_next_to_rest_are_those_of_the_eigenvalues() -> None:
 
 def test_multipliers_of_a_long_shaft_are_those_of_all_its_states() -> None:
     """turbocharger-heavy with 30 modes in each plane: the states that its films see tell the same multipliers, the
-    trivial one and those outside of the unit circle; of few modes all are kept."""
+    trivial one and those outside of the unit circle, to far below what the harmonics leave of the trivial one; of few
+    modes all are kept."""
     case = tomllib.loads(turbocharger().source_text)
     case["rotor"]["modes"] = 30
     machine = machine_of(long := frbcli.case_from_dict(case))
@@ -238,8 +239,9 @@ def test_multipliers_of_a_long_shaft_are_those_of_all_its_states() -> None:
     assert len(less.still) < 0.5 * len(full.still)
     for cycle in cycles[3::6]:
         all_, few = (multipliers(machine, space, cycle.y).values for space in (full, less))
-        assert abs(few[0] - all_[0]) < 1e-7
-        np.testing.assert_allclose(few[:12], all_[:12], atol=1e-6)
+        left = 1e-3 * abs(all_[0] - 1.0)
+        assert abs(few[0] - all_[0]) < max(1e-7, left)
+        np.testing.assert_allclose(few[:12], all_[:12], atol=max(1e-6, left))
         assert np.abs(few).max() > 1.0
     small = machine_of(turbocharger())
     np.testing.assert_array_equal(reduced_space(small).still, state_space(small).still)

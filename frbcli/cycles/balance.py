@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.machine import Loads, Machine, Transfer, film_loads, transfer
+from frbcli.cycles.machine import Loads, Machine, film_loads, transfer
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -47,18 +47,22 @@ class Balance:
         added = np.ones(c)
         if self.omega is not None:
             omega, added[: 2 * machine.film_count] = self.omega, 1.0 - y[-1]
-        passing = transfer(machine, h, nu, omega)
+        orders = np.arange(h + 1.0)[:, None]
+        passing = transfer(machine, nu * orders[:, 0], omega)
         kappa = added * passing.kappa
         loads, rate = loads_along(machine, motion, nu, omega)
         values, slope = _harmonics(loads.values, h), _derivative(loads, h, nu)
         inner = values + kappa * motion
         out = motion - _through(passing.values, inner)
-        out[0] -= passing.rest
+        out[0] -= machine.rest
         slope[np.arange(h + 1), :, h + np.arange(h + 1), :] += kappa[:, :, None] * np.eye(c)
         by_motion = -np.einsum("kij,kjlm->kilm", passing.values, slope)
         by_motion[np.arange(h + 1), :, h + np.arange(h + 1), :] += np.eye(c)
-        with_nu = _harmonics(np.einsum("nij,nj->ni", loads.by_v, rate), h) + added * passing.kappa_by_frequency * motion
-        by_nu = -_through(passing.by_frequency, inner) - _through(passing.values, with_nu)
+        with_nu = (
+            _harmonics(np.einsum("nij,nj->ni", loads.by_v, rate), h)
+            + added * orders * passing.kappa_by_frequency * motion
+        )
+        by_nu = -orders * _through(passing.by_frequency, inner) - _through(passing.values, with_nu)
         if self.omega is None:
             last = -_through(passing.by_speed, inner) - _through(passing.values, _harmonics(loads.by_speed, h))
             last *= machine.pace
@@ -125,10 +129,8 @@ def left_out(machine: Machine, y: Array) -> float:
     nu, omega = float(y[-2] * machine.pace), float(y[-1] * machine.pace)
     motion = unpacked(y[:-2], c)
     loads, _ = loads_along(machine, motion, nu, omega)
-    beyond = _harmonics(loads.values, h + 4)
-    beyond[: h + 1] = 0.0
-    passing: Transfer = transfer(machine, h + 4, nu, omega)
-    return float(np.abs(_through(passing.values, beyond)).max())
+    beyond = transfer(machine, nu * np.arange(h + 1.0, h + 5.0), omega).values
+    return float(np.abs(_through(beyond, _harmonics(loads.values, h + 4)[h + 1 :])).max())
 
 
 def _harmonics(samples: Array, h: int) -> Complex:

@@ -18,6 +18,7 @@ Equations = Callable[[Array], tuple[Array, Array]]  # residual (n,), and its der
 
 ITERATIONS = 10
 STEP = 1e-10  # a Newton step below this ends the iteration
+FORESEEN, SURELY = 1e-6, 0.1  # so does one below the first, if the next is foreseen below the other share of STEP
 SLOW = 0.5  # a Newton step that is not shorter than this share of the one before ends it without success
 WANTED = 4.0  # iterations that keep the step size
 SHARPEST = 0.9  # cosine of the angle between two tangents that a step may turn by
@@ -72,10 +73,12 @@ def corrected(equations: Equations, guess: Array, tangent: Array) -> Place | Non
         step, along = lu_solve((factors, swaps), right, check_finite=False).T
         y = y + step
         size = float(np.linalg.norm(step))
-        if size < STEP:
+        # Steps become shorter as their squares: size / before^2 stays, and the next one is size^3 / before^2.
+        foreseen = iteration > 1 and size < FORESEEN and size**3 < SURELY * STEP * before**2
+        if size < STEP or foreseen:
             swapped = np.count_nonzero(swaps != np.arange(len(swaps)))
             side = (-1) ** int(np.count_nonzero(pivots < 0.0) + swapped)
-            return Place(y, along / np.linalg.norm(along), iteration, side)
+            return Place(y, along / np.linalg.norm(along), iteration + (size >= STEP), side)
         if iteration > 2 and size > SLOW * before:
             return None
         before = size

@@ -110,13 +110,13 @@ class Resting:
 
 def equations(machine: Machine) -> Callable[[Array], tuple[Array, Array]]:
     """Those of a resting position y = (u, Omega / pace), see continuation.py."""
-    passing = transfer(machine, 0, 0.0, machine.pace)  # at rest nothing depends on the speed but the films
+    passing = transfer(machine, np.zeros(1), machine.pace)  # at rest nothing depends on the speed but the films
     through, kappa = passing.values[0].real, passing.kappa[0].real
 
     def at(y: Array) -> tuple[Array, Array]:
         u = y[:-1]
         loads = film_loads(machine, u[None], np.zeros((1, len(u))), float(y[-1] * machine.pace))
-        residual = u - through @ (loads.values[0] + kappa * u) - passing.rest
+        residual = u - through @ (loads.values[0] + kappa * u) - machine.rest
         slope = np.eye(len(u)) - through @ (loads.by_u[0] + np.diag(kappa))
         return residual, np.column_stack([slope, -machine.pace * through @ loads.by_speed[0]])
 

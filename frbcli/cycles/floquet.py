@@ -98,26 +98,37 @@ def multipliers(
 def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Array:
     """(N, N): what one period makes of a disturbance, with `count` equal intervals."""
     c, nu, omega = machine.size, float(y[-2] * machine.pace), float(y[-1] * machine.pace)
-    h, size, s = 2.0 * np.pi / (nu * count), len(space.still), len(NODES)
+    h, s = 2.0 * np.pi / (nu * count), len(NODES)
     tau = 2.0 * np.pi * (np.arange(count)[:, None] + NODES) / count
     u, rate = _at(unpacked(y[:-2], c), tau.ravel())
     loads = film_loads(machine, u, nu * rate, omega)
-    weights = _weights()
-    linear = space.still + omega * space.by_speed
-    # x_j = x_0 + h sum of a_jl (A_0 x_l + B g_l)
-    right = np.hstack([np.tile(np.eye(size), (s, 1)), h * np.kron(weights, space.given)])
-    by_start, by_loads = np.hsplit(np.linalg.solve(np.eye(s * size) - h * np.kron(weights, linear), right), [size])
+    by_start, by_loads = _interval(space, omega, h)
     by_u, by_v = (slope.reshape(count, s, c, c) for slope in (loads.by_u, loads.by_v))
-    columns = np.hstack([by_loads, by_start]).reshape(s, size, -1)
+    columns = np.concatenate([by_loads, by_start], axis=2)
     felt = (by_u @ (space.read @ columns) + by_v @ (space.read_rate @ columns)).reshape(count, s * c, -1)
     answer = np.linalg.solve(np.eye(s * c) - felt[:, :, : s * c], felt[:, :, s * c :])
-    steps = by_start[-size:] + by_loads[-size:] @ answer
+    steps = by_start[-1] + by_loads[-1] @ answer
     while len(steps) > 1:
         if len(steps) % 2:
             steps = np.concatenate([steps[:-2], (steps[-1] @ steps[-2])[None]])
         else:
             steps = steps[1::2] @ steps[::2]
     return np.asarray(steps[0])
+
+
+def _interval(space: StateSpace, omega: float, h: float) -> tuple[Array, Array]:
+    """The states at the nodes of an interval of the length h by those at its start (3, N, N) and by the loads at its
+    nodes (3, N, 3 c), of x_j = x_0 + h sum of a_jl (A_0 x_l + B g_l): parted by the eigenvectors of a_jl."""
+    shares, vectors = np.linalg.eig(_weights())
+    back = np.linalg.inv(vectors)
+    kept = np.flatnonzero(shares.imag >= 0.0)
+    shares, vectors, back = shares[kept], vectors[:, kept] * np.where(shares[kept].imag > 0.0, 2.0, 1.0), back[kept]
+    size = len(space.still)
+    linear = space.still + omega * space.by_speed
+    inverse = np.linalg.inv(np.eye(size) - h * shares[:, None, None] * linear)
+    by_start = np.tensordot(vectors * back.sum(axis=1), inverse, axes=1).real
+    loaded = np.einsum("jm,m,ml,mnc->jnlc", vectors, h * shares, back, inverse @ space.given).real
+    return by_start, loaded.reshape(len(NODES), size, -1)
 
 
 def _sorted(matrix: Array) -> Multipliers:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +83,11 @@ class Machine:
         """c."""
         return 2 * self.film_count + self.ring_count
 
+    @cached_property
+    def rest(self) -> Array:
+        """(c,): u at rest without films but on kappa."""
+        return _moved_by(self, 0, 0.0).real
+
     @property
     def places(self) -> Array:
         """(2 F, n): the displacements of the journals over the clearance."""
@@ -110,17 +116,14 @@ class Loads:
 
 @dataclass(frozen=True)
 class Transfer:
-    """T_k for the harmonics k = 0 ... H: values (H + 1, c, c), derivatives by nu and by Omega; kappa: (H + 1, c), and
-    its derivative by nu; rest: (c,) u without films but on kappa; unbalance: (c,) the same for k = 1 of the unbalance
-    over Omega^2."""
+    """T of harmonics at m frequencies: values (m, c, c), derivatives by their frequency and by Omega; kappa: (m, c),
+    and its derivative by the frequency."""
 
     values: Complex
     by_frequency: Complex
     by_speed: Complex
     kappa: Complex
     kappa_by_frequency: Complex
-    rest: Array
-    unbalance: Complex
 
 
 def make_machine(system: System, top: float) -> Machine:
@@ -223,37 +226,43 @@ def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> Non
             loads.by_speed[:, row] += rate * shares[0] + scale * half * (x * by_speed[:, 1] - y * by_speed[:, 0])
 
 
-def transfer(machine: Machine, harmonics: int, nu: float, omega: float) -> Transfer:
-    """T_k of a machine at the frequency nu and the speed omega, rad/s, for k = 0 ... harmonics."""
-    films = machine.film_count
-    k = np.arange(harmonics + 1)
-    rates = (1j * nu * k).astype(complex)
-    s = rates[:, None, None]
-    c, own = machine.size, slice(0, 2 * films)
-    values = np.zeros((harmonics + 1, c, c), dtype=complex)
+def transfer(machine: Machine, frequencies: Array, omega: float) -> Transfer:
+    """T of a machine at frequencies (m,) and the speed omega, rad/s; T_k is that at k nu."""
+    own = slice(0, 2 * machine.film_count)
+    rates = (1j * frequencies).astype(complex)
+    s, c = rates[:, None, None], machine.size
+    values = np.zeros((len(s), c, c), dtype=complex)
     by_frequency, by_speed = np.zeros_like(values), np.zeros_like(values)
-    given = np.zeros((harmonics + 1, 2 * films, 2), dtype=complex)  # by the static load and the unbalance
     for part in machine.parts:
-        n = len(part.basis)
+        n, b = part.basis.shape
         right, left = part.answers(part.dynamic(rates, omega))
-        mass, flow, turned = np.split(part.matrices[:3].reshape(3 * n, n) @ right, 3, axis=1)
-        by_nu = 1j * k[:, None, None] * (2.0 * s * mass + flow + omega * turned)
-        moved = part.seen @ (part.basis.T @ right) @ part.given
-        values[:, own, own] += moved[:, :, : 2 * films]
-        given += moved[:, :, 2 * films :]
-        loaded = part.given[:, : 2 * films]
-        by_frequency[:, own, own] -= part.seen @ (left @ by_nu) @ loaded
-        by_speed[:, own, own] -= part.seen @ (left @ (s * turned)) @ loaded
-    rings = np.arange(2 * films, c)
-    lag = 1.0 + 1j * np.outer(k * nu, machine.inertia)
+        side_by_side = np.ascontiguousarray(right.transpose(1, 0, 2)).reshape(n, -1)
+        products = (part.matrices[:3].reshape(3 * n, n) @ side_by_side).reshape(3, n, len(s), b)
+        mass, flow, turned = left @ products.transpose(0, 2, 1, 3)
+        by_rate = 2.0 * s * mass + flow + omega * turned
+        values[:, own, own] += part.seen @ (part.basis.T @ right) @ part.given
+        by_frequency[:, own, own] -= part.seen @ (1j * by_rate) @ part.given
+        by_speed[:, own, own] -= part.seen @ (s * turned) @ part.given
+    rings = np.arange(own.stop, c)
+    lag = 1.0 + 1j * np.outer(frequencies, machine.inertia)
     values[:, rings, rings] = 1.0 / lag
-    by_frequency[:, rings, rings] = -1j * np.outer(k, machine.inertia) / lag**2
-    kappa, rate = np.ones((harmonics + 1, c), dtype=complex), np.zeros((harmonics + 1, c), dtype=complex)
-    rate[:, own] = 1j * np.outer(k, np.repeat(machine.dashpot, 2))
-    kappa[:, own] = np.repeat(machine.spring, 2) + nu * rate[:, own]
-    rest, unbalance = np.zeros(c), np.zeros(c, dtype=complex)
-    rest[own] = given[0, :, 0].real
-    if harmonics > 0:
-        unbalance[own] = given[1, :, 1]
-    return Transfer(values, by_frequency, by_speed, kappa, rate, rest, unbalance)
+    by_frequency[:, rings, rings] = -1j * machine.inertia / lag**2
+    kappa, rate = np.ones((len(s), c), dtype=complex), np.zeros((len(s), c), dtype=complex)
+    rate[:, own] = 1j * np.repeat(machine.dashpot, 2)
+    kappa[:, own] = np.repeat(machine.spring, 2) + frequencies[:, None] * rate[:, own]
+    return Transfer(values, by_frequency, by_speed, kappa, rate)
 
+
+def unbalance_motion(machine: Machine, omega: float) -> Complex:
+    """(c,): u of exp(i Omega t) that the unbalance makes without films but on kappa, at the speed omega in rad/s."""
+    return omega**2 * _moved_by(machine, 1, omega)
+
+
+def _moved_by(machine: Machine, load: int, omega: float) -> Complex:
+    """(c,): u without films but on kappa under the static load, 0, at rest, or under the unbalance over Omega^2, 1, at
+    the speed omega in rad/s."""
+    moved = np.zeros(machine.size, dtype=complex)
+    for part in machine.parts:
+        dynamic = part.dynamic(np.array([1j * omega * load]), omega)[0]
+        moved[: 2 * machine.film_count] += part.seen @ (part.basis.T @ np.linalg.solve(dynamic, part.others[:, load]))
+    return moved

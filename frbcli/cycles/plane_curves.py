@@ -84,11 +84,11 @@ def _at_rest(plane: Plane, y: Array) -> Complex:
     """1 - T_1 (dg/du + i nu dg/du' + kappa) at rest."""
     machine, here = plane.machine(y), plane.cycle(y)
     nu, omega = float(here[-2] * machine.pace), float(here[-1] * machine.pace)
-    passing = transfer(machine, 1, nu, omega)
+    passing = transfer(machine, np.array([nu]), omega)
     u = here[None, :-2]
     loads = film_loads(machine, u, np.zeros_like(u), omega)
-    inner = loads.by_u[0] + 1j * nu * loads.by_v[0] + np.diag(passing.kappa[1])
-    return np.asarray(np.eye(len(inner)) - passing.values[1] @ inner)
+    inner = loads.by_u[0] + 1j * nu * loads.by_v[0] + np.diag(passing.kappa[0])
+    return np.asarray(np.eye(len(inner)) - passing.values[0] @ inner)
 
 
 def fold_equations(plane: Plane, y: Array) -> Equations:

@@ -24,14 +24,16 @@ INDEPENDENT = 1e-13  # share of the largest singular value above which a directi
 @dataclass(frozen=True)
 class Part:
     """matrices: (4, n, n) mass, damping, gyroscopic and stiffness of the part, with the dashpots and springs beside the
-    films; basis (n, b): of all directions in which it is seen and loaded, shapes (2 F, n) = seen (2 F, b) basis^T and
-    loads (n, l) = basis given (b, l), see transfer of machine.py; symmetric: whether all matrices are;
+    films; basis (n, b): of all directions in which films see and load it, shapes (2 F, n) = seen (2 F, b) basis^T and
+    pulls (n, 2 F) = basis given (b, 2 F), see transfer of machine.py; others: (n, l) what else loads it; symmetric:
+    whether all matrices are;
     planes: the degrees of freedom (n,) of x and of y that it is made of, None of the whole rotor."""
 
     matrices: Complex
     basis: Complex
     seen: Complex
     given: Complex
+    others: Complex
     symmetric: bool
     planes: tuple[NDArray[np.int64], NDArray[np.int64]] | None
 
@@ -49,7 +51,8 @@ class Part:
 
 
 def parts_of(rotor: LinearRotor, springs: Array, dashpots: Array, shapes: Array, loads: Complex) -> tuple[Part, ...]:
-    """The whole rotor, or both of its parts. springs, dashpots: (n, n) beside the films."""
+    """The whole rotor, or both of its parts. springs, dashpots: (n, n) beside the films; loads: (n, 2 F + l), those of
+    the films first."""
     matrices = (rotor.mass, rotor.damping + dashpots, rotor.gyroscopic, rotor.stiffness + springs)
     planes = _planes(shapes, matrices) if rotor.size >= SMALLEST else None
     if planes is None:
@@ -70,13 +73,13 @@ def _part(
     planes: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None,
 ) -> Part:
     symmetric = all(np.abs(each - each.T).max() <= ALIKE * np.abs(each).max(initial=0.0) for each in matrices)
-    directions = np.hstack([shapes.T.astype(complex), loads])
+    cut = len(shapes)
+    directions = np.hstack([shapes.T.astype(complex), loads[:, :cut]])
     sizes = np.linalg.norm(directions, axis=0)
     left, singular, _ = np.linalg.svd(directions / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
     basis = left[:, singular > INDEPENDENT * singular[0]]
     shares = np.conj(basis).T @ directions
-    cut = len(shapes)
-    return Part(matrices, basis, shares[:, :cut].T, shares[:, cut:], symmetric, planes)
+    return Part(matrices, basis, shares[:, :cut].T, shares[:, cut:], loads[:, cut:], symmetric, planes)
 
 
 def _planes(shapes: Array, matrices: tuple[Array, ...]) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:

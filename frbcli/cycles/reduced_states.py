@@ -3,7 +3,8 @@
 Modes far above the whirl follow the films at once, and what they add to the displacements of the journals is nearly
 always the same. The motions that films and unbalance make behind them, at frequencies of both signs and at several
 speeds, depend on each other but for little; their principal components (proper orthogonal decomposition) replace the
-modes, as many as the transfer T_k of machine.py needs. Both planes have the same ones.
+modes, as many as the transfer T_k of machine.py needs. Both planes have the same ones. Motions of whirls and of their
+first harmonics weigh most: of the higher ones a disturbance has little.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ Complex = NDArray[np.complex128]
 
 SLOW, SEEN = 1.0, 4.0  # frequencies over the largest speed up to which half of them lie, and the others
 FREQUENCIES, SPEEDS = 48, (0.0, 0.5, 1.0)  # how many, and at which speeds over the largest one
-TOLERANCE = 1e-5  # of T_k kappa_k, whose size is 1
+WEIGHTY = 0.125  # frequency over the largest speed from which on motions weigh less, with its fourth power
+TOLERANCE = 1e-6  # of T_k kappa_k, whose size is 1, with that weight
 WORTH = 0.75  # share of the modes above which all are kept
 
 
@@ -33,7 +35,7 @@ def reduced_space(machine: Machine) -> StateSpace:
     if part.planes is None:
         return state_space(machine)
     components, error, n = _components(machine, part), _errors(machine, part), len(part.basis)
-    for count in range(len(part.given), int(WORTH * n) + 1):
+    for count in range(part.basis.shape[1], int(WORTH * n) + 1):
         if error(components[:, :count]) < TOLERANCE:
             break
     else:
@@ -55,8 +57,9 @@ def reduced_space(machine: Machine) -> StateSpace:
 
 def _components(machine: Machine, part: Part) -> Array:
     """(n, n) principal components of the motions in a plane, orthogonal with the mass, in falling order."""
-    moved = _moved(part, *_asked(machine, 0.0))
-    moved /= np.linalg.norm(moved, axis=1).max(axis=0)
+    s, omega = _asked(machine, 0.0)
+    moved = _moved(part, s, omega)
+    moved *= _weight(machine, s) / np.linalg.norm(moved, axis=1).max(axis=0)
     columns = np.hstack([*moved.real, *moved.imag])
     root = np.linalg.cholesky(part.matrices[0].real)
     left, _, _ = np.linalg.svd(root.T @ columns, full_matrices=False)
@@ -64,10 +67,10 @@ def _components(machine: Machine, part: Part) -> Array:
 
 
 def _errors(machine: Machine, part: Part) -> Callable[[Array], float]:
-    """The largest difference that components make in T_k kappa_k, between the frequencies of the motions."""
+    """The largest weighted difference that components make in T_k kappa_k, between the frequencies of the motions."""
     s, omega = _asked(machine, 0.5)
     films = 2 * machine.film_count
-    kappa = np.repeat(machine.spring + np.outer(s, machine.dashpot), 2, axis=1)[:, None]
+    kappa = np.repeat(machine.spring + np.outer(s, machine.dashpot), 2, axis=1)[:, None] * _weight(machine, s)
 
     def passed(one: Part) -> Complex:
         return np.asarray(one.seen @ (one.basis.T @ _moved(one, s, omega)[:, :, :films]) * kappa)
@@ -75,7 +78,10 @@ def _errors(machine: Machine, part: Part) -> Callable[[Array], float]:
     exact = passed(part)
 
     def error(kept: Array) -> float:
-        less = replace(part, matrices=kept.T @ part.matrices @ kept, basis=kept.T @ part.basis)
+        across = kept.T
+        less = replace(
+            part, matrices=across @ part.matrices @ kept, basis=across @ part.basis, others=across @ part.others
+        )
         return float(np.abs(passed(less) - exact).max())
 
     return error
@@ -89,7 +95,12 @@ def _asked(machine: Machine, shift: float) -> tuple[Complex, Array]:
     return s.ravel(), speeds.ravel()
 
 
+def _weight(machine: Machine, s: Complex) -> Array:
+    """(m, 1, 1)."""
+    return np.asarray(1.0 / (1.0 + (np.abs(s) / (WEIGHTY * machine.pace)) ** 4))[:, None, None]
+
+
 def _moved(part: Part, s: Complex, omega: Array) -> Complex:
-    """(m, n, l) the motions that the loads make."""
-    given = part.basis @ part.given
+    """(m, n, 2 F + l) the motions that the loads make."""
+    given = np.hstack([part.basis @ part.given, part.others])
     return np.asarray(np.linalg.solve(part.dynamic(s, omega), np.broadcast_to(given, (len(s), *given.shape))))

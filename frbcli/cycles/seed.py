@@ -79,14 +79,14 @@ def _stabilised(machine: Machine, resting: Equilibrium) -> Place | None:
 
 def _equations(machine: Machine, omega: float) -> Callable[[Array], tuple[Array, Array]]:
     """Those of a resting position y = (u, a) at a speed, see equilibria.py."""
-    passing = transfer(machine, 0, 0.0, omega)
+    passing = transfer(machine, np.zeros(1), omega)
     through, kappa = passing.values[0].real, passing.kappa[0].real
     on_films = np.arange(machine.size) < 2 * machine.film_count
 
     def at(y: Array) -> tuple[Array, Array]:
         u, left = y[:-1], np.where(on_films, 1.0 - y[-1], 1.0)
         loads = film_loads(machine, u[None], np.zeros((1, len(u))), omega)
-        residual = u - through @ (loads.values[0] + left * kappa * u) - passing.rest
+        residual = u - through @ (loads.values[0] + left * kappa * u) - machine.rest
         slope = np.eye(len(u)) - through @ (loads.by_u[0] + np.diag(left * kappa))
         return residual, np.column_stack([slope, through @ (on_films * kappa * u)])
 

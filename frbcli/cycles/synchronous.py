@@ -16,7 +16,7 @@ from frbcli.cycles.branch import FIRST_HARMONICS, Branch, Follower, follow_branc
 from frbcli.cycles.continuation import Equations, Place, corrected, oriented
 from frbcli.cycles.equilibria import Equilibrium
 from frbcli.cycles.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
-from frbcli.cycles.machine import Machine, transfer
+from frbcli.cycles.machine import Machine, unbalance_motion
 
 Array = NDArray[np.float64]
 
@@ -75,5 +75,5 @@ def _driven(machine: Machine, harmonics: int, share: float) -> Array:
     """The packed motion that the unbalance makes at a speed over the pace."""
     omega = share * machine.pace
     motion = np.zeros((harmonics + 1, machine.size), dtype=complex)
-    motion[1] = omega**2 * transfer(machine, 1, omega, omega).unbalance
+    motion[1] = unbalance_motion(machine, omega)
     return packed(motion)
