@@ -87,6 +87,7 @@ def test_folds_end_where_the_criticality_changes_and_turn_back_in_a_cusp() -> No
     assert {"bautin", "cusp", "hopf", "fold"} == set(frame["kind"])
 
 
+@pytest.mark.nightly
 def test_films_with_tables_have_curves_of_folds_as_well() -> None:
     """Jeffcott rotor in finite films: the fold of a diagram that the map has not seen lies on its curve; films of
     other clearances share their table, whose making was most of the cost."""
@@ -111,6 +112,7 @@ def map_of_two_keys() -> StabilityMap:
     return frbcli.stability_map(case, "bearing.clearance", "49.9 um", "50.1 um", 3, across=across)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", ["hopf", "fold"])
 def test_a_map_over_two_keys_meets_diagrams_over_the_speed(kind: str) -> None:
     """A machine with both numbers of a point of a curve has its Hopf point, or its fold, at the speed of the map."""
