@@ -38,6 +38,7 @@ SMALL = 0.02  # amplitude over the clearance below which a branch has come back 
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3
 REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
+AT_REST_DIFFERENCE = 2e-2  # by which states are disturbed at rest: the kinks blur less, and the gap is wide
 DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are told apart by their sum
 WIDE = 0.2  # smallest gap from which on disturbances have their full size
 # A branch that turns back has a fold if its speed differs by so many times what it differs by between places of the
@@ -48,9 +49,9 @@ REFINED = 6  # evaluations that locate a special point
 
 @dataclass(frozen=True)
 class Shot:
-    """A cycle. x, p: see above, at the start of the period; wet: the machine there; displacements: see Passage; space:
-    slow motions about it; tangent: (N + 2,) of the branch; multipliers; others: (p, displacements) with the cells in
-    other PLACES; kind: of a special one, else ""."""
+    """A cycle. x, p: see above, at the start of the period; wet: the machine there; displacements: see Passage;
+    space: slow motions about it; tangent: (N + 2,) of the branch; multipliers; steps: of the period; others:
+    (p, displacements) with the cells in other PLACES; kind: of a special one, else ""."""
 
     x: Array
     p: Array
@@ -59,6 +60,7 @@ class Shot:
     space: SlowSpace
     tangent: Array
     multipliers: Multipliers
+    steps: int
     others: tuple[tuple[Array, Array], ...] = ()
     kind: str = ""
 
@@ -102,16 +104,26 @@ class Rest:
     states: Complex
 
     @property
-    def whirling(self) -> int | None:
-        """Number of the rate that oscillates and grows fastest, None without one."""
+    def whirls(self) -> NDArray[np.int64]:
+        """Numbers of the rates that oscillate, by falling growth."""
         oscillating = np.flatnonzero(self.rates.imag > 0.05 * self.omega)
-        return int(oscillating[np.argmax(self.rates[oscillating].real)]) if len(oscillating) else None
+        return oscillating[np.argsort(-self.rates[oscillating].real, kind="stable")]
 
     @property
-    def growth(self) -> float:
-        """Its real part, 1/s."""
-        number = self.whirling
-        return float(self.rates[number].real) if number is not None else -math.inf
+    def growing(self) -> int:
+        """How many whirls grow."""
+        return int(np.count_nonzero(self.rates[self.whirls].real > 0.0))
+
+    @property
+    def nearest_to_neutral(self) -> int:
+        """Number of the whirl that grows or decays most slowly."""
+        whirls = self.whirls
+        return int(whirls[np.argmin(np.abs(self.rates[whirls].real))])
+
+    def growth_of(self, mode: int) -> float:
+        """Real part in 1/s of the whirl that grows fastest but for `mode` others, -inf without one."""
+        whirls = self.whirls
+        return float(self.rates[whirls[mode]].real) if mode < len(whirls) else -math.inf
 
     @property
     def stable(self) -> bool:
@@ -140,20 +152,20 @@ class Shooting:
 
         try:
             x = self.flow.packed(near, self.unit)
-            space = slow_space(mapped, x, none, self._first(x))
+            space = slow_space(mapped, x, none, self._first(x), AT_REST_DIFFERENCE)
             free = Conditions(np.zeros((0, len(x))), np.zeros((0, 0)))
             found = fixed_point(mapped, x, none, space, free)
             if found is None:
                 return None
-            x = found.x
+            x, passage = found.x, asked.passage
             asked.settle(x)
-            space = slow_space(mapped, x, none, self._first(x, found.space))
+            space = slow_space(mapped, x, none, self._first(x, found.space), AT_REST_DIFFERENCE)
         except Unreachable:
             return None
         values, states = ritz(space)
         decaying = np.maximum(np.abs(values), 1e-12)
         rates = (np.log(decaying) + 1j * np.angle(values)) / time
-        return Rest(x, asked.near, omega, asked.passage.displacements.mean(axis=0), rates, states)
+        return Rest(x, asked.near, omega, passage.displacements.mean(axis=0), rates, states)
 
     def stepped(self, shot: Shot, length: float) -> Shot | None:
         """The cycle behind a step along the tangent; None if it is not found."""
@@ -176,12 +188,10 @@ class Shooting:
                 return found
         return None
 
-    def from_rest(self, rest: Rest, length: float) -> Shot | None:
-        """The cycle of a small size beside a Hopf point."""
-        number = rest.whirling
-        if number is None:
-            return None
+    def from_rest(self, rest: Rest, number: int, length: float) -> Shot | None:
+        """The cycle of a small size beside a Hopf point; number: of the rate that crosses zero there."""
         mode, nu, size = rest.states[:, number], rest.rates[number].imag, len(rest.x)
+        steps = round(STEPS_PER_REVOLUTION * rest.omega / nu)
         along, across = mode.real / np.linalg.norm(mode.real), -mode.imag
         across = across - along * (along @ across)
         p = np.log([2.0 * math.pi / nu * self.unit, rest.omega / self.unit])
@@ -190,17 +200,17 @@ class Shooting:
         rows = np.stack([across / np.linalg.norm(across), along])
         start = Shot(
             rest.x, p, rest.wet, np.zeros((1, 1, 2)), SlowSpace(np.zeros((size, 0)), np.zeros((size, 0)),
-            np.zeros((size, 2))), tangent, Multipliers(np.ones(1, dtype=complex), 0.0),
+            np.zeros((size, 2))), tangent, Multipliers(np.ones(1, dtype=complex), 0.0), steps,
         )  # fmt: skip
         try:
-            asked = _Asked(self, rest.wet, 2 * STEPS_PER_REVOLUTION)
+            asked = _Asked(self, rest.wet, steps)
             space = slow_space(asked.at, guess, p, self._first(guess))
         except Unreachable:
             return None
         return self._found(replace(start, space=space), guess, p, Conditions(rows, np.zeros((2, 2))))
 
     def _found(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
-        asked = _Asked(self, shot.wet, 2 * STEPS_PER_REVOLUTION)
+        asked = _Asked(self, shot.wet, shot.steps)
         try:
             found = fixed_point(asked.at, x, p, shot.space, conditions)
             if found is None:
@@ -215,18 +225,18 @@ class Shooting:
             return None
         phase = self._phase(wet)
         tangent = direction_along(space, phase, shot.tangent)
-        others = tuple(self._elsewhere(place, p, wet, space, conditions) for place in PLACES)
+        others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in PLACES)
         return Shot(
-            x, p, wet, passage.displacements, space, tangent, _multipliers(space, phase),
+            x, p, wet, passage.displacements, space, tangent, _multipliers(space, phase), shot.steps,
             tuple(each for each in others if each is not None),
         )  # fmt: skip
 
     def _elsewhere(
-        self, place: float, p: Array, wet: Wet, space: SlowSpace, conditions: Conditions
+        self, place: float, here: _Asked, p: Array, space: SlowSpace, conditions: Conditions
     ) -> tuple[Array, Array] | None:
         """(p, displacements) of a cycle with its cells at another place of PLACES; None if it is not found."""
-        there = self.flow.moved(wet, place)
-        asked = _Asked(self, there, 2 * STEPS_PER_REVOLUTION, self.flow.lying(place))
+        there = self.flow.moved(here.near, place)
+        asked = _Asked(self, there, here.steps, self.flow.lying(place))
         try:
             found = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions)
         except Unreachable:
