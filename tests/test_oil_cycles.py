@@ -127,6 +127,26 @@ def test_the_cycle_of_a_flexible_rotor_is_what_the_time_loop_ends_in() -> None:
 
 
 @pytest.mark.nightly
+def test_the_cycle_of_a_floating_ring_is_what_the_time_loop_ends_in() -> None:
+    """Two films and a ring whose speed follows slowly, 64 x 5 cells, at 66 Hz, before the fold of the branch: 450
+    periods later."""
+    settings = ['bearing.inner.supply={kind="circumferential-groove",pressure="2 bar"}', "film.cavitation=two-phase"]
+    settings += ["speed.from=61 Hz", "speed.to=66.3 Hz", "accuracy.mesh=[5,64]"]
+    case = frbcli.load_case("floating-ring", settings)
+    omega = 2.0 * math.pi * 66.0
+    found = frbcli.limit_cycles(case, [66.0])
+    (cycle,) = [point for branch in found.branches for point in branch.points if point.kind == "asked"]
+    assert cycle.stable
+    flow = period_map(case)
+    rest = settled(Shooting(flow, omega), omega)
+    assert rest is not None
+    rest.wet.q[0] += 0.4 * flow.scale
+    eccentricity, frequency = after_transients(flow, rest.wet, 1.0 / cycle.frequency_Hz, omega, 450)
+    np.testing.assert_allclose(cycle.eccentricity_max, eccentricity, atol=2e-4)
+    assert cycle.frequency_Hz == pytest.approx(frequency, rel=1e-5)
+
+
+@pytest.mark.nightly
 def test_oil_that_stays_for_many_periods_does_not_end_the_branch() -> None:
     """Beyond 91 Hz the oil of the wide side stays for ten and more periods, with multipliers above 0.9."""
     settings = ['bearing.supply.pressure="2 bar"', "speed.from=74 Hz", "speed.to=100 Hz"]

@@ -30,6 +30,7 @@ from frbcli.cycles.shot_branch import PLACES, Rest, Shooting, Shot, follow_shots
 from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
+HELD = 0.05  # error of the trivial multiplier from which on it is told
 FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
 
 
@@ -66,7 +67,7 @@ def limit_cycles_with_oil(
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(begin, len(branches), shots[0] if shots else None))
-        branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_lost_places(note, shots)))
+        branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_cells(note, shots)))
     for number, branch in enumerate(branches):
         special += [_special(point, number) for point in branch.points if point.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
@@ -96,13 +97,16 @@ def _branch(
     return (), "No cycle was found beside the Hopf point."
 
 
-def _with_lost_places(note: str, shots: Sequence[Shot]) -> str:
-    """The note of a branch, which says where the mean of a cycle lacks places of its cells."""
+def _with_cells(note: str, shots: Sequence[Shot]) -> str:
+    """The note of a branch, which says where the mean of a cycle lacks places of its cells, and where these hold it."""
+    told, places = [note], 1 + len(PLACES)
     lacking = sum(len(shot.others) < len(PLACES) for shot in shots)
-    if lacking == 0:
-        return note
-    told = f"{lacking} of {len(shots)} cycles are the mean over fewer than {1 + len(PLACES)} places of the cells."
-    return f"{note} {told}".strip()
+    if lacking > 0:
+        told.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
+    held = max((shot.multipliers.defect for shot in shots), default=0.0)
+    if held > HELD:
+        told.append(f"Cells hold the whirl, trivial multipliers are off by {held:.2g}: take more (accuracy.mesh).")
+    return " ".join(told).strip()
 
 
 def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[Threshold]) -> list[str]:

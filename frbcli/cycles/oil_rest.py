@@ -1,8 +1,8 @@
 """Resting positions of machines whose films keep their oil, and their Hopf points.
 
 How fast a small motion grows is known from differences of the time loop, across the kinks that fronts of the oil leave
-when they cross cells: it scatters by some 0.05 1/s between neighbouring speeds. A Hopf point is therefore where the
-straight line through the rates of several speeds is zero, and how far they lie off that line is its uncertainty.
+when they cross cells: it scatters by some 0.07 1/s between neighbouring speeds. A Hopf point is therefore where the
+parabola through the rates of several speeds is zero, and how far they lie off it gives its uncertainty.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ import numpy as np
 
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.period_map import wet_at
-from frbcli.cycles.shot_branch import Rest, Shooting
+from frbcli.cycles.shot_branch import PLACES, Rest, Shooting
 from frbcli.errors import NotConverged
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 
 RESTS = 15  # resting positions of a diagram
 HALVES, NEAR = 8, 0.02  # evaluations that bring a Hopf point between two speeds so far apart, relative
-FITTED, AROUND = 7, 0.015  # rates that the straight line goes through, within this of its zero, relative
+FITTED, AROUND = 12, 0.04  # rates that a parabola goes through, within this of its zero, relative
 
 
 @dataclass(frozen=True)
@@ -82,19 +82,29 @@ def located(shooting: Shooting, low: Rest, high: Rest, mode: int = 0) -> Thresho
             high = rest
     share = low.growth_of(mode) / (low.growth_of(mode) - high.growth_of(mode))
     middle = low.omega + share * (high.omega - low.omega)
-    speeds, rates = [], []
-    for omega in middle * (1.0 + AROUND * np.linspace(-1.0, 1.0, FITTED)):
-        rest = shooting.rest(low.wet, float(omega))
-        if rest is not None and math.isfinite(rest.growth_of(mode)):
-            speeds.append(float(omega))
-            rates.append(rest.growth_of(mode))
-    uncertainty = math.nan
-    if len(speeds) > 3:
-        slope, offset = np.polyfit(speeds, rates, 1)
-        scatter = math.sqrt(np.square(offset + slope * np.array(speeds) - rates).sum() / (len(speeds) - 2))
-        zero = -offset / slope
-        if abs(zero - middle) < 2.0 * AROUND * middle:
-            middle, uncertainty = float(zero), scatter / abs(slope) / math.sqrt(len(speeds))
-    rest = shooting.rest(low.wet, middle)
+    zero, uncertainty = _fitted(shooting, low, middle, mode)
+    rest = shooting.rest(low.wet, zero)
     rest = min(low, high, key=lambda one: abs(one.growth_of(mode))) if rest is None else rest
     return Threshold(rest, rest.nearest_to_neutral, uncertainty)
+
+
+def _fitted(shooting: Shooting, near: Rest, middle: float, mode: int) -> tuple[float, float]:
+    """Where the parabola through the rates of a whirl about a speed is zero, and its standard error, in rad/s.
+
+    The cells lie in different places from one speed to the next: else what they leave changes little between them."""
+    places = [Shooting(shooting.flow.lying(place), shooting.unit) for place in PLACES]
+    off, rates = [], []
+    for share, one in zip(np.linspace(-1.0, 1.0, FITTED), itertools.cycle([shooting, *places]), strict=False):
+        rest = one.rest(near.wet, middle * (1.0 + AROUND * float(share)))
+        if rest is not None and math.isfinite(rest.growth_of(mode)):
+            off.append(float(share))
+            rates.append(rest.growth_of(mode))
+    if len(off) > FITTED // 2:
+        curve = np.polynomial.Polynomial.fit(off, rates, 2, domain=[-1.0, 1.0])
+        zeros = [float(root.real) for root in curve.roots() if root.imag == 0.0 and abs(root.real) < 1.0]
+        if zeros:
+            zero = min(zeros, key=abs)
+            scatter = math.sqrt(np.square(curve(np.array(off)) - rates).sum() / (len(off) - 3))
+            blur = 1.5 * scatter / abs(float(curve.deriv()(zero))) / math.sqrt(len(off))  # of its value in the middle
+            return middle * (1.0 + AROUND * zero), middle * AROUND * blur
+    return middle, math.nan
