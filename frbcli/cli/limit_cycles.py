@@ -350,5 +350,6 @@ def _special(films: tuple[str, ...], point: SpecialPoint) -> dict[str, object]:
         "criticality": point.criticality,
         "lyapunov_1_s": point.lyapunov,
         "lyapunov_uncertainty_1_s": point.lyapunov_uncertainty,
+        "speed_uncertainty_Hz": point.uncertainty_Hz,
         "eccentricity_max": largest,
     }

@@ -3,7 +3,6 @@ Hopf points, and from each the branch of cycles by shooting."""
 
 from __future__ import annotations
 
-import itertools
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -12,9 +11,9 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import AT_REST, FLIP, FOLD, HOPF, TORUS
-from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.diagram import SAME, Observer
-from frbcli.cycles.period_map import SAMPLES, period_map, wet_at
+from frbcli.cycles.oil_rest import Threshold, resting, thresholds
+from frbcli.cycles.period_map import SAMPLES, period_map
 from frbcli.cycles.result import (
     SPEED,
     SUBCRITICAL,
@@ -29,12 +28,9 @@ from frbcli.cycles.result import (
 )
 from frbcli.cycles.shot_branch import PLACES, Rest, Shooting, Shot, follow_shots
 from frbcli.errors import NotConverged
-from frbcli.linear.resting import resting_position, ring_speeds
-from frbcli.rotor.held import held_rotor
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
-RESTS = 15  # resting positions of a diagram
-LOCATED, NEAREST = 12, 1e-5  # evaluations that locate a Hopf point; its speed, relative
+HELD = 0.05  # error of the trivial multiplier from which on it is told
 FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
 
 
@@ -48,14 +44,10 @@ def limit_cycles_with_oil(
     begun = time.process_time()
     flow = period_map(case)
     shooting = Shooting(flow, fastest)
-    rests = _resting(shooting, slowest, fastest)
+    rests = resting(shooting, slowest, fastest)
     if not rests:
         raise NotConverged(f"No resting position was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
-    hopf = [
-        _located(shooting, low, high)
-        for low, high in itertools.pairwise(rests)
-        if (low.growth > 0.0) != (high.growth > 0.0)
-    ]
+    hopf = thresholds(shooting, rests)
     told = 0
 
     def tell(shot: Shot) -> None:
@@ -67,15 +59,15 @@ def limit_cycles_with_oil(
     branches: list[CycleBranch] = []
     special: list[SpecialPoint] = []
     ends: list[float] = []
-    for rest in hopf:
-        if any(abs(end - rest.omega) < SAME * rest.omega for end in ends):
-            special.append(_hopf(rest, None, None))
+    for begin in hopf:
+        if any(abs(end - begin.rest.omega) < SAME * begin.rest.omega for end in ends):
+            special.append(_hopf(begin, None, None))
             continue
-        shots, note = _branch(shooting, rest, (slowest, fastest), asked, tell)
+        shots, note = _branch(shooting, begin, (slowest, fastest), asked, tell)
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
-        special.append(_hopf(rest, len(branches), shots[0] if shots else None))
-        branches.append(CycleBranch(len(special) - 1, _points(shooting, rest, shots), _with_lost_places(note, shots)))
+        special.append(_hopf(begin, len(branches), shots[0] if shots else None))
+        branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_cells(note, shots)))
     for number, branch in enumerate(branches):
         special += [_special(point, number) for point in branch.points if point.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
@@ -91,68 +83,33 @@ def limit_cycles_with_oil(
     )
 
 
-def _resting(shooting: Shooting, slowest: float, fastest: float) -> list[Rest]:
-    """Resting positions in ascending order of the speed, sought from the fastest on."""
-    found: list[Rest] = []
-    for omega in np.linspace(fastest, slowest, RESTS):
-        rest = _settled(shooting, float(omega))
-        if rest is None and found:
-            rest = shooting.rest(found[-1].wet, float(omega))
-        if rest is not None:
-            found.append(rest)
-    return found[::-1]
-
-
-def _settled(shooting: Shooting, omega: float) -> Rest | None:
-    """The resting position next to that of films whose oil is at rest, too."""
-    system = shooting.flow.system
-    try:
-        q = resting_position(system, omega)
-        v = np.zeros_like(q)
-        v[list(system.spins)] = ring_speeds(system, held_rotor(system.rotor), omega, system.rotor.journals @ q)
-        return shooting.rest(wet_at(shooting.flow, q, v, omega), omega)
-    except (NotConverged, Unreachable):
-        return None
-
-
-def _located(shooting: Shooting, low: Rest, high: Rest) -> Rest:
-    """The resting position at which a whirl begins to grow, by halves of straight lines."""
-    best = min(low, high, key=lambda rest: abs(rest.growth))
-    for _ in range(LOCATED):
-        share = min(max(low.growth / (low.growth - high.growth), 0.1), 0.9)
-        rest = shooting.rest(low.wet, low.omega + share * (high.omega - low.omega))
-        if rest is None:
-            break
-        best = min(best, rest, key=lambda one: abs(one.growth))
-        if (rest.growth > 0.0) == (low.growth > 0.0):
-            low = rest
-        else:
-            high = rest
-        if abs(high.omega - low.omega) < NEAREST * high.omega:
-            break
-    return best
-
-
 def _branch(
-    shooting: Shooting, rest: Rest, speeds: tuple[float, float], asked: Sequence[float], tell: Callable[[Shot], None]
+    shooting: Shooting,
+    begin: Threshold,
+    speeds: tuple[float, float],
+    asked: Sequence[float],
+    tell: Callable[[Shot], None],
 ) -> tuple[tuple[Shot, ...], str]:
     for size in FIRST_SIZES:
-        first = shooting.from_rest(rest, size)
+        first = shooting.from_rest(begin.rest, begin.number, size)
         if first is not None:
             return follow_shots(shooting, first, speeds, asked, tell)
     return (), "No cycle was found beside the Hopf point."
 
 
-def _with_lost_places(note: str, shots: Sequence[Shot]) -> str:
-    """The note of a branch, which says where the mean of a cycle lacks places of its cells."""
+def _with_cells(note: str, shots: Sequence[Shot]) -> str:
+    """The note of a branch, which says where the mean of a cycle lacks places of its cells, and where these hold it."""
+    told, places = [note], 1 + len(PLACES)
     lacking = sum(len(shot.others) < len(PLACES) for shot in shots)
-    if lacking == 0:
-        return note
-    told = f"{lacking} of {len(shots)} cycles are the mean over fewer than {1 + len(PLACES)} places of the cells."
-    return f"{note} {told}".strip()
+    if lacking > 0:
+        told.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
+    held = max((shot.multipliers.defect for shot in shots), default=0.0)
+    if held > HELD:
+        told.append(f"Cells hold the whirl, trivial multipliers are off by {held:.2g}: take more (accuracy.mesh).")
+    return " ".join(told).strip()
 
 
-def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[Rest]) -> list[str]:
+def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[Threshold]) -> list[str]:
     around, along = shooting.flow.films.cells.shape[2:]
     notes = [
         f"The films keep their oil, on {around} x {along} cells: cycles are found by shooting on the time loop, "
@@ -171,9 +128,9 @@ def _rest(shooting: Shooting, rest: Rest) -> RestingPoint:
     return RestingPoint(speed, speed, rest.displacement, rest.wet.v[spins] / (2.0 * math.pi), rest.rates, rest.stable)
 
 
-def _hopf(rest: Rest, branch: int | None, first: Shot | None) -> SpecialPoint:
+def _hopf(begin: Threshold, branch: int | None, first: Shot | None) -> SpecialPoint:
     """criticality: by the first cycle, where its stability is clear."""
-    number = rest.whirling
+    rest = begin.rest
     criticality = None
     if first is not None and len(first.multipliers.others):
         largest, blur = float(np.abs(first.multipliers.others[0])), first.multipliers.defect
@@ -183,20 +140,21 @@ def _hopf(rest: Rest, branch: int | None, first: Shot | None) -> SpecialPoint:
         branch=branch,
         value=hertz(rest.omega),
         speed_Hz=hertz(rest.omega),
-        frequency_Hz=hertz(float(rest.rates[number].imag)) if number is not None else math.nan,
+        frequency_Hz=hertz(float(rest.rates[begin.number].imag)),
         eccentricity_max=np.hypot(*rest.displacement.T),
         criticality=criticality,
+        uncertainty_Hz=hertz(begin.uncertainty),
     )
 
 
-def _points(shooting: Shooting, rest: Rest, shots: Sequence[Shot]) -> tuple[CyclePoint, ...]:
+def _points(shooting: Shooting, begin: Threshold, shots: Sequence[Shot]) -> tuple[CyclePoint, ...]:
     """The cycles of a branch from its Hopf point on, where they have no size."""
-    return (_born(shooting, rest), *(_cycle(shooting, shot) for shot in shots)) if shots else ()
+    return (_born(shooting, begin), *(_cycle(shooting, shot) for shot in shots)) if shots else ()
 
 
-def _born(shooting: Shooting, rest: Rest) -> CyclePoint:
-    number, speed, spins = rest.whirling, hertz(rest.omega), list(shooting.flow.system.spins)
-    assert number is not None
+def _born(shooting: Shooting, begin: Threshold) -> CyclePoint:
+    rest, number = begin.rest, begin.number
+    speed, spins = hertz(rest.omega), list(shooting.flow.system.spins)
     nu = float(rest.rates[number].imag)
     values = np.exp(np.delete(rest.rates, number) * 2.0 * math.pi / nu)
     harmonics = np.zeros((SAMPLES // 4, *rest.displacement.shape), dtype=complex)

@@ -2,7 +2,7 @@
 
 A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
 the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on
-the branch by the plane across the tangent.
+the branch by the plane across the direction of the last step.
 
 Cells that turn with the oil hardly move against a whirl of half the speed: a cycle depends a little on how they lie at
 its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore told as the mean of
@@ -31,13 +31,14 @@ Complex = NDArray[np.complex128]
 
 FIRST, SHORTEST, LONGEST = 0.05, 1e-3, 0.1  # steps along a branch
 MOST_POINTS = 150
-# Growth of a step where tangents differ by little, what is left of it where they differ by much; by most.
+# Growth of a step where directions differ by little, what is left of it where they differ by much; by most.
 LONGER, STRAIGHT, SHORTER, BENT, SHARPEST = 1.5, 0.98, 0.7, 0.95, 0.85
 PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
 SMALL = 0.02  # amplitude over the clearance below which a branch has come back to rest
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3
 REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
+AT_REST_DIFFERENCE = 2e-2  # by which states are disturbed at rest: the kinks blur less, and the gap is wide
 DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are told apart by their sum
 WIDE = 0.2  # smallest gap from which on disturbances have their full size
 # A branch that turns back has a fold if its speed differs by so many times what it differs by between places of the
@@ -48,9 +49,9 @@ REFINED = 6  # evaluations that locate a special point
 
 @dataclass(frozen=True)
 class Shot:
-    """A cycle. x, p: see above, at the start of the period; wet: the machine there; displacements: see Passage; space:
-    slow motions about it; tangent: (N + 2,) of the branch; multipliers; others: (p, displacements) with the cells in
-    other PLACES; kind: of a special one, else ""."""
+    """A cycle. x, p: see above, at the start of the period; wet: the machine there; displacements: see Passage;
+    space: slow motions about it; tangent: (N + 2,) of the branch; multipliers; steps: of the period; others:
+    (p, displacements) with the cells in other PLACES; kind: of a special one, else ""."""
 
     x: Array
     p: Array
@@ -59,6 +60,7 @@ class Shot:
     space: SlowSpace
     tangent: Array
     multipliers: Multipliers
+    steps: int
     others: tuple[tuple[Array, Array], ...] = ()
     kind: str = ""
 
@@ -102,16 +104,26 @@ class Rest:
     states: Complex
 
     @property
-    def whirling(self) -> int | None:
-        """Number of the rate that oscillates and grows fastest, None without one."""
+    def whirls(self) -> NDArray[np.int64]:
+        """Numbers of the rates that oscillate, by falling growth."""
         oscillating = np.flatnonzero(self.rates.imag > 0.05 * self.omega)
-        return int(oscillating[np.argmax(self.rates[oscillating].real)]) if len(oscillating) else None
+        return oscillating[np.argsort(-self.rates[oscillating].real, kind="stable")]
 
     @property
-    def growth(self) -> float:
-        """Its real part, 1/s."""
-        number = self.whirling
-        return float(self.rates[number].real) if number is not None else -math.inf
+    def growing(self) -> int:
+        """How many whirls grow."""
+        return int(np.count_nonzero(self.rates[self.whirls].real > 0.0))
+
+    @property
+    def nearest_to_neutral(self) -> int:
+        """Number of the whirl that grows or decays most slowly."""
+        whirls = self.whirls
+        return int(whirls[np.argmin(np.abs(self.rates[whirls].real))])
+
+    def growth_of(self, mode: int) -> float:
+        """Real part in 1/s of the whirl that grows fastest but for `mode` others, -inf without one."""
+        whirls = self.whirls
+        return float(self.rates[whirls[mode]].real) if mode < len(whirls) else -math.inf
 
     @property
     def stable(self) -> bool:
@@ -140,29 +152,37 @@ class Shooting:
 
         try:
             x = self.flow.packed(near, self.unit)
-            space = slow_space(mapped, x, none, self._first(x))
+            space = slow_space(mapped, x, none, self._first(x), AT_REST_DIFFERENCE)
             free = Conditions(np.zeros((0, len(x))), np.zeros((0, 0)))
             found = fixed_point(mapped, x, none, space, free)
             if found is None:
                 return None
-            x = found.x
+            x, passage = found.x, asked.passage
             asked.settle(x)
-            space = slow_space(mapped, x, none, self._first(x, found.space))
+            space = slow_space(mapped, x, none, self._first(x, found.space), AT_REST_DIFFERENCE)
         except Unreachable:
             return None
         values, states = ritz(space)
         decaying = np.maximum(np.abs(values), 1e-12)
         rates = (np.log(decaying) + 1j * np.angle(values)) / time
-        return Rest(x, asked.near, omega, asked.passage.displacements.mean(axis=0), rates, states)
+        return Rest(x, asked.near, omega, passage.displacements.mean(axis=0), rates, states)
 
-    def stepped(self, shot: Shot, length: float) -> Shot | None:
-        """The cycle behind a step along the tangent; None if it is not found."""
+    def stepped(self, shot: Shot, length: float, along: Array) -> Shot | None:
+        """The cycle behind a step along a direction (N + 2,) of length 1; None if it is not found."""
         size = len(shot.x)
-        row = np.stack([self._phase(shot.wet), shot.tangent[:size]])
-        conditions = Conditions(row, np.stack([np.zeros(2), shot.tangent[size:]]))
-        return self._found(
-            shot, shot.x + length * shot.tangent[:size], shot.p + length * shot.tangent[size:], conditions
-        )
+        row = np.stack([self._phase(shot.wet), along[:size]])
+        conditions = Conditions(row, np.stack([np.zeros(2), along[size:]]))
+        guess_x, guess_p = shot.x + length * along[:size], shot.p + length * along[size:]
+        return self._found(replace(shot, tangent=along), guess_x, guess_p, conditions)
+
+    def direction(self, shot: Shot, after: Shot) -> Array:
+        """(N + 2,) direction of length 1 from one cycle to the next, without what they differ by in time.
+
+        A branch is followed along it: where multipliers lie next to 1 their error turns the tangent to and fro."""
+        phase = np.concatenate([self._phase(after.wet), np.zeros(2)])
+        chord = np.concatenate([after.x - shot.x, after.p - shot.p])
+        chord = chord - phase * (phase @ chord)
+        return np.asarray(chord / np.linalg.norm(chord))
 
     def at_speed(self, shot: Shot, other: Shot, omega: float) -> Shot | None:
         """The cycle at a speed in rad/s between two, found from the nearer one's slow motions or from the other's."""
@@ -176,12 +196,10 @@ class Shooting:
                 return found
         return None
 
-    def from_rest(self, rest: Rest, length: float) -> Shot | None:
-        """The cycle of a small size beside a Hopf point."""
-        number = rest.whirling
-        if number is None:
-            return None
+    def from_rest(self, rest: Rest, number: int, length: float) -> Shot | None:
+        """The cycle of a small size beside a Hopf point; number: of the rate that crosses zero there."""
         mode, nu, size = rest.states[:, number], rest.rates[number].imag, len(rest.x)
+        steps = round(STEPS_PER_REVOLUTION * rest.omega / nu)
         along, across = mode.real / np.linalg.norm(mode.real), -mode.imag
         across = across - along * (along @ across)
         p = np.log([2.0 * math.pi / nu * self.unit, rest.omega / self.unit])
@@ -190,17 +208,18 @@ class Shooting:
         rows = np.stack([across / np.linalg.norm(across), along])
         start = Shot(
             rest.x, p, rest.wet, np.zeros((1, 1, 2)), SlowSpace(np.zeros((size, 0)), np.zeros((size, 0)),
-            np.zeros((size, 2))), tangent, Multipliers(np.ones(1, dtype=complex), 0.0),
+            np.zeros((size, 2))), tangent, Multipliers(np.ones(1, dtype=complex), 0.0), steps,
         )  # fmt: skip
         try:
-            asked = _Asked(self, rest.wet, 2 * STEPS_PER_REVOLUTION)
+            asked = _Asked(self, rest.wet, steps)
             space = slow_space(asked.at, guess, p, self._first(guess))
         except Unreachable:
             return None
-        return self._found(replace(start, space=space), guess, p, Conditions(rows, np.zeros((2, 2))))
+        found = self._found(replace(start, space=space), guess, p, Conditions(rows, np.zeros((2, 2))))
+        return None if found is None else replace(found, tangent=self.direction(start, found))
 
     def _found(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
-        asked = _Asked(self, shot.wet, 2 * STEPS_PER_REVOLUTION)
+        asked = _Asked(self, shot.wet, shot.steps)
         try:
             found = fixed_point(asked.at, x, p, shot.space, conditions)
             if found is None:
@@ -215,18 +234,18 @@ class Shooting:
             return None
         phase = self._phase(wet)
         tangent = direction_along(space, phase, shot.tangent)
-        others = tuple(self._elsewhere(place, p, wet, space, conditions) for place in PLACES)
+        others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in PLACES)
         return Shot(
-            x, p, wet, passage.displacements, space, tangent, _multipliers(space, phase),
+            x, p, wet, passage.displacements, space, tangent, _multipliers(space, phase), shot.steps,
             tuple(each for each in others if each is not None),
         )  # fmt: skip
 
     def _elsewhere(
-        self, place: float, p: Array, wet: Wet, space: SlowSpace, conditions: Conditions
+        self, place: float, here: _Asked, p: Array, space: SlowSpace, conditions: Conditions
     ) -> tuple[Array, Array] | None:
         """(p, displacements) of a cycle with its cells at another place of PLACES; None if it is not found."""
-        there = self.flow.moved(wet, place)
-        asked = _Asked(self, there, 2 * STEPS_PER_REVOLUTION, self.flow.lying(place))
+        there = self.flow.moved(here.near, place)
+        asked = _Asked(self, there, here.steps, self.flow.lying(place))
         try:
             found = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions)
         except Unreachable:
@@ -305,15 +324,15 @@ def follow_shots(
 ) -> tuple[tuple[Shot, ...], str]:
     """The cycles of a branch from one on, special ones among them, and why it ends. speeds: lowest and highest, and
     asked: those at which cycles are computed exactly, in rad/s."""
-    shots, length = [start], FIRST
+    shots, length, along = [start], FIRST, start.tangent
     limit = shooting.flow.control.contact_eccentricity
     lowest, highest = (math.log(speed / shooting.unit) for speed in speeds)
     while len(shots) < MOST_POINTS:
         shot = shots[-1]
-        found = _next(shooting, shot, length)
+        found = _next(shooting, shot, length, along)
         while found is None and length > SHORTEST:
             length *= 0.5
-            found = _next(shooting, shot, length)
+            found = _next(shooting, shot, length, along)
         if found is None:
             note = f"It could not be followed beyond {shooting.speed_Hz(shot):.4g} Hz: the steps became too short."
             return with_folds(shooting, shots), note
@@ -323,12 +342,13 @@ def follow_shots(
             limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
             end = shooting.at_speed(shot, found, limit_speed)
             return with_folds(shooting, [*shots, *([] if end is None else [end])]), LEFT
-        shots += [*special_shots(shooting, shot, found, length, asked), found]
+        shots += [*special_shots(shooting, shot, found, asked), found]
         if found.amplitude < SMALL:
             return with_folds(shooting, shots), AT_REST
         if found.eccentricity_max.max() > limit:
             return with_folds(shooting, shots), f"The journal meets its shell, at an eccentricity of {limit}."
-        straight = float(shot.tangent @ found.tangent)
+        before, along = along, shooting.direction(shot, found)
+        straight = float(before @ along)
         if straight > STRAIGHT:
             length = min(LONGER * length, LONGEST)
         elif straight < BENT:
@@ -348,22 +368,23 @@ def with_folds(shooting: Shooting, shots: Sequence[Shot]) -> tuple[Shot, ...]:
             clear = side != 0 or abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR)
             side, extreme = (int(np.sign(gone)), i) if clear else (side, extreme)
         elif abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR):
-            found[extreme] = _fold(shooting, shots[max(extreme - 1, 0) : extreme + 2], shots[extreme])
+            found[extreme] = _fold(shooting, shots[max(extreme - 1, 0) : extreme + 2], shots[extreme], side)
             side, extreme = -side, i
     return tuple(found)
 
 
-def _fold(shooting: Shooting, around: Sequence[Shot], furthest: Shot) -> Shot:
-    """The cycle of a few that follow each other at which the branch turns back, else the one that went furthest."""
+def _fold(shooting: Shooting, around: Sequence[Shot], furthest: Shot, side: int) -> Shot:
+    """The cycle of a few that follow each other at which the branch turns back by its tangents, else the one that went
+    furthest; side: 1 if its speed rises before, -1 if it falls."""
     for one, after in itertools.pairwise(around):
         if one.tangent[-1] * after.tangent[-1] < 0.0:
-            size = len(one.x)
-            length = float(one.tangent[:size] @ (after.x - one.x) + one.tangent[size:] @ (after.p - one.p))
-            return replace(_located(shooting, one, after, length, lambda shot: float(shot.tangent[-1])), kind=FOLD)
+            there = _located(shooting, one, after, lambda shot: float(shot.tangent[-1]))
+            furthest = max(furthest, there, key=lambda shot: side * float(shot.mean_p[1]))
+            break
     return replace(furthest, kind=FOLD)
 
 
-def special_shots(shooting: Shooting, shot: Shot, after: Shot, length: float, asked: Sequence[float]) -> list[Shot]:
+def special_shots(shooting: Shooting, shot: Shot, after: Shot, asked: Sequence[float]) -> list[Shot]:
     """Flips, torus points and cycles at speeds asked for within a step."""
     found: list[Shot] = []
     change = abs(after.multipliers.unstable - shot.multipliers.unstable)
@@ -372,7 +393,7 @@ def special_shots(shooting: Shooting, shot: Shot, after: Shot, length: float, as
     turning = bool(len(outside)) and abs(outside[-1].imag) > 0.05 * abs(outside[-1])
     if change > 0 and (turning or (bool(len(outside)) and outside[-1].real < 0.0)):
         few = shot.multipliers.unstable
-        there = _located(shooting, shot, after, length, lambda one: 0.5 - float(one.multipliers.unstable != few))
+        there = _located(shooting, shot, after, lambda one: 0.5 - float(one.multipliers.unstable != few))
         found.append(replace(there, kind=TORUS if turning else FLIP))
     for speed in asked:
         if min(shot.p[1], after.p[1]) < math.log(speed / shooting.unit) <= max(shot.p[1], after.p[1]):
@@ -381,19 +402,21 @@ def special_shots(shooting: Shooting, shot: Shot, after: Shot, length: float, as
     return sorted(found, key=lambda one: abs(one.p[1] - shot.p[1]))
 
 
-def _next(shooting: Shooting, shot: Shot, length: float) -> Shot | None:
-    found = shooting.stepped(shot, length)
-    return None if found is None or found.tangent @ shot.tangent < SHARPEST else found
+def _next(shooting: Shooting, shot: Shot, length: float, along: Array) -> Shot | None:
+    found = shooting.stepped(shot, length, along)
+    return None if found is None or shooting.direction(shot, found) @ along < SHARPEST else found
 
 
-def _located(shooting: Shooting, shot: Shot, after: Shot, length: float, told: Callable[[Shot], float]) -> Shot:
+def _located(shooting: Shooting, shot: Shot, after: Shot, told: Callable[[Shot], float]) -> Shot:
     """The cycle within a step at which a number changes its sign: between the ends by halves of the straight line."""
+    along = shooting.direction(shot, after)
+    length = float(along @ np.concatenate([after.x - shot.x, after.p - shot.p]))
     low, high, at_low, at_high = 0.0, length, told(shot), told(after)
     best = shot if abs(at_low) < abs(at_high) else after
     for _ in range(REFINED):
         share = min(max(at_low / (at_low - at_high), 0.1), 0.9)
         middle = low + share * (high - low)
-        there = shooting.stepped(shot, middle)
+        there = shooting.stepped(shot, middle, along)
         if there is None:
             break
         value = told(there)

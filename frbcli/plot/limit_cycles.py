@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from frbcli.cycles.result import SPEED, CycleBranch, LimitCycles
 from frbcli.plot.run_track import RunTrack
@@ -16,6 +17,7 @@ from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VER
 Array = NDArray[np.float64]
 COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
+PIECES = 8  # straight pieces between two cycles
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
 
@@ -53,7 +55,7 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
     for number, branch in enumerate(found.branches):
         values = np.array([point.eccentricity_max[film] for point in branch.points])
         label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
-        _line(axes, _speeds(branch), values, _stable(branch), COLOURS[number % len(COLOURS)], label)
+        _curve(axes, branch, values, COLOURS[number % len(COLOURS)], label)
     for kind, (marker, label) in MARKS.items():
         points = found.of(kind)
         at = [point.value for point in points], [point.eccentricity_max[film] for point in points]
@@ -85,7 +87,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
         axes.plot(speeds, 0.5 * own, color=GREY, linestyle="-", linewidth=0.7, label=labels[1])
     for number, branch in enumerate(found.branches):
         values = np.array([point.frequency_Hz for point in branch.points])
-        _line(axes, _speeds(branch), values, _stable(branch), COLOURS[number % len(COLOURS)], None)
+        _curve(axes, branch, values, COLOURS[number % len(COLOURS)], None)
     for kind, (marker, _) in MARKS.items():
         points = found.of(kind)
         at = [point.value for point in points], [point.frequency_Hz for point in points]
@@ -96,12 +98,18 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
     axes.set_ylabel("frequency in Hz")
 
 
-def _speeds(branch: CycleBranch) -> Array:
-    return np.array([point.value for point in branch.points])
-
-
-def _stable(branch: CycleBranch) -> NDArray[np.bool_]:
-    return np.array([point.stable for point in branch.points], dtype=bool)
+def _curve(axes: Axes, branch: CycleBranch, y: Array, colour: str, label: str | None) -> None:
+    """A branch, its cycles joined by cubics along it that go to and fro only where the cycles do."""
+    x = np.array([point.value for point in branch.points])
+    stable = np.array([point.stable for point in branch.points], dtype=bool)
+    if len(x) > 2:
+        lengths = np.hypot(np.diff(x) / max(float(np.ptp(x)), 1e-300), np.diff(y) / max(float(np.ptp(y)), 1e-300))
+        along = np.concatenate([[0.0], np.cumsum(lengths + 1e-9)])
+        pieces = np.arange(PIECES * (len(x) - 1) + 1)
+        fine = np.interp(pieces / PIECES, np.arange(len(x)), along)
+        x, y = PchipInterpolator(along, x)(fine), PchipInterpolator(along, y)(fine)
+        stable = stable[pieces // PIECES] & stable[-(-pieces // PIECES)]
+    _line(axes, x, y, stable, colour, label)
 
 
 def _line(axes: Axes, x: Array, y: Array, stable: NDArray[np.bool_], colour: str, label: str | None) -> None:
