@@ -65,7 +65,8 @@ def locked_near(machine: Machine, motion: Complex, omega: float, share: float = 
     guess = np.concatenate([packed(motion), [0.5 * speed, speed]])
     along = _at_this_speed(guess)
     place = corrected(follower.equations(Place(guess, along)), guess, along)
-    fitted = None if place is None else follower.refitted(oriented(place, along))
+    near = None if place is None else follower.refitted(oriented(place, along))
+    fitted = None if near is None else follower.entered(near.y, speed)
     if fitted is None or largest(machine, fitted.y) > 1.0:
         return None
     whirl = unpacked(fitted.y[:-2], machine.size)[1::2, : 2 * machine.film_count]
