@@ -75,6 +75,33 @@ def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixtur
     assert run([*words, "--from", "48 um", "--to", "60 um", "--and", "oil.viscosity"]) == 2
 
 
+def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    """Of the Jeffcott rotor, whose whirl locks in; refused over another number, without unbalance, and with oil."""
+    monkeypatch.chdir(tmp_path)
+    words = ["limit-cycles", "jeffcott", "--with-unbalance", "--set", "speed.from=186 Hz", "--set", "speed.to=192 Hz"]
+    assert run([*words, "--json", "--csv", "table.csv"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    whirls = document["branches"][0]["with_unbalance"]
+    assert whirls
+    for whirl in whirls:
+        assert whirl["locked"]
+        assert whirl["stable"]
+        assert whirl["frequency_Hz"] == pytest.approx(0.5 * whirl["speed_Hz"])
+        assert whirl["lines"][0]["name"] == "Omega / 2"
+    assert ",locked," in (tmp_path / "table.csv").read_text()
+    assert run([*words, "--no-picture"]) == 0
+    told = capsys.readouterr().out
+    assert "locks in" in told
+    assert max(map(len, told.splitlines())) <= 80
+    over = ["--over", "bearing.clearance", "--from", "30 um", "--to", "45 um"]
+    assert run([*words, *over]) == 2
+    assert "--with-unbalance is of the diagram" in capsys.readouterr().err
+    assert run([*words, "--set", "rotor.unbalance=0 g*mm"]) == 2
+    assert "is zero" in capsys.readouterr().err
+    assert run(["limit-cycles", "rigid-two-phase", "--with-unbalance", "--set", "rotor.unbalance=3 g*mm"]) == 2
+    assert "keeps its oil" in capsys.readouterr().err
+
+
 def test_speeds_without_a_cycle_are_told() -> None:
     case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm"])
     assert frbcli.limit_cycles(case, [100.0, 200.0]).notes == ("No limit cycle at 100 Hz.",)

@@ -21,7 +21,7 @@ from frbcli.cli.runs import OUTPUT, here
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint
+    from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint, SpectralLine, UnbalancedWhirl
     from frbcli.cycles.stability_map import MapPoint, StabilityMap
     from frbcli.plot.run_track import RunTrack
 
@@ -62,6 +62,8 @@ class Range:
 @click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and beside --over KEY.")
 @click.option("--points", type=click.IntRange(2, 500), default=3,
               help="Number of values of --and whose diagrams tell where curves begin. [3]")  # fmt: skip
+@click.option("--with-unbalance", is_flag=True,
+              help="What stable cycles become with unbalance: whirls of two frequencies or locked in.")  # fmt: skip
 @click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
@@ -74,6 +76,7 @@ def command(
     case: Case,
     speeds: tuple[float, ...],
     varied: Range,
+    with_unbalance: bool,
     runs: tuple[str, ...],
     output: Path | None,
     no_picture: bool,
@@ -82,7 +85,8 @@ def command(
 ) -> None:
     """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
 
-    Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them.
+    Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them, and
+    with --with-unbalance the whirls with it.
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
@@ -95,6 +99,8 @@ def command(
     along_speed = over == "speed"
     if ((key is not None or not along_speed) and (len(speeds) > 1 or runs)) or (key and along_speed and speeds):
         raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
+    if with_unbalance and (key is not None or not along_speed):
+        raise click.UsageError("--with-unbalance is of the diagram of one case over its speed.")
     drawn = "limit-cycles" if key is None else "stability-map"
     picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
     check_place(picture)
@@ -109,7 +115,7 @@ def command(
         if not along_speed and low is not None and high is not None:
             found = limit_cycles_over(case, over, low, high, at, _showing(show))
         else:
-            found = limit_cycles(case, speeds, _showing(show))
+            found = limit_cycles(case, speeds, _showing(show), with_unbalance)
     _tell(terminal, found)
     if csv is not None:
         found.to_pandas().to_csv(csv, index=False)
@@ -269,17 +275,48 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
                 how = "stable" if point.stable else "unstable"
                 at = f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {point.frequency_Hz:.3f} Hz, {how}"
                 terminal.result(f"{at}, eccentricity {point.eccentricity_max.max():.5f}")
+    _tell_with_unbalance(terminal, found)
     for note in (*found.notes, *_left_out(found)):
         terminal.result(_wrapped(note))
     terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
 
 
+def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
+    """A table of the whirls with unbalance, if there are any."""
+    rows = [
+        (
+            f"{number + 1}",
+            f"{whirl.speed_Hz:.2f}",
+            f"{whirl.frequency_Hz:.3f}",
+            f"{whirl.eccentricity_max.max():.4f}",
+            f"{whirl.lines[0].amplitude.max():.4f}",
+            f"{whirl.lines[1].amplitude.max():.2g}",
+            "locks in" if whirl.locked else ", ".join(_told(line) for line in whirl.lines[2:3]),
+        )
+        for number, branch in enumerate(found.branches)
+        for whirl in branch.with_unbalance
+    ]
+    if not rows:
+        return
+    columns = ("branch", "Hz", "whirl Hz", "eps max", "at nu", "at Omega", "largest other line")
+    terminal.table("With unbalance", columns, rows)
+    if any(not whirl.locked for branch in found.branches for whirl in branch.with_unbalance):
+        terminal.result("Whether whirls of two frequencies are stable is not computed.")
+
+
+def _told(line: SpectralLine) -> str:
+    return f"{line.amplitude.max():.2g} at {line.name}"
+
+
 def _left_out(found: LimitCycles) -> list[str]:
+    from frbcli.cycles.faults import has_unbalance
     from frbcli.scene.clearance_steps import step_times
 
     notes = []
-    if getattr(found.case.rotor, "unbalance", 0.0) or any(disk.unbalance for disk in found.case.disks):
-        notes.append("Branches are those without unbalance: with it a whirl has two frequencies.")
+    if has_unbalance(found.case):
+        asked = any(branch.with_unbalance for branch in found.branches)
+        more = "." if asked else ": with it a whirl has two frequencies (--with-unbalance)."
+        notes.append(f"Branches are those without unbalance{more}")
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes
@@ -311,6 +348,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
                 "from": None if branch.start is None else _special(found.films, found.special[branch.start]),
                 "points": [_cycle(found, point) for point in branch.points],
                 "note": branch.note,
+                "with_unbalance": [_whirl(found.films, whirl) for whirl in branch.with_unbalance],
             }
             for branch in found.branches
         ],
@@ -333,6 +371,25 @@ def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
         "torque_N_m": point.torque_N_m,
         "kind": point.kind or None,
     } | ({"orbits": _orbits(found, point)} if point.kind == ASKED else {})
+
+
+def _whirl(films: tuple[str, ...], whirl: UnbalancedWhirl) -> dict[str, object]:
+    return {
+        "speed_Hz": whirl.speed_Hz,
+        "frequency_Hz": whirl.frequency_Hz,
+        "locked": whirl.locked,
+        "eccentricity_max": dict(zip(films, whirl.eccentricity_max, strict=True)),
+        "ring_speeds_Hz": whirl.ring_speeds_Hz,
+        "lines": [
+            {
+                "name": line.name,
+                "frequency_Hz": line.frequency_Hz,
+                "amplitude": dict(zip(films, line.amplitude, strict=True)),
+            }
+            for line in whirl.lines
+        ],
+        "stable": whirl.stable,
+    }
 
 
 def _orbits(found: LimitCycles, point: CyclePoint) -> dict[str, object]:

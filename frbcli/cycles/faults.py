@@ -33,6 +33,25 @@ def check(case: Case, with_oil: bool = False) -> tuple[float, float]:
     return 2.0 * math.pi * speeds[0], 2.0 * math.pi * speeds[-1]
 
 
+def check_unbalance(case: Case) -> None:
+    """Raises InputError if the whirl of a case with unbalance cannot be told."""
+    faults = []
+    if not has_unbalance(case):
+        problem, remedy = "is zero: no whirl has two frequencies.", 'Write e.g. rotor.unbalance = "3 g*mm".'
+        faults.append(Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy))
+    if keeps_oil(case):
+        problem = "keeps its oil: its whirl with unbalance is not computed."
+        remedy = "Take half-sommerfeld or penalty here, and a run-up for this model."
+        faults += [Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case)]
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))
+
+
+def has_unbalance(case: Case) -> bool:
+    """Whether the rotor of a case has one."""
+    return bool(getattr(case.rotor, "unbalance", 0.0)) or any(disk.unbalance for disk in case.disks)
+
+
 def keeps_oil(case: Case) -> bool:
     """Whether a film of the case is mass-conserving."""
     named = () if case.film.bearing_model else tuple(name for _, name in cavitation_keys(case))

@@ -12,28 +12,37 @@ from frbcli.cycles.branch import Follower
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
 from frbcli.cycles.equilibria import OverSpeed, resting_curve
-from frbcli.cycles.faults import check, keeps_oil
+from frbcli.cycles.faults import check, check_unbalance, keeps_oil
 from frbcli.cycles.machine import make_machine
 from frbcli.cycles.oil_cycles import limit_cycles_with_oil
 from frbcli.cycles.result import SPEED, LimitCycles, hertz
 from frbcli.cycles.synchronous import synchronous_response
+from frbcli.cycles.with_unbalance import whirls_with_unbalance
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
 from frbcli.scene.system import make_system
 
 
-def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer | None = None) -> LimitCycles:
+def limit_cycles(
+    case: Case,
+    speeds_Hz: Sequence[float] = (),
+    observe: Observer | None = None,
+    with_unbalance: bool = False,
+) -> LimitCycles:
     """The resting positions of a case over its speed range, its Hopf points, and the branches of limit cycles.
 
     speeds_Hz: at which cycles are computed exactly, of the kind "asked", for their orbits;
-    observe: called with the number of cycles so far and the speed in Hz and the largest eccentricity of the latest one.
-    Raises InputError if the films have no force that follows from the motion alone, without a speed range, or for a
-    speed outside of it;
+    observe: called with the number of cycles so far and the speed in Hz and the largest eccentricity of the latest one;
+    with_unbalance: whether the whirls with the unbalance are computed as well (`CycleBranch.with_unbalance`).
+    Raises InputError if the films have no force that follows from the motion alone, without a speed range, for a
+    speed outside of it, or with_unbalance for a case without unbalance or with films that keep their oil;
     NotConverged without a resting position at the highest speed.
     """
     begun = time.process_time()
     slowest, fastest = check(case, with_oil=True)
+    if with_unbalance:
+        check_unbalance(case)
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
         problem = f"lies outside of the range, {hertz(slowest):.4g} to {hertz(fastest):.4g} Hz."
@@ -63,6 +72,8 @@ def limit_cycles(case: Case, speeds_Hz: Sequence[float] = (), observe: Observer 
     if not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
         return found
     response = synchronous_response(machine, resting.points[-1], slowest)
+    if with_unbalance:
+        found = whirls_with_unbalance(found, machine, observe)
     return with_response(found, walk, response, time.process_time() - begun)
 
 

@@ -73,13 +73,41 @@ class CyclePoint:
 
 
 @dataclass(frozen=True)
+class SpectralLine:
+    """A harmonic of a motion with unbalance. name: such as "nu", "Omega", "Omega - nu" or "Omega / 2", nu the whirl and
+    Omega the rotor; amplitude: (F,) half the longer axis of its ellipse over the clearance."""
+
+    name: str
+    frequency_Hz: float
+    amplitude: Array
+
+
+@dataclass(frozen=True)
+class UnbalancedWhirl:
+    """A whirl with the unbalance beside it. speed_Hz: of the rotor; frequency_Hz: of the whirl; locked: whether it has
+    locked in at half the speed, else the motion has two frequencies; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean;
+    lines: those of whirl and unbalance, then the largest others; stable: whether all disturbances decay, None if the
+    motion has two frequencies, where it is not known."""
+
+    speed_Hz: float
+    frequency_Hz: float
+    locked: bool
+    eccentricity_max: Array
+    ring_speeds_Hz: Array
+    lines: tuple[SpectralLine, ...]
+    stable: bool | None
+
+
+@dataclass(frozen=True)
 class CycleBranch:
     """Cycles in their order from a Hopf point on. start: its number among the special points,
-    None where the Hopf point lies outside of the range; note: why it ends."""
+    None where the Hopf point lies outside of the range; note: why it ends; with_unbalance: what some of the stable ones
+    become with the unbalance, if asked for."""
 
     start: int | None
     points: tuple[CyclePoint, ...]
     note: str
+    with_unbalance: tuple[UnbalancedWhirl, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -131,10 +159,11 @@ class LimitCycles:
         return tuple(point for point in self.special if point.kind == kind)
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row per resting position (branch -1) and cycle."""
+        """One row per resting position (branch -1) and cycle; of whirls with the unbalance `unbalance` is true, and the
+        columns `amplitude of` a line are over the clearance, of the film where it is largest."""
         import pandas as pd
 
-        rows = [
+        rows: list[dict[str, object]] = [
             self._over(point.value)
             | {"branch": -1, "speed_Hz": point.speed_Hz, "frequency_Hz": math.nan, "stable": point.stable, "kind": ""}
             | self._columns(point.eccentricity, point.ring_speeds_Hz)
@@ -148,14 +177,22 @@ class LimitCycles:
             for number, branch in enumerate(self.branches)
             for point in branch.points
         ]
+        rows += [
+            {"branch": number, "speed_Hz": whirl.speed_Hz, "frequency_Hz": whirl.frequency_Hz, "stable": whirl.stable}
+            | {"kind": "locked" if whirl.locked else "two frequencies", "unbalance": True}
+            | self._columns(whirl.eccentricity_max, whirl.ring_speeds_Hz)
+            | {f"amplitude of {line.name}": float(line.amplitude.max()) for line in whirl.lines}
+            for number, branch in enumerate(self.branches)
+            for whirl in branch.with_unbalance
+        ]
         return pd.DataFrame(rows)
 
-    def _over(self, value: float) -> dict[str, float]:
+    def _over(self, value: float) -> dict[str, object]:
         return {} if self.over == SPEED else {self.over: value}
 
-    def _columns(self, eccentricities: Array, ring_speeds_Hz: Array) -> dict[str, float]:
+    def _columns(self, eccentricities: Array, ring_speeds_Hz: Array) -> dict[str, object]:
         several = len(self.films) > 1
-        named = {
+        named: dict[str, object] = {
             f"eccentricity_max_{name}" if several else "eccentricity_max": float(value)
             for name, value in zip(self.films, eccentricities, strict=True)
         }

@@ -1,7 +1,8 @@
-"""The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not.
+"""The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not; and those of
+two of its periods, see locked.py.
 
-The equations are those of a cycle (balance.py) with nu = Omega in place of the phase condition, and the unbalance in
-the first harmonic, Omega^2 times the motion that it makes behind the films.
+The equations are those of a cycle (balance.py) with nu = Omega, or 2 nu = Omega, in place of the phase condition, and
+the unbalance in the first or second harmonic, Omega^2 times the motion that it makes behind the films.
 """
 
 from __future__ import annotations
@@ -24,21 +25,27 @@ DIFFERENCE = 1e-6  # of the pace
 
 
 class Synchronous(Follower):
-    """Follows the synchronous response."""
+    """Follows motions of `periods` periods of the rotor with a share of the unbalance; of one period they are the
+    synchronous response."""
 
     free = False
+    periods = 1
+    share = 1.0
 
     def equations(self, place: Place) -> Equations:
-        machine, harmonics = self.machine, (len(place.y) - 2) // self.machine.size // 2
+        machine, harmonics, periods = self.machine, (len(place.y) - 2) // self.machine.size // 2, self.periods
         balance = Balance(machine, unpacked(place.y[:-2], machine.size))
+
+        def driven(speed: float) -> Array:
+            return self.share * driven_motion(machine, harmonics, periods, speed)
 
         def at(y: Array) -> tuple[Array, Array]:
             residual, slope = balance(y)
-            residual[:-1] -= _driven(machine, harmonics, float(y[-1]))
-            ahead, behind = (_driven(machine, harmonics, float(y[-1]) + side * DIFFERENCE) for side in (1.0, -1.0))
+            residual[:-1] -= driven(float(y[-1]))
+            ahead, behind = (driven(float(y[-1]) + side * DIFFERENCE) for side in (1.0, -1.0))
             slope[:-1, -1] -= (ahead - behind) / (2.0 * DIFFERENCE)
-            residual[-1], slope[-1] = y[-2] - y[-1], 0.0
-            slope[-1, -2:] = 1.0, -1.0
+            residual[-1], slope[-1] = periods * y[-2] - y[-1], 0.0
+            slope[-1, -2:] = periods, -1.0
             return residual, slope
 
         return at
@@ -71,9 +78,9 @@ def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float)
     return replace(found, cycles=(follower.cycle(place), *found.cycles))
 
 
-def _driven(machine: Machine, harmonics: int, share: float) -> Array:
+def driven_motion(machine: Machine, harmonics: int, periods: int, share: float) -> Array:
     """The packed motion that the unbalance makes at a speed over the pace."""
     omega = share * machine.pace
     motion = np.zeros((harmonics + 1, machine.size), dtype=complex)
-    motion[1] = unbalance_motion(machine, omega)
+    motion[periods] = unbalance_motion(machine, omega)
     return packed(motion)

@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
 PIECES = 8  # straight pieces between two cycles
+WHIRL = "whirl with unbalance"
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
 
@@ -56,6 +57,7 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
         values = np.array([point.eccentricity_max[film] for point in branch.points])
         label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], label)
+        _whirls(axes, branch, [whirl.eccentricity_max[film] for whirl in branch.with_unbalance], number)
     for kind, (marker, label) in MARKS.items():
         points = found.of(kind)
         at = [point.value for point in points], [point.eccentricity_max[film] for point in points]
@@ -88,6 +90,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
     for number, branch in enumerate(found.branches):
         values = np.array([point.frequency_Hz for point in branch.points])
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], None)
+        _whirls(axes, branch, [whirl.frequency_Hz for whirl in branch.with_unbalance], number, told=False)
     for kind, (marker, _) in MARKS.items():
         points = found.of(kind)
         at = [point.value for point in points], [point.frequency_Hz for point in points]
@@ -110,6 +113,22 @@ def _curve(axes: Axes, branch: CycleBranch, y: Array, colour: str, label: str | 
         x, y = PchipInterpolator(along, x)(fine), PchipInterpolator(along, y)(fine)
         stable = stable[pieces // PIECES] & stable[-(-pieces // PIECES)]
     _line(axes, x, y, stable, colour, label)
+
+
+def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: int, told: bool = True) -> None:
+    """The whirls of a branch with unbalance: full dots where they have locked in, rings where they have two
+    frequencies."""
+    colour = COLOURS[number % len(COLOURS)]
+    for locked, fill, label in ((False, "white", WHIRL), (True, colour, f"{WHIRL}, locked in")):
+        at = [
+            (whirl.speed_Hz, value)
+            for whirl, value in zip(branch.with_unbalance, values, strict=True)
+            if whirl.locked == locked
+        ]
+        named = told and label not in axes.get_legend_handles_labels()[1]
+        if at:
+            axes.plot(*zip(*at, strict=True), linestyle="", marker="o", markersize=3.2, color=colour,
+                      markerfacecolor=fill, label=label if named else None, zorder=3)  # fmt: skip
 
 
 def _line(axes: Axes, x: Array, y: Array, stable: NDArray[np.bool_], colour: str, label: str | None) -> None:

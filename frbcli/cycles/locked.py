@@ -1,0 +1,143 @@
+"""A whirl of nearly half the speed that locks in with the unbalance: a motion of two periods of the rotor.
+
+With an unbalance at 2 mu, which is shifted against the whirl by an angle theta, a cycle of some frequency mu(theta)
+exists; it goes on from the one without unbalance, mu = nu. Where mu = Omega / 2 for some theta the whirl locks in, for
+one theta with a stable motion, for another one with an unstable one. If no theta has it, there is a motion of two
+frequencies instead (two_frequencies.py).
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.balance import Balance, packed, unpacked
+from frbcli.cycles.branch import Cycle, largest
+from frbcli.cycles.continuation import Equations, Place, Unreachable, corrected, oriented
+from frbcli.cycles.machine import Machine
+from frbcli.cycles.synchronous import Synchronous, driven_motion
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+ANGLES = 12  # at which theta is tried
+SMALLEST = 1.0 / 64.0  # share of the unbalance, and step to a larger one, at which it is tried last
+SHARP = 1e-5  # of theta
+WHIRLS = 1e-3  # of the clearance: odd harmonics of a motion that is not the synchronous one
+
+
+class Locked(Synchronous):
+    """Follows motions of two periods of the rotor with a share of the unbalance."""
+
+    periods = 2
+
+    def __init__(self, machine: Machine, share: float = 1.0) -> None:
+        super().__init__(machine, 0.0, machine.pace)
+        self.share = share
+
+
+def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
+    """The stable motion of two periods of the rotor with the unbalance that a cycle locks in with, None if none was
+    found. motion: (H + 1, c) harmonics of the cycle; nu: its frequency; omega: rad/s.
+
+    Where it cannot be reached with the whole unbalance it is looked for with a part of it, which is raised then.
+    """
+    share = 1.0
+    while share >= SMALLEST:
+        try:
+            guesses = _guesses(machine, motion, nu, omega, share)
+        except Unreachable:
+            share *= 0.5
+            continue
+        for guess in guesses:
+            found = locked_near(machine, guess, omega, share)
+            if found is not None:
+                return _raised(machine, found, omega, share)
+        return None
+    return None
+
+
+def locked_near(machine: Machine, motion: Complex, omega: float, share: float = 1.0) -> Cycle | None:
+    """The stable motion of two periods of the rotor next to one with harmonics (H + 1, c); None if there is none."""
+    follower, speed = Locked(machine, share), omega / machine.pace
+    guess = np.concatenate([packed(motion), [0.5 * speed, speed]])
+    along = _at_this_speed(guess)
+    place = corrected(follower.equations(Place(guess, along)), guess, along)
+    near = None if place is None else follower.refitted(oriented(place, along))
+    fitted = None if near is None else follower.entered(near.y, speed)
+    if fitted is None or largest(machine, fitted.y) > 1.0:
+        return None
+    whirl = unpacked(fitted.y[:-2], machine.size)[1::2, : 2 * machine.film_count]
+    cycle = follower.cycle(fitted)
+    return cycle if cycle.multipliers.stable and np.abs(whirl).max() > WHIRLS else None
+
+
+def _raised(machine: Machine, found: Cycle, omega: float, share: float) -> Cycle | None:
+    """The motion with the whole unbalance that goes on from one with a share of it."""
+    step = share
+    while share < 1.0:
+        higher = min(1.0, share + step)
+        there = locked_near(machine, unpacked(found.y[:-2], machine.size), omega, higher)
+        if there is not None:
+            found, share, step = there, higher, 2.0 * step
+        elif step < SMALLEST:
+            return None
+        else:
+            step *= 0.5
+    return found
+
+
+def _guesses(machine: Machine, motion: Complex, nu: float, omega: float, share: float) -> list[Complex]:
+    """The cycles with a share of the unbalance and mu = Omega / 2, shifted in time so that theta is zero. Raises
+    Unreachable."""
+    from scipy.optimize import brentq
+
+    angles = 2.0 * np.pi * np.arange(ANGLES + 1) / ANGLES
+    y = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
+    known: dict[float, Array] = {}
+    for theta in angles:
+        y = known[theta] = _shifted(machine, motion, y, share, theta)
+
+    def off(theta: float) -> float:
+        if theta not in known:
+            near = known[min(known, key=lambda other: abs(other - theta))]
+            known[theta] = _shifted(machine, motion, near, share, theta)
+        return float(known[theta][-2]) - 0.5 * omega / machine.pace
+
+    guesses, orders = [], np.arange(len(motion))[:, None]
+    for low, high in itertools.pairwise(angles):
+        if off(low) * off(high) <= 0.0:
+            theta = float(brentq(off, low, high, xtol=SHARP))
+            off(theta)
+            guesses.append(unpacked(known[theta][:-2], machine.size) * np.exp(-0.5j * theta * orders))
+    return guesses
+
+
+def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta: float) -> Array:
+    """The cycle with a share of the unbalance shifted by theta, next to y; its phase is that of the reference. Raises
+    Unreachable."""
+    found = corrected(_equations(machine, reference, share * np.exp(1j * theta)), y, _at_this_speed(y))
+    if found is None:
+        raise Unreachable
+    return found.y
+
+
+def _equations(machine: Machine, reference: Complex, factor: complex) -> Equations:
+    """Those of a cycle with the unbalance times a factor in its second harmonic."""
+    balance = Balance(machine, reference)
+
+    def at(y: Array) -> tuple[Array, Array]:
+        residual, slope = balance(y)
+        driven = unpacked(driven_motion(machine, balance.harmonics, 2, float(y[-1])), machine.size)
+        residual[:-1] -= packed(factor * driven)
+        return residual, slope
+
+    return at
+
+
+def _at_this_speed(y: Array) -> Array:
+    along = np.zeros(len(y))
+    along[-1] = 1.0
+    return along

@@ -1,0 +1,210 @@
+"""The whirl of each branch of stable cycles with the unbalance beside it: a motion of two frequencies, or one that has
+locked in at half the speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.balance import motion_along, unpacked
+from frbcli.cycles.branch import ASKED, MOMENTS, Cycle
+from frbcli.cycles.continuation import Unreachable
+from frbcli.cycles.locked import locked_near, locked_whirl
+from frbcli.cycles.machine import Machine
+from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, SpectralLine, UnbalancedWhirl, hertz
+from frbcli.cycles.two_frequencies import Torus, fitted, of_cycle, samples, with_unbalance
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Observer = Callable[[int, float, float], None]
+
+APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
+NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
+PHASES = (256, 128)  # at which eccentricities are taken
+LINES, FAINT = 8, 1e-4  # how many are told beside those of whirl and unbalance, and the smallest over the clearance
+
+
+def whirls_with_unbalance(found: LimitCycles, machine: Machine, observe: Observer | None = None) -> LimitCycles:
+    """A diagram over the speed with the motions that its stable cycles become with the unbalance.
+
+    observe: called with the number of motions so far, the speed in Hz and the largest eccentricity of the latest one.
+    """
+    speeds = [point.speed_Hz for point in found.equilibria]
+    apart = APART * (max(speeds) - min(speeds))
+    branches, notes, count = [], list(found.notes), 0
+    for number, branch in enumerate(found.branches):
+        chain, whirls, missing = _Chain(machine), [], []
+        for point in _taken(branch, apart):
+            whirl = chain.next(point)
+            if whirl is None:
+                missing.append(point.speed_Hz)
+                continue
+            whirls.append(whirl)
+            count += 1
+            if observe is not None:
+                observe(count, whirl.speed_Hz, float(whirl.eccentricity_max.max()))
+        if missing:
+            where = f"{min(missing):.4g} Hz" if len(missing) == 1 else f"{min(missing):.4g} and {max(missing):.4g} Hz"
+            between = "at" if len(missing) == 1 else f"at {len(missing)} speeds between"
+            notes.append(f"Branch {number + 1} with unbalance: no motion was found {between} {where}.")
+        branches.append(replace(branch, with_unbalance=tuple(whirls)))
+    return replace(found, branches=tuple(branches), notes=tuple(notes))
+
+
+def _taken(branch: CycleBranch, apart: float) -> list[CyclePoint]:
+    """Stable cycles of a branch at some distance from each other, with those that were asked for."""
+    taken: list[CyclePoint] = []
+    for point in branch.points:
+        far = not taken or abs(point.speed_Hz - taken[-1].speed_Hz) >= apart
+        if point.stable and (far or point.kind == ASKED):
+            taken.append(point)
+    return taken
+
+
+class _Chain:
+    """Motions along a branch, each from the one before it where that leads to it."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.locked: Cycle | None = None
+        self.last: tuple[Torus, Torus] | None = None  # without and with the unbalance
+
+    def next(self, point: CyclePoint) -> UnbalancedWhirl | None:
+        """The motion that a cycle becomes; None if it is not found."""
+        motion = motion_of(self.machine, point)
+        nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
+        self.locked = self._locked(motion, nu, omega)
+        if self.locked is not None:
+            self.last = None
+            return _locked_whirl(self.machine, self.locked)
+        before = of_cycle(motion, nu, omega)
+        try:
+            torus = self._torus(before)
+        except Unreachable:
+            self.last = None
+            return None
+        self.last = before, torus
+        return _free_whirl(self.machine, torus)
+
+    def _locked(self, motion: Complex, nu: float, omega: float) -> Cycle | None:
+        if abs(2.0 * nu - omega) > NEAR_HALF * omega:
+            return None
+        if self.locked is not None:
+            near = unpacked(self.locked.y[:-2], self.machine.size)
+            found = locked_near(self.machine, near, omega)
+            if found is not None:
+                return found
+        return locked_whirl(self.machine, motion, nu, omega)
+
+    def _torus(self, before: Torus) -> Torus:
+        if self.last is not None:
+            try:
+                return fitted(self.machine, _moved_on(before, *self.last))
+            except Unreachable:
+                pass
+        return with_unbalance(self.machine, before)
+
+
+def _moved_on(cycle: Torus, cycle_before: Torus, torus_before: Torus) -> Torus:
+    """The motion before with what has changed since then without the unbalance."""
+    orders = {(int(j), int(k)): i for i, (j, k) in enumerate(torus_before.orders)}
+    motion = torus_before.motion.copy()
+    for sign, each in ((1.0, cycle), (-1.0, cycle_before)):
+        for order, harmonic in zip(each.orders.tolist(), each.motion, strict=True):
+            place = orders.get(tuple(order))
+            if place is not None:
+                motion[place] += sign * harmonic
+    return Torus(torus_before.orders, motion, torus_before.nu + cycle.nu - cycle_before.nu, cycle.omega)
+
+
+def motion_of(machine: Machine, point: CyclePoint) -> Complex:
+    """(H + 1, c) harmonics of a cycle, of the ring speeds their mean."""
+    films = 2 * machine.film_count
+    motion = np.zeros((len(point.harmonics), machine.size), dtype=complex)
+    motion[:, :films] = point.harmonics.reshape(len(motion), -1)
+    motion[0, films:] = 2.0 * math.pi * point.ring_speeds_Hz / machine.pace
+    return motion
+
+
+def _free_whirl(machine: Machine, torus: Torus) -> UnbalancedWhirl:
+    """What is told of a motion of two frequencies."""
+    films = 2 * machine.film_count
+    displacements = samples(torus.orders, torus.motion[:, :films], PHASES)
+    lines = [
+        SpectralLine(_combination(int(j), int(k), frequency), abs(hertz(frequency)), _axis(harmonic[:films]))
+        for (j, k), frequency, harmonic in zip(torus.orders, torus.frequencies, torus.motion, strict=True)
+        if (j, k) != (0, 0)
+    ]
+    return UnbalancedWhirl(
+        speed_Hz=hertz(torus.omega),
+        frequency_Hz=hertz(torus.nu),
+        locked=False,
+        eccentricity_max=_largest(displacements.reshape(-1, films)),
+        ring_speeds_Hz=hertz(machine.pace) * torus.motion[0, films:].real,
+        lines=_main(lines, ("nu", "Omega")),
+        stable=None,
+    )
+
+
+def _locked_whirl(machine: Machine, cycle: Cycle) -> UnbalancedWhirl:
+    """What is told of a motion of two periods of the rotor."""
+    films = 2 * machine.film_count
+    motion, omega = unpacked(cycle.y[:-2], machine.size), float(cycle.y[-1] * machine.pace)
+    displacements, _ = motion_along(motion[:, :films], max(MOMENTS, 4 * len(motion)))
+    lines = [
+        SpectralLine(_half(order), 0.5 * order * hertz(omega), _axis(harmonic[:films]))
+        for order, harmonic in enumerate(motion)
+        if order > 0
+    ]
+    return UnbalancedWhirl(
+        speed_Hz=hertz(omega),
+        frequency_Hz=0.5 * hertz(omega),
+        locked=True,
+        eccentricity_max=_largest(displacements),
+        ring_speeds_Hz=hertz(machine.pace) * motion[0, films:].real,
+        lines=_main(lines, (_half(1), _half(2))),
+        stable=cycle.multipliers.stable,
+    )
+
+
+def _largest(displacements: Array) -> Array:
+    """(F,) largest eccentricities of displacements (n, 2 F)."""
+    return np.asarray(np.hypot(displacements[:, 0::2], displacements[:, 1::2]).max(axis=0))
+
+
+def _axis(harmonic: Complex) -> Array:
+    """(F,) half the longer axis of the ellipse of 2 Re(harmonic exp(i t)) in each film."""
+    x, y = harmonic[0::2], harmonic[1::2]
+    return np.asarray(np.abs(x + 1j * y) + np.abs(x - 1j * y))
+
+
+def _main(lines: Sequence[SpectralLine], always: tuple[str, str]) -> tuple[SpectralLine, ...]:
+    """Those of whirl and unbalance, and the largest others."""
+    first = [line for name in always for line in lines if line.name == name]
+    others = [line for line in lines if line.name not in always and line.amplitude.max() > FAINT]
+    others.sort(key=lambda line: -float(line.amplitude.max()))
+    return (*first, *others[:LINES])
+
+
+def _combination(j: int, k: int, frequency: float) -> str:
+    """The name of j nu + k Omega, or of its negative if that is above zero."""
+    sign = 1 if frequency >= 0.0 else -1
+    parts = [(sign * j, "nu"), (sign * k, "Omega")]
+    parts.sort(key=lambda part: -part[0])
+    told = ""
+    for factor, name in parts:
+        if factor:
+            joint = (" - " if factor < 0 else " + ") if told else ("-" if factor < 0 else "")
+            told += joint + (name if abs(factor) == 1 else f"{abs(factor)} {name}")
+    return told
+
+
+def _half(order: int) -> str:
+    """The name of a multiple of Omega / 2."""
+    if order % 2 == 0:
+        return "Omega" if order == 2 else f"{order // 2} Omega"
+    return "Omega / 2" if order == 1 else f"{order} Omega / 2"

@@ -1,0 +1,234 @@
+"""A whirl beside the unbalance: motions of two frequencies, and whirls that lock in at half the speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_limit_cycles import machine_of, ring_case
+
+import frbcli
+from frbcli.case.load import load_case_text
+from frbcli.cycles import two_frequencies
+from frbcli.cycles.balance import unpacked
+from frbcli.cycles.machine import Loads, Machine, film_loads, transfer, unbalance_motion
+from frbcli.cycles.result import CyclePoint, UnbalancedWhirl
+from frbcli.cycles.two_frequencies import Torus, fitted, of_cycle, samples, solved, with_unbalance
+from frbcli.cycles.with_unbalance import motion_of
+
+SHORT = "film.theory=short"
+
+
+def jeffcott(unbalance: float, *settings: str) -> frbcli.Case:
+    return frbcli.load_case("jeffcott", [f"rotor.unbalance={unbalance} g*mm", *settings])
+
+
+def asked(case: frbcli.Case, speed_Hz: float) -> CyclePoint:
+    """The stable cycle at a speed."""
+    points = [point for branch in frbcli.limit_cycles(case, [speed_Hz]).branches for point in branch.points]
+    (point,) = [point for point in points if point.kind == "asked" and point.stable]
+    return point
+
+
+@pytest.fixture(scope="module")
+def short() -> tuple[Machine, CyclePoint]:
+    """The Jeffcott rotor in short films and its cycle at 190 Hz."""
+    case = jeffcott(0.3, SHORT, "speed.to=200 Hz")
+    return machine_of(case), asked(case, 190.0)
+
+
+def cycle_of(machine: Machine, point: CyclePoint) -> Torus:
+    return of_cycle(motion_of(machine, point), 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz)
+
+
+def largest(machine: Machine, torus: Torus) -> np.ndarray:
+    d = samples(torus.orders, torus.motion, (256, 128))
+    return np.array([np.hypot(d[..., 2 * f], d[..., 2 * f + 1]).max() for f in range(machine.film_count)])
+
+
+def harmonic(torus: Torus, j: int, k: int) -> np.ndarray:
+    return torus.motion[(torus.orders == [j, k]).all(axis=1)][0]
+
+
+def test_samples_and_harmonics_are_inverse() -> None:
+    """u = cos(a + 2 b) + 3 sin(2 a - b) + 5 on the grid; and back."""
+    orders = np.array([[0, 0], [1, 2], [-2, 1], [1, 0]])
+    motion = np.array([[5.0], [0.5], [1.5j], [0.0]])
+    a, b = np.meshgrid(2.0 * np.pi * np.arange(12) / 12, 2.0 * np.pi * np.arange(10) / 10, indexing="ij")
+    found = samples(orders, motion.astype(complex), (12, 10))
+    np.testing.assert_allclose(found[..., 0], np.cos(a + 2.0 * b) + 3.0 * np.sin(2.0 * a - b) + 5.0, atol=1e-14)
+    np.testing.assert_allclose(two_frequencies.harmonics(found, orders), motion, atol=1e-14)
+
+
+def test_without_unbalance_it_is_the_cycle(short: tuple[Machine, CyclePoint]) -> None:
+    machine, point = short
+    torus = fitted(machine, cycle_of(machine, point), share=0.0)
+    assert torus.nu / (2.0 * math.pi) == pytest.approx(point.frequency_Hz, rel=1e-7)
+    np.testing.assert_allclose(largest(machine, torus), point.eccentricity_max, atol=1e-5)
+    assert np.abs(torus.motion[torus.orders[:, 1] > 0]).max() < 1e-9
+
+
+def test_the_derivative_is_that_of_the_residual(short: tuple[Machine, CyclePoint]) -> None:
+    """And equations with the mean of the films' derivatives over b are those of a motion without unbalance."""
+    machine, point = short
+    torus, c = cycle_of(machine, point), machine.size
+    balance = two_frequencies._Linearised(machine, torus, torus.motion)
+    step = 1e-8 * np.random.default_rng(0).standard_normal(c * (2 * len(torus.orders) - 1) + 1)
+
+    def at(sign: float) -> np.ndarray:
+        motion = torus.motion + sign * unpacked(step[:-1], c)
+        moved = replace(torus, motion=motion, nu=torus.nu + sign * float(step[-1]) * machine.pace)
+        return two_frequencies._Linearised(machine, moved, torus.motion).residual(np.zeros(c))
+
+    changed = balance.moved(step)
+    np.testing.assert_allclose(changed, 0.5 * (at(1.0) - at(-1.0)), atol=1e-5 * np.abs(changed).max())
+    np.testing.assert_allclose(two_frequencies._ByMean(balance).solved(changed), step, atol=1e-9 * np.abs(step).max())
+
+
+def test_linear_films_make_the_sum_of_whirl_and_response(
+    short: tuple[Machine, CyclePoint], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A spring and a dashpot for each film: the response to the unbalance is what it is without a whirl, and the
+    equations of the whirl do not see it."""
+    machine, point = short
+    spring, dashpot, c = 3e5, 2e2, machine.size
+
+    def linear(machine: Machine, u: np.ndarray, v: np.ndarray, omega: float) -> Loads:
+        loads, eye = film_loads(machine, 0.0 * u, 0.0 * v, omega), np.broadcast_to(np.eye(c), (len(u), c, c))
+        return replace(loads, values=-spring * u - dashpot * v, by_u=-spring * eye, by_v=-dashpot * eye)
+
+    monkeypatch.setattr(two_frequencies, "film_loads", linear)
+    torus = cycle_of(machine, point)
+    alone = two_frequencies._Linearised(machine, torus, torus.motion).residual(np.zeros(c))
+    omega, driven = torus.omega, unbalance_motion(machine, torus.omega)
+    passing = transfer(machine, np.array([omega]), omega)
+    felt = passing.values[0] @ np.diag(passing.kappa[0] - spring - 1j * omega * dashpot)
+    motion = torus.motion.copy()
+    motion[(torus.orders == [0, 1]).all(axis=1)] = np.linalg.solve(np.eye(c) - felt, driven)
+    both = two_frequencies._Linearised(machine, replace(torus, motion=motion), torus.motion).residual(driven)
+    np.testing.assert_allclose(both, alone, atol=1e-13)
+
+
+def test_a_small_unbalance_acts_linearly(short: tuple[Machine, CyclePoint]) -> None:
+    """On the harmonics with k = 1, and with its square on the frequency."""
+    machine, point = short
+    rest = solved(machine, cycle_of(machine, point), share=0.0)
+    one, two = (solved(machine, rest, share) for share in (0.001, 0.002))
+    for j in (-3, -2, -1, 0, 1):
+        np.testing.assert_allclose(harmonic(two, j, 1), 2.0 * harmonic(one, j, 1), rtol=2e-3)
+    one, two = (solved(machine, rest, share) for share in (0.05, 0.1))
+    assert (two.nu - rest.nu) / (one.nu - rest.nu) == pytest.approx(4.0, rel=0.02)
+
+
+def run_at(case: frbcli.Case, speed_Hz: float, duration_s: float, path: Path) -> dict[str, np.ndarray]:
+    """The last half of a run at constant speed."""
+    settings = [f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz", f"speed.duration={duration_s} s"]
+    settings += ["output.step=5e-5 s", "accuracy.tolerance=1e-7", "accuracy.steps_per_revolution=200"]
+    signals = frbcli.runup(load_case_text(case.source_text, settings, "run"), path / "r.h5").signals
+    return {name: np.asarray(values)[len(np.asarray(values)) // 2 :] for name, values in signals.items()}
+
+
+def lines_in(signals: dict[str, np.ndarray], torus: Torus, clearance: float) -> dict[tuple[int, int], float]:
+    """Amplitudes over the clearance of exp(i (j nu + k Omega) t) in x + i y of the journal, by least squares."""
+    size = np.abs(torus.motion).max(axis=1)
+    kept = np.argsort(-size)[:60]
+    orders = np.concatenate([torus.orders[kept], -torus.orders[kept][np.any(torus.orders[kept] != 0, axis=1)]])
+    t = signals["time_s"]
+    waves = np.exp(1j * np.outer(t, orders @ np.array([torus.nu, torus.omega])))
+    motion = (signals["journal_x_m"] + 1j * signals["journal_y_m"]) / clearance
+    found = np.linalg.lstsq(waves, motion, rcond=None)[0]
+    return {(int(j), int(k)): float(abs(value)) for (j, k), value in zip(orders, found, strict=True)}
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("speed_Hz", "unbalance"), [(190.0, 0.1), (180.0, 1.0)])
+def test_a_whirl_of_two_frequencies_is_that_of_a_run(speed_Hz: float, unbalance: float, tmp_path: Path) -> None:
+    """Jeffcott rotor, half-Sommerfeld, in the last 15 of 30 s: eccentricity, and the lines at nu, Omega, Omega - nu."""
+    case = jeffcott(unbalance, "start.displacement=[0.3, -0.3]")
+    machine = machine_of(case)
+    torus = with_unbalance(machine, cycle_of(machine, asked(case, speed_Hz)))
+    signals = run_at(case, speed_Hz, 30.0, tmp_path)
+    assert largest(machine, torus)[0] == pytest.approx(signals["eccentricity"].max(), abs=1e-4)
+    seen = lines_in(signals, torus, float(machine.clearances[0]))
+    for j, k in ((1, 0), (0, 1), (-1, 1)):
+        x, y = harmonic(torus, j, k)
+        assert abs(x + 1j * y) == pytest.approx(seen[(j, k)], rel=1e-3)
+
+
+@pytest.mark.nightly
+def test_the_whirl_of_a_floating_ring_with_unbalance_is_that_of_a_run(tmp_path: Path) -> None:
+    """Without feed holes, at 200 Hz with 3 g mm, after 2 of 4 s."""
+    case = load_case_text(ring_case().source_text, ["rotor.unbalance=3 g*mm", "speed.to=240 Hz"], "ring")
+    machine = machine_of(case)
+    torus = with_unbalance(machine, cycle_of(machine, asked(case, 200.0)))
+    signals = run_at(case, 200.0, 4.0, tmp_path)
+    seen = [signals[f"eccentricity_{film}"].max() for film in ("inner", "outer")]
+    np.testing.assert_allclose(largest(machine, torus), seen, atol=1e-4)
+
+
+def locked(case: frbcli.Case, speed_Hz: float) -> UnbalancedWhirl:
+    found = frbcli.limit_cycles(case, [speed_Hz], with_unbalance=True)
+    (whirl,) = [
+        whirl for branch in found.branches for whirl in branch.with_unbalance if abs(whirl.speed_Hz - speed_Hz) < 1e-9
+    ]
+    return whirl
+
+
+def test_a_whirl_that_locks_in_is_that_of_a_run(tmp_path: Path) -> None:
+    """Jeffcott rotor with 3 g mm at 190 Hz: 95.045 Hz without unbalance, half the speed with it."""
+    whirl = locked(jeffcott(3.0, "speed.from=186 Hz", "speed.to=192 Hz"), 190.0)
+    assert whirl.locked
+    assert whirl.stable
+    assert whirl.frequency_Hz == pytest.approx(95.0, rel=1e-12)
+    assert [line.name for line in whirl.lines[:2]] == ["Omega / 2", "Omega"]
+    signals = run_at(jeffcott(3.0, "start.displacement=[0.3, -0.3]"), 190.0, 16.0, tmp_path)
+    assert whirl.eccentricity_max[0] == pytest.approx(signals["eccentricity"].max(), abs=2e-5)
+
+
+def test_a_whirl_locks_in_at_the_speed_of_its_cycle() -> None:
+    """Also where harmonics are added: penalty model, 3 g mm, 200 Hz; 0.940716 is what a run has after 30 s."""
+    whirl = locked(jeffcott(3.0, "film.cavitation=penalty", "speed.from=196 Hz", "speed.to=202 Hz"), 200.0)
+    assert whirl.frequency_Hz == pytest.approx(100.0, rel=1e-12)
+    assert whirl.eccentricity_max[0] == pytest.approx(0.940716, abs=2e-6)
+
+
+@pytest.mark.nightly
+def test_a_large_unbalance_is_reached_by_raising_it(tmp_path: Path) -> None:
+    """30 g mm at 190 Hz, which a cycle without unbalance does not lead to at once."""
+    whirl = locked(jeffcott(30.0, "speed.from=186 Hz", "speed.to=192 Hz"), 190.0)
+    signals = run_at(jeffcott(30.0, "start.displacement=[0.3, -0.3]"), 190.0, 12.0, tmp_path)
+    assert whirl.locked
+    assert whirl.eccentricity_max[0] == pytest.approx(signals["eccentricity"].max(), abs=2e-5)
+
+
+def test_a_branch_with_unbalance() -> None:
+    """Of a floating ring: next to its cycles, with the lines of whirl and unbalance first."""
+    case = load_case_text(ring_case().source_text, ["rotor.unbalance=3 g*mm", "speed.to=260 Hz"], "ring")
+    found = frbcli.limit_cycles(case, with_unbalance=True)
+    (branch,) = found.branches
+    assert len(branch.with_unbalance) > 3
+    for whirl in branch.with_unbalance:
+        (cycle,) = [point for point in branch.points if point.speed_Hz == pytest.approx(whirl.speed_Hz, rel=1e-12)]
+        assert not whirl.locked
+        assert whirl.stable is None
+        assert [line.name for line in whirl.lines[:2]] == ["nu", "Omega"]
+        assert whirl.frequency_Hz == pytest.approx(cycle.frequency_Hz, rel=0.02)
+        np.testing.assert_allclose(whirl.eccentricity_max, cycle.eccentricity_max, atol=0.02)
+    table = found.to_pandas()
+    assert (table["kind"] == "two frequencies").sum() == len(branch.with_unbalance)
+
+
+@pytest.mark.parametrize(
+    ("case", "problem"),
+    [
+        (lambda: jeffcott(0.0), "is zero"),
+        (lambda: frbcli.load_case("rigid-two-phase", ["rotor.unbalance=3 g*mm"]), "keeps its oil"),
+    ],
+    ids=["none", "oil"],
+)
+def test_what_it_is_not_computed_of_is_refused(case, problem: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(frbcli.InputError, match=problem):
+        frbcli.limit_cycles(case(), with_unbalance=True)
