@@ -80,17 +80,18 @@ def test_kernel_is_the_plain_one_and_has_its_derivatives() -> None:
     states[PRESSURE], states[PRESSURE_SLOPE] = cavity + random.normal(size=(m, k)), random.uniform(0.5, 1.5, (m, k))
     fields[:, :, k:] = 0.3 * random.normal(size=(m, k, SIDES))
 
-    def push(own: np.ndarray) -> tuple[float, float, float, float]:
+    def push(own: np.ndarray) -> tuple[float, ...]:
         changed = fields.copy()
         changed[:, :, k] = own
-        return clipped_push(data.numbers[0], data.ring[0], data.cells[0], states, changed, k + 1)
+        return clipped_push(data.numbers[0], data.ring[0], data.cells[0], states, changed, k + 1, k + 2)
 
-    f_x, f_y, by_x, by_y = push(fields[:, :, k])
+    f_x, f_y, *by = push(fields[:, :, k])
     pressure = states[PRESSURE] + states[PRESSURE_SLOPE] * fields[:, :, k]
     expected = force(film, cavity + clipped_means(pressure - cavity))
     scale = data.numbers[0, FORCE_SCALE]
     assert (scale * f_x, scale * f_y) == pytest.approx(expected, rel=1e-12)
     step = 1e-6
-    after, before = (push(fields[:, :, k] + sign * step * fields[:, :, k + 1]) for sign in (1.0, -1.0))
-    assert by_x == pytest.approx((after[0] - before[0]) / (2.0 * step), rel=1e-6)
-    assert by_y == pytest.approx((after[1] - before[1]) / (2.0 * step), rel=1e-6)
+    for layer, slopes in ((k + 1, by[:2]), (k + 2, by[2:])):
+        after, before = (push(fields[:, :, k] + sign * step * fields[:, :, layer]) for sign in (1.0, -1.0))
+        rises = [(after[axis] - before[axis]) / (2.0 * step) for axis in range(2)]
+        assert slopes == pytest.approx(rises, rel=1e-6)

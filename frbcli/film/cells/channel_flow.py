@@ -139,7 +139,8 @@ def push_of_channel(
     """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
     m, k = states.shape[1], states.shape[2]
     if numbers[CLIPS] != 0.0:
-        _, _, x, y = clipped_push(numbers, ring, cells, states, fields, k + SIDES + slot)
+        layer = k + SIDES + slot
+        _, _, x, y, _, _ = clipped_push(numbers, ring, cells, states, fields, layer, layer)
         return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y
     x, y = 0.0, 0.0
     for i in range(m):

@@ -26,41 +26,50 @@ def _rise(p: float, n: float, s: float) -> tuple[float, float, float, float, flo
 
 @compiled()
 def clipped_push(
-    numbers: Array, ring: Array, cells: Array, states: Array, fields: Array, layer: int
-) -> tuple[float, float, float, float]:
+    numbers: Array, ring: Array, cells: Array, states: Array, fields: Array, one: int, other: int
+) -> tuple[float, float, float, float, float, float]:
     """Force (x, y) over the film's scale after its own change in fields (m, k, k + SIDES), see film_loads, and its
-    derivative by what the layer of fields is a change with."""
+    derivatives by what two layers of fields are changes with: (x, y) of one, (x, y) of the other."""
     m, k = states.shape[1], states.shape[2]
     cavity = numbers[CAVITY]
-    f_x, f_y, by_x, by_y = 0.0, 0.0, 0.0, 0.0
+    f_x, f_y, one_x, one_y, other_x, other_y = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(m):
-        b, n, z = (i - 1) % m, (i + 1) % m, (i + 2) % m
+        b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+        z = n + 1 if n + 1 < m else 0
+        full, here, after, one_here, one_after, other_here, other_after = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for j in range(k):
-            here_x, here_y = ring[PUSH_X, i] * cells[LOAD, i, j], ring[PUSH_Y, i] * cells[LOAD, i, j]
-            next_x, next_y = ring[PUSH_X, n] * cells[LOAD, n, j], ring[PUSH_Y, n] * cells[LOAD, n, j]
-            f_x += here_x * cavity
-            f_y += here_y * cavity
-            p = states[PRESSURE, i, j] + states[PRESSURE_SLOPE, i, j] * fields[i, j, k] - cavity
-            q = states[PRESSURE, n, j] + states[PRESSURE_SLOPE, n, j] * fields[n, j, k] - cavity
+            at, behind = cells[LOAD, i, j], cells[LOAD, n, j]
+            by_i, by_n = states[PRESSURE_SLOPE, i, j], states[PRESSURE_SLOPE, n, j]
+            full += at
+            p = states[PRESSURE, i, j] + by_i * fields[i, j, k] - cavity
+            q = states[PRESSURE, n, j] + by_n * fields[n, j, k] - cavity
             if not (p > 0.0 or q > 0.0):
                 continue
-            s = states[PRESSURE, b, j] + states[PRESSURE_SLOPE, b, j] * fields[b, j, k] - p - q - cavity
-            s += states[PRESSURE, z, j] + states[PRESSURE_SLOPE, z, j] * fields[z, j, k] - cavity
-            d_p = states[PRESSURE_SLOPE, i, j] * fields[i, j, layer]
-            d_q = states[PRESSURE_SLOPE, n, j] * fields[n, j, layer]
-            d_s = states[PRESSURE_SLOPE, b, j] * fields[b, j, layer] - d_p - d_q
-            d_s += states[PRESSURE_SLOPE, z, j] * fields[z, j, layer]
-            if p > 0.0 and q > 0.0:
-                here, after = 0.5 * (p - CURVED * s), 0.5 * (q - CURVED * s)
-                d_here, d_after = 0.5 * (d_p - CURVED * d_s), 0.5 * (d_q - CURVED * d_s)
-            elif p > 0.0:
-                here, after, a_p, a_q, a_s, c_p, c_q, c_s = _rise(p, q, s)
-                d_here, d_after = a_p * d_p + a_q * d_q + a_s * d_s, c_p * d_p + c_q * d_q + c_s * d_s
+            by_b, by_z = states[PRESSURE_SLOPE, b, j], states[PRESSURE_SLOPE, z, j]
+            s = states[PRESSURE, b, j] + by_b * fields[b, j, k] + states[PRESSURE, z, j] + by_z * fields[z, j, k]
+            s -= p + q + 2.0 * cavity
+            a_p, a_q, a_s, c_p, c_q, c_s = 0.5, 0.0, -0.5 * CURVED, 0.0, 0.5, -0.5 * CURVED
+            if q <= 0.0:
+                to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = _rise(p, q, s)
+            elif p <= 0.0:
+                to_q, to_p, c_q, c_p, c_s, a_q, a_p, a_s = _rise(q, p, s)
             else:
-                after, here, a_q, a_p, a_s, c_q, c_p, c_s = _rise(q, p, s)
-                d_after, d_here = a_p * d_p + a_q * d_q + a_s * d_s, c_p * d_p + c_q * d_q + c_s * d_s
-            f_x += here_x * here + next_x * after
-            f_y += here_y * here + next_y * after
-            by_x += here_x * d_here + next_x * d_after
-            by_y += here_y * d_here + next_y * d_after
-    return f_x, f_y, by_x, by_y
+                to_p, to_q = a_p * p + a_s * s, c_q * q + c_s * s
+            here += at * to_p
+            after += behind * to_q
+            d_p, d_q = by_i * fields[i, j, one], by_n * fields[n, j, one]
+            d_s = by_b * fields[b, j, one] + by_z * fields[z, j, one] - d_p - d_q
+            one_here += at * (a_p * d_p + a_q * d_q + a_s * d_s)
+            one_after += behind * (c_p * d_p + c_q * d_q + c_s * d_s)
+            d_p, d_q = by_i * fields[i, j, other], by_n * fields[n, j, other]
+            d_s = by_b * fields[b, j, other] + by_z * fields[z, j, other] - d_p - d_q
+            other_here += at * (a_p * d_p + a_q * d_q + a_s * d_s)
+            other_after += behind * (c_p * d_p + c_q * d_q + c_s * d_s)
+        x, y, next_x, next_y = ring[PUSH_X, i], ring[PUSH_Y, i], ring[PUSH_X, n], ring[PUSH_Y, n]
+        f_x += x * (full * cavity + here) + next_x * after
+        f_y += y * (full * cavity + here) + next_y * after
+        one_x += x * one_here + next_x * one_after
+        one_y += y * one_here + next_y * one_after
+        other_x += x * other_here + next_x * other_after
+        other_y += y * other_here + next_y * other_after
+    return f_x, f_y, one_x, one_y, other_x, other_y

@@ -37,8 +37,7 @@ def film_loads(
     m, k = states.shape[1], states.shape[2]
     scale = numbers[FORCE_SCALE]
     if numbers[CLIPS] != 0.0:
-        f_x, f_y, xx, yx = clipped_push(numbers, ring, cells, states, delta, k + 1)
-        f_x, f_y, xy, yy = clipped_push(numbers, ring, cells, states, delta, k + 2)
+        f_x, f_y, xx, yx, xy, yy = clipped_push(numbers, ring, cells, states, delta, k + 1, k + 2)
         return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
     f_x, f_y, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(m):
