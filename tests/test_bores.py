@@ -44,7 +44,7 @@ def solved(section: Section, around: int, along: int, law: Law, motion: Motion) 
 
 def force_of(section: Section, around: int, along: int, law: Law, motion: Motion) -> np.ndarray:
     film, solution = solved(section, around, along, law, motion)
-    return np.array(force(film, film.mean_pressure(solution.state)))
+    return np.array(force(film, film.pressure(solution.state)))
 
 
 def row_of_bores(size: float) -> float:

@@ -13,8 +13,8 @@ from __future__ import annotations
 from frbcli.compiled import Array, Indices, compiled
 from frbcli.film.cells.balances import CHANNELS_NET, SIDES
 from frbcli.film.cells.block_cyclic import CENTRE
-from frbcli.film.cells.clipped import clipped_push
 from frbcli.film.cells.data import (
+    CAVITY,
     CHANNEL_CENTRIFUGAL,
     CLIPS,
     CONDUCTANCE,
@@ -138,14 +138,13 @@ def push_of_channel(
 ) -> tuple[float, float]:  # fmt: skip
     """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
     m, k = states.shape[1], states.shape[2]
-    if numbers[CLIPS] != 0.0:
-        _, _, x, y = clipped_push(numbers, ring, cells, states, fields, k + SIDES + slot)
-        return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y
-    x, y = 0.0, 0.0
+    clips, x, y = numbers[CLIPS] != 0.0, 0.0, 0.0
     for i in range(m):
         p = 0.0
         for j in range(k):
-            p += cells[LOAD, i, j] * states[PRESSURE_SLOPE, i, j] * fields[i, j, k + SIDES + slot]
+            slope = states[PRESSURE_SLOPE, i, j]
+            if not (clips and states[PRESSURE, i, j] + slope * fields[i, j, k] < numbers[CAVITY]):
+                p += cells[LOAD, i, j] * slope * fields[i, j, k + SIDES + slot]
         x += ring[PUSH_X, i] * p
         y += ring[PUSH_Y, i] * p
     return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y

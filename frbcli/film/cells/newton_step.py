@@ -8,9 +8,9 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import GridMotion, balances
 from frbcli.film.cells.block_cyclic import CENTRE
-from frbcli.film.cells.clipped import clipped_push
 from frbcli.film.cells.data import (
     AREA,
+    CAVITY,
     CENTRIFUGAL,
     CLIPS,
     COS,
@@ -35,25 +35,26 @@ def film_loads(
     """Force on the journal with the changes delta (m, k, k + SIDES): (x, y) after the film's own change, and its
     derivatives (xx, xy, yx, yy) by the journal's velocities, in N and N s."""
     m, k = states.shape[1], states.shape[2]
-    scale = numbers[FORCE_SCALE]
-    if numbers[CLIPS] != 0.0:
-        f_x, f_y, xx, yx = clipped_push(numbers, ring, cells, states, delta, k + 1)
-        f_x, f_y, xy, yy = clipped_push(numbers, ring, cells, states, delta, k + 2)
-        return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
+    cavity, clips = numbers[CAVITY], numbers[CLIPS] != 0.0
     f_x, f_y, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(m):
         p, x, y = 0.0, 0.0, 0.0
         for j in range(k):
             weight, slope = cells[LOAD, i, j], states[PRESSURE_SLOPE, i, j]
-            p += weight * (states[PRESSURE, i, j] + slope * delta[i, j, k])
-            x += weight * slope * delta[i, j, k + 1]
-            y += weight * slope * delta[i, j, k + 2]
+            here = states[PRESSURE, i, j] + slope * delta[i, j, k]
+            if clips and here < cavity:
+                p += weight * cavity
+            else:
+                p += weight * here
+                x += weight * slope * delta[i, j, k + 1]
+                y += weight * slope * delta[i, j, k + 2]
         f_x += ring[PUSH_X, i] * p
         f_y += ring[PUSH_Y, i] * p
         xx += ring[PUSH_X, i] * x
         xy += ring[PUSH_X, i] * y
         yx += ring[PUSH_Y, i] * x
         yy += ring[PUSH_Y, i] * y
+    scale = numbers[FORCE_SCALE]
     return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
 
 
