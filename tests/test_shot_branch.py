@@ -11,7 +11,7 @@ from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
 from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import Multipliers
-from frbcli.cycles.oil_rest import Threshold, located
+from frbcli.cycles.oil_rest import Threshold, located, thresholds
 from frbcli.cycles.shot_branch import AT_REST_DIFFERENCE, Shooting, Shot, follow_shots
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.scene.plan import make_plan
@@ -54,6 +54,17 @@ def test_flips_and_torus_points_are_named_and_located(twisted: bool, kind: str, 
         expected = np.exp((speed - 1.3) * period + 1j * turns)
         assert np.abs(shot.multipliers.others - expected).min() < 2e-3 * abs(expected)
         assert shot.multipliers.unstable == (unstable if abs(expected) > 1.005 else 0)
+
+
+def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:
+    """The second motion grows from the speed 1.3 on, the first from 1 on."""
+    flow = round_cycles(lambda speed: (speed - 1.3, speed - 1.3), 0.3, False)
+    shooting = Shooting(flow, 1.5)  # type: ignore[arg-type]
+    rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in (1.15, 1.4)]
+    (found,) = thresholds(shooting, [rest for rest in rests if rest is not None])
+    assert found.rest.omega == pytest.approx(1.3, rel=1e-5)
+    assert found.rest.rates[found.number].imag == pytest.approx(0.3 * 0.5 * 1.3, rel=1e-5)
+    assert found.uncertainty < 1e-5
 
 
 def test_the_fold_is_that_of_the_harmonic_balance() -> None:
