@@ -12,7 +12,8 @@ from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import Multipliers
 from frbcli.cycles.oil_rest import Threshold, located, thresholds
-from frbcli.cycles.shot_branch import AT_REST_DIFFERENCE, Shooting, Shot, follow_shots
+from frbcli.cycles.shooting import SlowSpace
+from frbcli.cycles.shot_branch import AT_REST_DIFFERENCE, Shooting, Shot, _multipliers, follow_shots
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
@@ -89,6 +90,17 @@ def test_the_fold_is_that_of_the_harmonic_balance() -> None:
     assert fold.eccentricity_max[0] == pytest.approx(known_fold.eccentricity_max[0], abs=2e-4)
     assert not any(shot.multipliers.stable for shot in shots[1 : bottom - 1])
     assert all(shot.multipliers.stable for shot in shots[bottom + 2 :])
+
+
+def test_a_multiplier_beside_the_trivial_one_is_told_by_the_sum_of_both() -> None:
+    """1 and 1.03 with one disturbance for both but for 0.02: an error of 2e-3 in the matrix makes a pair of them."""
+    exact = np.array([[1.0, 1.0, 0.0], [0.0, 1.03, 0.0], [0.0, 0.0, 0.5]])
+    wrong = exact + 2e-3 * np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    assert np.abs(np.linalg.eigvals(wrong).imag).max() > 0.03
+    for matrix in (exact, wrong):
+        found = _multipliers(SlowSpace(np.eye(3), matrix, np.zeros((3, 2))), np.array([1.0, 0.0, 0.0]))
+        np.testing.assert_allclose(found.values, [1.0, 1.03, 0.5], atol=1e-9)
+        assert found.unstable == 1
 
 
 def test_multipliers_are_counted_beyond_the_defect_of_the_trivial_one() -> None:
