@@ -151,7 +151,7 @@ def test_oil_that_stays_for_many_periods_does_not_end_the_branch() -> None:
     """Beyond 91 Hz the oil of the wide side stays for ten and more periods, with multipliers above 0.9."""
     settings = ['bearing.supply.pressure="2 bar"', "speed.from=74 Hz", "speed.to=100 Hz"]
     (branch,) = frbcli.limit_cycles(frbcli.load_case("rigid-two-phase", settings)).branches
-    assert branch.note == "It leaves the range."
+    assert branch.note.startswith("It leaves the range.")  # with cycles that lack places of the cells
     last = branch.points[-1]
     assert last.speed_Hz == pytest.approx(100.0, rel=1e-6)
     assert np.count_nonzero(np.abs(last.multipliers) > 0.9) > 3

@@ -11,8 +11,9 @@ from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
 from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import Multipliers
-from frbcli.cycles.oil_rest import Threshold, located
-from frbcli.cycles.shot_branch import AT_REST_DIFFERENCE, Shooting, Shot, follow_shots
+from frbcli.cycles.oil_rest import Threshold, located, thresholds
+from frbcli.cycles.shooting import SlowSpace
+from frbcli.cycles.shot_branch import AT_REST_DIFFERENCE, Shooting, Shot, _multipliers, follow_shots
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
@@ -56,6 +57,17 @@ def test_flips_and_torus_points_are_named_and_located(twisted: bool, kind: str, 
         assert shot.multipliers.unstable == (unstable if abs(expected) > 1.005 else 0)
 
 
+def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:
+    """The second motion grows from the speed 1.3 on, the first from 1 on."""
+    flow = round_cycles(lambda speed: (speed - 1.3, speed - 1.3), 0.3, False)
+    shooting = Shooting(flow, 1.5)  # type: ignore[arg-type]
+    rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in (1.15, 1.4)]
+    (found,) = thresholds(shooting, [rest for rest in rests if rest is not None])
+    assert found.rest.omega == pytest.approx(1.3, rel=1e-5)
+    assert found.rest.rates[found.number].imag == pytest.approx(0.3 * 0.5 * 1.3, rel=1e-5)
+    assert found.uncertainty < 1e-5
+
+
 def test_the_fold_is_that_of_the_harmonic_balance() -> None:
     """Rigid rotor in short bearings, Gamma = 4.538, integrated in time: Hopf point, fold, and the stability on both
     sides of it."""
@@ -78,6 +90,17 @@ def test_the_fold_is_that_of_the_harmonic_balance() -> None:
     assert fold.eccentricity_max[0] == pytest.approx(known_fold.eccentricity_max[0], abs=2e-4)
     assert not any(shot.multipliers.stable for shot in shots[1 : bottom - 1])
     assert all(shot.multipliers.stable for shot in shots[bottom + 2 :])
+
+
+def test_a_multiplier_beside_the_trivial_one_is_told_by_the_sum_of_both() -> None:
+    """1 and 1.03 with one disturbance for both but for 0.02: an error of 2e-3 in the matrix makes a pair of them."""
+    exact = np.array([[1.0, 1.0, 0.0], [0.0, 1.03, 0.0], [0.0, 0.0, 0.5]])
+    wrong = exact + 2e-3 * np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    assert np.abs(np.linalg.eigvals(wrong).imag).max() > 0.03
+    for matrix in (exact, wrong):
+        found = _multipliers(SlowSpace(np.eye(3), matrix, np.zeros((3, 2))), np.array([1.0, 0.0, 0.0]))
+        np.testing.assert_allclose(found.values, [1.0, 1.03, 0.5], atol=1e-9)
+        assert found.unstable == 1
 
 
 def test_multipliers_are_counted_beyond_the_defect_of_the_trivial_one() -> None:

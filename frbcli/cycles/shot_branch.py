@@ -308,8 +308,11 @@ def _multipliers(space: SlowSpace, phase: Array) -> Multipliers:
     trivial = int(np.argmax(along))
     first, others = values[trivial], np.delete(values, trivial)
     defect = max(BLURRED, float(abs(first - 1.0)))
-    second = int(np.argmin(np.abs(others - 1.0)))
-    if abs(others[second] - 1.0) < DOUBLE:
+    if first.imag != 0.0:  # both have become a pair
+        second, defect = int(np.argmin(np.abs(others - first.conjugate()))), BLURRED
+    else:
+        second = int(np.argmin(np.abs(others - 1.0)))
+    if first.imag != 0.0 or abs(others[second] - 1.0) < DOUBLE:
         first, others[second] = 1.0, (first + others[second]).real - 1.0
     others = others[np.argsort(-np.abs(others), kind="stable")]
     return Multipliers(np.concatenate([[first], others]), defect)
