@@ -10,7 +10,7 @@ import pytest
 from frbcli.case.load import load_case
 from frbcli.film.grid import Mesh
 from frbcli.runs.run import runup
-from frbcli.scene.cell_choice import ALONG, AROUND, cell_error, cells_time
+from frbcli.scene.cell_choice import ALONG, AROUND, cell_error, cells_time, fewest_cells
 from frbcli.scene.cost import STAGES, expected_cost, solve_us
 from frbcli.scene.expected_error import expected_error
 from frbcli.scene.film_choice import CELLS, CHAINS, CLOSED_FORM, FIELDS, TABLE, choose_films, short_error
@@ -167,3 +167,11 @@ def test_what_is_out_of_reach_or_set_by_hand_is_told() -> None:
     told = about_target("jeffcott-two-phase", "accuracy.mesh=[4, 24]")[1]
     assert "needs" in told
     assert "set in the case" in told
+
+def test_a_film_that_empties_needs_more_cells() -> None:
+    """Elrod's film in an oil bath without supply: 48 x 5 cells hold 1e-2, no cells hold 1e-3, and the plan says so."""
+    case = load_case("jeffcott", ["film.cavitation=elrod", "bearing.ends=oil-bath", "bearing.supply={kind='none'}"])
+    fed = load_case("jeffcott", ["film.cavitation=elrod", "bearing.supply.pressure=2 bar"])
+    assert fewest_cells(case, 0.8e-2) == (48, 5)
+    assert cell_error(case, (192, 10)) > 1e-3
+    assert cell_error(fed, (48, 5)) < 0.5 * cell_error(case, (48, 5))

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.section_faults import no_inflow
 from frbcli.scene.films import FilmPlace, film_places, is_plain
+from frbcli.scene.section import film_section
 
 USUAL = (48, 6)  # cells around and along that the errors are told for
 FEWEST = (12, 3)
@@ -56,6 +58,8 @@ class CellError:
 PLAIN = CellError(3.5e-4, 2.0, {4: 4.8e-3, 5: 2.2e-3, 6: 1.1e-3, 8: 5e-4, 10: 3e-4})
 GROOVES = CellError(4e-4, 2.0, {4: 3e-4, 6: 1e-4, 8: 5e-5})
 GROOVES_OIL = CellError(1.2e-3, 1.5, {4: 1.5e-4, 6: 1e-4, 8: 5e-5})
+# In a film that empties, cells fill and rupture one by one; below 48 around the error is several times as large.
+EMPTYING = CellError(4e-3, 1.0, {4: 6e-3, 5: 3e-3, 6: 2e-3, 8: 8e-4, 10: 5e-4}, least=48)
 BORES = CellError(2e-3, 3.0, {4: 1.2e-2, 5: 3.3e-3, 6: 1.8e-3, 8: 9e-4, 10: 4e-4}, least=40)
 BORES_OIL = CellError(3.5e-3, 2.0, {4: 1.4e-2, 5: 6e-3, 6: 3e-3, 8: 1.4e-3, 10: 9e-4}, least=40)
 
@@ -95,9 +99,12 @@ def compared_states(cells: tuple[int, int]) -> int:
 
 
 def _kind(case: Case, place: FilmPlace) -> CellError:
-    keeps = law_named(case.cavitation(place.geometry)).keeps_oil
+    law = law_named(case.cavitation(place.geometry))
+    keeps = law.keeps_oil
     if place.feed_holes is not None or place.geometry.supply.kind in ("bores", "pocket"):
         return BORES_OIL if keeps else BORES
+    if law.empties and no_inflow(film_section(case, place.geometry, place.feed_holes)):
+        return EMPTYING
     if is_plain(place.geometry):
         return PLAIN
     return GROOVES_OIL if keeps else GROOVES
