@@ -464,3 +464,15 @@ def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ign
     assert response[0].speed_Hz == pytest.approx(130.0)
     assert response[0].stable
     assert response[0].eccentricity_max[0] == pytest.approx(seen.max(), abs=2e-4)
+
+
+def test_where_a_branch_turns_back_it_has_a_fold() -> None:
+    """Floating ring in short films: the whirl of the inner film turns back near 151 Hz, in a step on which Newton's
+    method does not converge from everywhere."""
+    found = frbcli.limit_cycles(load_case_text(ring_case().source_text, ["speed.to=170.4 Hz"], "ring"))
+    (branch,) = found.branches
+    speeds = np.array([point.speed_Hz for point in branch.points])
+    assert np.count_nonzero(np.diff(np.sign(np.diff(speeds)))) == 1
+    (fold,) = found.of("fold")
+    assert fold.speed_Hz == speeds.min()
+    assert fold.speed_Hz == pytest.approx(150.93, abs=0.01)

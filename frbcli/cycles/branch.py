@@ -186,6 +186,13 @@ class Follower:
             place = oriented(found, place.tangent)
         return None
 
+    def as_fine(self, place: Place, other: Place) -> Place:
+        """The place with as many harmonics as another, taken anew: on which side of the curve a place lies, by the sign
+        of a determinant, is not the same with more of them."""
+        near = resized_like(place, other, self.machine.size)
+        found = place if near is place else corrected(self.equations(near), near.y, near.tangent)
+        return near if found is None else oriented(found, near.tangent)
+
     def fold(self, place: Place, length: float) -> Place | None:
         """The refitted fold within a step from a place."""
         found = None
@@ -194,7 +201,7 @@ class Follower:
             fitted = None if found is None else self.refitted(found, self.tail_of_folds)
             if found is None or fitted is None or len(fitted.y) <= len(place.y):
                 break
-            place = resized_like(place, fitted, self.machine.size)
+            place = self.as_fine(place, fitted)
         return found
 
     def stepped(self, place: Place, length: float) -> Place | None:
@@ -327,7 +334,7 @@ def special_cycles(follower: Follower, before: Cycle | None, place: Place, after
     """Folds, flips and torus points between a place and the cycle a step behind it."""
     found: list[Cycle] = []
     if place.tangent[-1] * after.place.tangent[-1] < 0.0:
-        fold = follower.fold(resized_like(place, after.place, follower.machine.size), length)
+        fold = follower.fold(follower.as_fine(place, after.place), length)
         if fold is not None:
             found.append(follower.cycle(fold, FOLD, after))
     ends = sorted((place.y[-1], after.y[-1]))
@@ -345,7 +352,7 @@ def special_cycles(follower: Follower, before: Cycle | None, place: Place, after
     kind = _kind(before if change < 0 else after)
     if kind == FOLD:  # a real multiplier at 1 away from a fold is one that the harmonics have not resolved
         return found
-    finer = resized_like(place, after.place, follower.machine.size)
+    finer = follower.as_fine(place, after.place)
     place_there = _crossing(follower, finer, length, (before.multipliers, after.multipliers))
     if place_there is not None:
         found.append(follower.cycle(place_there, kind, after))

@@ -92,10 +92,10 @@ def oriented(place: Place, direction: Array) -> Place:
     return replace(place, tangent=-place.tangent, side=-place.side)
 
 
-def step_from(equations: Equations, place: Place, length: float) -> Place | None:
+def step_from(equations: Equations, place: Place, length: float, guess: Array | None = None) -> Place | None:
     """The point at a length along the tangent; None if it is not found, if the curve turns too much on the way, or if
-    the step has come to another part of the curve that passes close by."""
-    found = corrected(equations, place.y + length * place.tangent, place.tangent)
+    the step has come to another part of the curve that passes close by. guess: of it, at this length."""
+    found = corrected(equations, place.y + length * place.tangent if guess is None else guess, place.tangent)
     if found is None or (found.side * place.side < 0 and length > CLOSEST):
         return None
     return found if abs(found.tangent @ place.tangent) >= SHARPEST else None
@@ -125,6 +125,17 @@ def follow(equations: Equations, start: Place, strides: Strides) -> Iterator[tup
         place = found
 
 
+def _between(found: dict[float, Place | None], at: float) -> Array | None:
+    """On the chord between the nearest points on both sides: of the same length along the tangent."""
+    below = max((one for one in found if one < at and found[one] is not None), default=None)
+    above = min((one for one in found if one > at and found[one] is not None), default=None)
+    if below is None or above is None:
+        return None
+    low, high = found[below], found[above]
+    assert low is not None and high is not None
+    return low.y + (at - below) / (above - below) * (high.y - low.y)
+
+
 def fold_between(equations: Equations, place: Place, length: float, tolerance: float = 1e-9) -> Place | None:
     """Where the parameter turns back within a step of `length` from `place`: the tangent has no part along it there."""
     from scipy.optimize import brentq
@@ -133,7 +144,7 @@ def fold_between(equations: Equations, place: Place, length: float, tolerance: f
 
     def turning(at: float) -> float:
         if at not in found:
-            other = step_from(equations, place, at)
+            other = step_from(equations, place, at, _between(found, at))
             found[at] = None if other is None else oriented(other, place.tangent)
         there = found[at]
         if there is None:
