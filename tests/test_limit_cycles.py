@@ -253,6 +253,17 @@ def test_multipliers_of_a_long_shaft_are_those_of_all_its_states() -> None:
     np.testing.assert_array_equal(reduced_space(small).still, state_space(small).still)
 
 
+def test_a_long_shaft_without_unbalance_has_fewer_states_as_well() -> None:
+    case = tomllib.loads(turbocharger().source_text)
+    case["rotor"]["modes"] = 30
+    for disk in case["disk"]:
+        disk.pop("unbalance", None)
+    machine = machine_of(frbcli.case_from_dict(case))
+    less = reduced_space(machine)
+    assert np.isfinite(less.still).all()
+    assert len(less.still) < 0.5 * len(state_space(machine).still)
+
+
 @pytest.mark.parametrize("gamma", [4.538, 1.313])
 def test_the_trivial_multiplier_is_one(gamma: float) -> None:
     """To 1e-6, at folds as well, where a second multiplier is 1."""

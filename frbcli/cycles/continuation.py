@@ -127,13 +127,12 @@ def follow(equations: Equations, start: Place, strides: Strides) -> Iterator[tup
 
 def _between(found: dict[float, Place | None], at: float) -> Array | None:
     """On the chord between the nearest points on both sides: of the same length along the tangent."""
-    below = max((one for one in found if one < at and found[one] is not None), default=None)
-    above = min((one for one in found if one > at and found[one] is not None), default=None)
+    known = {one: place.y for one, place in found.items() if place is not None}
+    below = max((one for one in known if one < at), default=None)
+    above = min((one for one in known if one > at), default=None)
     if below is None or above is None:
         return None
-    low, high = found[below], found[above]
-    assert low is not None and high is not None
-    return low.y + (at - below) / (above - below) * (high.y - low.y)
+    return known[below] + (at - below) / (above - below) * (known[above] - known[below])
 
 
 def fold_between(equations: Equations, place: Place, length: float, tolerance: float = 1e-9) -> Place | None:
@@ -144,7 +143,9 @@ def fold_between(equations: Equations, place: Place, length: float, tolerance: f
 
     def turning(at: float) -> float:
         if at not in found:
-            other = step_from(equations, place, at, _between(found, at))
+            other = step_from(equations, place, at)
+            if other is None and (near := _between(found, at)) is not None:
+                other = step_from(equations, place, at, near)
             found[at] = None if other is None else oriented(other, place.tangent)
         there = found[at]
         if there is None:

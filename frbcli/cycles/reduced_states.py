@@ -59,7 +59,8 @@ def _components(machine: Machine, part: Part) -> Array:
     """(n, n) principal components of the motions in a plane, orthogonal with the mass, in falling order."""
     s, omega = _asked(machine, 0.0)
     moved = _moved(part, s, omega)
-    moved *= _weight(machine, s) / np.linalg.norm(moved, axis=1).max(axis=0)
+    sizes = np.linalg.norm(moved, axis=1).max(axis=0)
+    moved *= _weight(machine, s) / np.where(sizes > 0.0, sizes, 1.0)  # a rotor may have no unbalance
     columns = np.hstack([*moved.real, *moved.imag])
     root = np.linalg.cholesky(part.matrices[0].real)
     left, _, _ = np.linalg.svd(root.T @ columns, full_matrices=False)
