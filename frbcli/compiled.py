@@ -25,6 +25,8 @@ _IMPORTS = re.compile(r"^\s*from frbcli((?:\.\w+)*) import (\([^)]*\)|[^\n]*)", 
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+# Of numba.extending.overload, for functions chosen by the types of their arguments: what `compiled` has
+AS_KERNELS: Any = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 

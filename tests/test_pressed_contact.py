@@ -30,7 +30,7 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System, make_system
-from frbcli.solve.cell_films import BALANCE, EMPTY, LAW, OPEN, STAGE, cell_numbers, move_cells
+from frbcli.solve.cell_films import BALANCE, EMPTY, LAW, OPEN, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work
 from frbcli.solve.films import make_work
@@ -278,11 +278,10 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
     data: object = system.films
     work = make_work(data, np.zeros((4, 1, *w.shape)), 2)
     work.w[0], work.past[0], grid = w, past, work.grids[0]
-    grid[STAGE] = 1
     force, states, iteration = np.zeros(2), work.states[0], 0
     at = FilmMotion(felt[0], felt[1], 0.0, 0.0, 1700.0)
     for iteration in range(24):
-        force = np.array(cell_numbers(data, work, 0, at, g, iteration)[:2])  # type: ignore[arg-type]
+        force = np.array(cell_numbers(data, work, 0, at, g, 1, iteration)[:2])  # type: ignore[arg-type]
         if grid[BALANCE] != OPEN:
             return iteration, force, states[FRACTION]
         if leaps:

@@ -102,20 +102,20 @@ def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights:
 
 @compiled()
 def cell_numbers(
-    films: VolumeFilms, work: Any, f: int, motion: FilmMotion, g: float, iteration: int
+    films: VolumeFilms, work: Any, f: int, motion: FilmMotion, g: float, s: int, iteration: int
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
-    """film_numbers of films.py for a film with cells."""
+    """film_numbers of film_forces.py for a film with cells."""
     numbers, ring, width, cells = films.numbers[f], films.ring[f], films.width[f], films.cells[f]
     w, past, states, fields = work.w[f], work.past[f], work.states[f], work.fields[f]
-    stencil, grid, slopes = work.stencil, work.grids[f], work.slopes[f]
-    flows = work.stage_flows[int(grid[STAGE]), f]
+    stencil, grid, slopes, flows = work.stencil, work.grids[f], work.slopes[f], work.stage_flows[s, f]
+    grid[STAGE] = s
     d_x, d_y, v_x, v_y, omega = motion
     turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
-    c, s = math.cos(turn), math.sin(turn)
-    x, y = c * d_x + s * d_y, c * d_y - s * d_x
+    cosine, sine = math.cos(turn), math.sin(turn)
+    x, y = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
     grid[GRID_X], grid[GRID_Y] = x, y
     against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
-    v_f, v_g = c * against_x + s * against_y, c * against_y - s * against_x
+    v_f, v_g = cosine * against_x + sine * against_y, cosine * against_y - sine * against_x
     remembers = numbers[REMEMBERS] != 0.0
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         follow_law(numbers, d_x, d_y, v_x, v_y, omega, grid[LAW:])
@@ -133,7 +133,7 @@ def cell_numbers(
     left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (numbers[SETTLED] * pace)
     balanced = left < 1.0
     if balanced and remembers:
-        store_rates(ring, cells, states, x, y, g, past, fields, work.stage_oil[int(grid[STAGE]), f])
+        store_rates(ring, cells, states, x, y, g, past, fields, work.stage_oil[s, f])
     if balanced and iteration > 0 and grid[RATIO] < SLOW:
         grid[BALANCE] = HELD
         m, k = w.shape
@@ -158,18 +158,18 @@ def cell_numbers(
                 fields[i, j, 0], fields[i, j, 1] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
     xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
     # back from the grid's directions: Q^T B Q
-    a, b, p, q = c * xx - s * yx, c * xy - s * yy, s * xx + c * yx, s * xy + c * yy
+    a, b, p, q = cosine * xx - sine * yx, cosine * xy - sine * yy, sine * xx + cosine * yx, sine * xy + cosine * yy
     return (
-        c * f_x - s * f_y,
-        s * f_x + c * f_y,
+        cosine * f_x - sine * f_y,
+        sine * f_x + cosine * f_y,
         0.0,
         0.0,
         0.0,
         0.0,
-        a * c - b * s,
-        a * s + b * c,
-        p * c - q * s,
-        p * s + q * c,
+        a * cosine - b * sine,
+        a * sine + b * cosine,
+        p * cosine - q * sine,
+        p * sine + q * cosine,
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
-from frbcli.compiled import compiled
+from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.cells.data import REMEMBERS
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.solve.cell_films import (
@@ -94,7 +94,7 @@ def _one_of(films: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, 
     raise NotImplementedError
 
 
-@overload(_one_of)
+@overload(_one_of, jit_options=AS_KERNELS)
 def _first_or_later(films, f, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     if isinstance(films, types.UniTuple):
         return lambda films, f, d_x, d_y, v_x, v_y, omega: film_force(films[f], d_x, d_y, v_x, v_y, omega)
@@ -120,7 +120,7 @@ def _scaled(
     return f_x, f_y, k_xx, k_xy, k_yx, k_yy, scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy
 
 
-@overload(film_numbers, inline="always")
+@overload(film_numbers, jit_options=AS_KERNELS | {"forceinline": True}, strict=False)
 def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
     if have_scales(work):
         if isinstance(films, types.UniTuple):  # one call less per film solve: a tenth of the time of a tabulated film
@@ -149,14 +149,11 @@ def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-u
             films, f, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
 
-    def volumes(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
-        work.grids[f, STAGE] = s
-        return cell_numbers(films, work, f, motion, g, iteration)
-
-    return volumes
+    kernel: Any = cell_numbers  # itself, not called from here: what calls is optimised and turned to machine code, too
+    return kernel.py_func
 
 
-@overload(meet_channels)
+@overload(meet_channels, jit_options=AS_KERNELS)
 def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
     if not have_cells(films):
         return lambda films, work, x_0, u, omega, clearances, g, iteration: None
@@ -170,7 +167,7 @@ def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # typ
     return volumes
 
 
-@overload(join_films)
+@overload(join_films, jit_options=AS_KERNELS)
 def _join_films(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
     if not have_cells(films):
         return lambda films, work, clearances, force, follows_x, follows_y: None
@@ -182,7 +179,7 @@ def _join_films(films, work, clearances, force, follows_x, follows_y):  # type: 
     return volumes
 
 
-@overload(follow_channels)
+@overload(follow_channels, jit_options=AS_KERNELS)
 def _follow_channels(films, work, correction, share):  # type: ignore[no-untyped-def]
     if not have_cells(films):
         return lambda films, work, correction, share: None

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload
 
+from frbcli.compiled import AS_KERNELS
 from frbcli.film.cells.balances import FLOWS, SIDES
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import REMEMBERS, SLOT, VolumeFilms
@@ -164,7 +165,7 @@ def _most_iterations(films):  # type: ignore[no-untyped-def]
     return lambda films: most
 
 
-@overload(begin_stage)
+@overload(begin_stage, jit_options=AS_KERNELS)
 def _begin_stage(films, work, wet, flows, weights, s, step, g, ahead, lag):  # type: ignore[no-untyped-def]
     if have_elements(films):
         return begin_elements
@@ -194,7 +195,7 @@ def _begin_stage(films, work, wet, flows, weights, s, step, g, ahead, lag):  # t
     return volumes
 
 
-@overload(accept_films)
+@overload(accept_films, jit_options=AS_KERNELS)
 def _accept_films(films, work, wet, flows, weights, step):  # type: ignore[no-untyped-def]
     if have_elements(films):
         return accept_elements
@@ -226,7 +227,7 @@ def _accept_films(films, work, wet, flows, weights, step):  # type: ignore[no-un
     return volumes
 
 
-@overload(write_oil)
+@overload(write_oil, jit_options=AS_KERNELS)
 def _write_oil(films, work, out_oil, first, last):  # type: ignore[no-untyped-def]
     if have_elements(films):
         return write_element_oil

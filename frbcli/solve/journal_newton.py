@@ -9,8 +9,7 @@ import math
 from typing import Any
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.contact_gap import closes_freely_until, contact_gap
-from frbcli.solve.contact import push_back, shell_ahead, touches
+from frbcli.solve.contact import feel, push_back, shell_ahead
 from frbcli.solve.dense import solve_dense
 from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film, step_back
 from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FOLLOWS_X, FOLLOWS_Y, FORCE, OMEGA, U_0, X_0, FilmMotion, U, norm
@@ -20,24 +19,20 @@ CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction m
 
 
 @compiled()
-def _in_contact(
-    films: Any, work: Any, f: int, motion: FilmMotion, g: float, s: int, iteration: int, c: float, control: Control,
-    film: Array,
+def _store(
+    numbers: tuple[float, ...], felt: tuple[float, ...], motion: FilmMotion, g: float, turning: float, f: int,
+    c: float, control: Control, film: Array,
 ) -> None:  # fmt: skip
-    """FORCE, BY_X, BY_Y of a bearing in contact: the film at what it feels of the journal, and the elastic shell;
-    FOLLOWS_X, FOLLOWS_Y."""
-    x, y, contact_at = 2 * f, 2 * f + 1, control.contact_eccentricity
-    at_x, at_y, rate_x, rate_y, xx, yy, xy, turn_xx, turn_yy, turn_xy = contact_gap(
-        closes_freely_until(contact_at), motion.d_x, motion.d_y, motion.v_x, motion.v_y
+    """FORCE, BY_X, BY_Y, FOLLOWS_X, FOLLOWS_Y of film f by its ten numbers, see film_force, at what it feels of its
+    journal, see feel, with the push of an elastic shell."""
+    x, y = 2 * f, 2 * f + 1
+    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = numbers
+    _, _, _, _, xx, yy, xy, turn_xx, turn_yy, turn_xy = felt
+    s_x, s_y, s_xx, s_yy, s_xy = push_back(
+        motion.d_x, motion.d_y, c, control.contact_eccentricity, control.contact_stiffness
     )
-    if work.grids.shape[0] > 0:  # a film with cells has one derivative, of velocity and displacement together
-        turn_xx = turn_yy = turn_xy = 0.0
-    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(
-        films, work, f, FilmMotion(at_x, at_y, rate_x, rate_y, motion.omega), g, s, iteration
-    )
-    s_x, s_y, s_xx, s_yy, s_xy = push_back(motion.d_x, motion.d_y, c, contact_at, control.contact_stiffness)
     film[FORCE, x], film[FORCE, y] = f_x + s_x, f_y + s_y
-    rate_xx, rate_yy, rate_xy = xx + g * turn_xx, yy + g * turn_yy, xy + g * turn_xy
+    rate_xx, rate_yy, rate_xy = xx + turning * turn_xx, yy + turning * turn_yy, xy + turning * turn_xy
     film[BY_X, x] = (d_xx * rate_xx + d_xy * rate_xy + g * (k_xx * xx + k_xy * xy - s_xx)) / c
     film[BY_Y, x] = (d_xx * rate_xy + d_xy * rate_yy + g * (k_xx * xy + k_xy * yy - s_xy)) / c
     film[BY_X, y] = (d_yx * rate_xx + d_yy * rate_xy + g * (k_yx * xx + k_yy * xy - s_xy)) / c
@@ -78,19 +73,15 @@ def forces(
 ) -> None:
     """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
     meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
+    turning = 0.0 if work.grids.shape[0] > 0 else g  # a film with cells has one derivative, of velocity and place
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         d_x, d_y = (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c
         motion = FilmMotion(d_x, d_y, film[U, x] / c, film[U, y] / c, film[OMEGA, x])
-        if touches(norm(d_x, d_y), control.contact_eccentricity, control.contact_stiffness):
-            _in_contact(films, work, f, motion, g, s, iteration, c, control, film)
-            continue
-        f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_numbers(films, work, f, motion, g, s, iteration)
-        film[FORCE, x], film[FORCE, y] = f_x, f_y
-        film[BY_X, x], film[BY_Y, x] = (d_xx + g * k_xx) / c, (d_xy + g * k_xy) / c
-        film[BY_X, y], film[BY_Y, y] = (d_yx + g * k_yx) / c, (d_yy + g * k_yy) / c
-        film[FOLLOWS_X, x] = film[FOLLOWS_Y, y] = 1.0
-        film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = 0.0
+        felt = feel(d_x, d_y, motion.v_x, motion.v_y, control.contact_eccentricity, control.contact_stiffness)
+        at = FilmMotion(felt[0], felt[1], felt[2], felt[3], motion.omega)
+        numbers = film_numbers(films, work, f, at, g, s, iteration)
+        _store(numbers, felt, motion, g, turning, f, c, control, film)
     join_films(films, work, clearances, film[FORCE], film[FOLLOWS_X], film[FOLLOWS_Y])
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from frbcli.compiled import compiled
+from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.cells.side_flow import side_flow
 from frbcli.solve.cell_films import GRID_X, GRID_Y
 from frbcli.solve.element_films import LEFT
@@ -50,7 +50,7 @@ def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) ->
     raise NotImplementedError
 
 
-@overload(oil_leaving)
+@overload(oil_leaving, jit_options=AS_KERNELS)
 def _oil_leaving(films, work, flows, f, far_open):  # type: ignore[no-untyped-def]
     if have_elements(films):
         return lambda films, work, flows, f, far_open: flows[NOW, f, LEFT]

@@ -12,7 +12,7 @@ from typing import Any
 
 from numba.extending import overload
 
-from frbcli.compiled import compiled
+from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.bearing_model.film import BearingModelFilm, model_force
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.mean_fields.table import MeanFilm, mean_force
@@ -52,7 +52,7 @@ def _along_and_across(film: Any, eccentricity: float, w_r: float, w_t: float, om
     raise NotImplementedError
 
 
-@overload(_along_and_across)
+@overload(_along_and_across, jit_options=AS_KERNELS)
 def _of_a_kind(film, eccentricity, w_r, w_t, omega):  # type: ignore[no-untyped-def]
     return POLAR[film.instance_class]
 
@@ -62,7 +62,7 @@ def _in_frame(film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: 
     raise NotImplementedError
 
 
-@overload(_in_frame)
+@overload(_in_frame, jit_options=AS_KERNELS)
 def _by_kind(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
     if film.instance_class is BearingModelFilm:
         return lambda film, d_x, d_y, v_x, v_y, omega: model_force(film, d_x, d_y, v_x, v_y, omega)
