@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import Array, compiled
+from frbcli.film.hermite import hermite
 from frbcli.film.rectangles.table import DEPTH_STEP
 
 FIELDS = 3  # of w_r, of w_t, of the given pressures
@@ -45,11 +46,9 @@ def mean_force(
     x = -math.log(1.0 - eccentricity)
     cell = min(int(x / DEPTH_STEP), table.shape[0] - 2)
     a = x / DEPTH_STEP - cell
-    h0, h1 = (1 + 2 * a) * (1 - a) ** 2, a * a * (3 - 2 * a)
-    h2, h3 = DEPTH_STEP * a * (1 - a) ** 2, DEPTH_STEP * a * a * (a - 1)
+    (h0, h1, h2, h3), (s1, s2, s3) = hermite(a, DEPTH_STEP)
     scale = 1.0 / (1.0 - eccentricity)  # dx/deps
-    s1 = 6 * a * (1 - a) / DEPTH_STEP * scale
-    s2, s3 = (1 - a) * (1 - 3 * a) * scale, a * (3 * a - 2) * scale
+    s1, s2, s3 = s1 * scale, s2 * scale, s3 * scale
     given = max(0.0, 1.0 - film.drop * omega * omega)
     p, unit_r, unit_t, slope = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     sums = np.zeros((2, 4))  # along and across: force, by w_r, by w_t, by the eccentricity

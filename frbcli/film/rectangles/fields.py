@@ -14,6 +14,7 @@ import numpy as np
 
 from frbcli.compiled import compiled
 from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.hermite import hermite
 from frbcli.film.rectangles.clip import cut_element, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
 from frbcli.film.rectangles.table import DEPTH_STEP, eccentricity_axis, half_width_lines
@@ -65,11 +66,9 @@ def _line_fields(table: Array, eccentricity: float, line: int, unit: Array) -> N
     x = -math.log(1.0 - eccentricity)
     cell = min(int(x / DEPTH_STEP), table.shape[0] - 2)
     a = x / DEPTH_STEP - cell
-    h0, h1 = (1 + 2 * a) * (1 - a) ** 2, a * a * (3 - 2 * a)
-    h2, h3 = DEPTH_STEP * a * (1 - a) ** 2, DEPTH_STEP * a * a * (a - 1)
+    (h0, h1, h2, h3), (d1, d2, d3) = hermite(a, DEPTH_STEP)
     scale = 1.0 / (1.0 - eccentricity)  # dx/deps
-    d1 = 6 * a * (1 - a) / DEPTH_STEP * scale
-    d2, d3 = (1 - a) * (1 - 3 * a) * scale, a * (3 * a - 2) * scale
+    d1, d2, d3 = d1 * scale, d2 * scale, d3 * scale
     for f in range(2):
         low, high = table[cell, f, line], table[cell + 1, f, line]
         low_x, high_x = table[cell, 2 + f, line], table[cell + 1, 2 + f, line]

@@ -16,6 +16,7 @@ import numpy as np
 from frbcli.compiled import compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.hermite import Slopes, Values, hermite
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
 
@@ -175,15 +176,8 @@ def table_force(
     i, j = min(int(a), n - 2), min(int(b), directions - 2)
     a -= i
     b -= j
-    # Hermite's four polynomials in each direction and their slopes
-    along_x = (
-        (1 + 2 * a) * (1 - a) ** 2, a * a * (3 - 2 * a), DEPTH_STEP * a * (1 - a) ** 2, DEPTH_STEP * a * a * (a - 1),
-    )  # fmt: skip
-    slope_x = (6 * a * (1 - a) / DEPTH_STEP, (1 - a) * (1 - 3 * a), a * (3 * a - 2))
-    along_psi = (
-        (1 + 2 * b) * (1 - b) ** 2, b * b * (3 - 2 * b), step_psi * b * (1 - b) ** 2, step_psi * b * b * (b - 1),
-    )  # fmt: skip
-    slope_psi = (6 * b * (1 - b) / step_psi, (1 - b) * (1 - 3 * b), b * (3 * b - 2))
+    along_x, slope_x = hermite(a, DEPTH_STEP)
+    along_psi, slope_psi = hermite(b, step_psi)
     mirror = -1.0 if w_t < 0.0 else 1.0
     g_r, x_r, p_r = _hermite(table, i, j, 0, along_x, slope_x, along_psi, slope_psi)
     g_t, x_t, p_t = _hermite(table, i, j, 1, along_x, slope_x, along_psi, slope_psi)
@@ -204,9 +198,7 @@ def table_force(
 
 @compiled()
 def _hermite(
-    table: Array, i: int, j: int, c: int, along_x: tuple[float, float, float, float],
-    slope_x: tuple[float, float, float], along_psi: tuple[float, float, float, float],
-    slope_psi: tuple[float, float, float],
+    table: Array, i: int, j: int, c: int, along_x: Values, slope_x: Slopes, along_psi: Values, slope_psi: Slopes,
 ) -> tuple[float, float, float]:  # fmt: skip
     """Value, derivative by x and by psi of component c in the cell (i, j); polynomials and their slopes."""
     a0, a1, a2, a3 = along_x
@@ -225,8 +217,7 @@ def _hermite(
 
 @compiled()
 def _along_psi(
-    table: Array, i: int, j: int, c: int, entry: int, along_psi: tuple[float, float, float, float],
-    slope_psi: tuple[float, float, float],
+    table: Array, i: int, j: int, c: int, entry: int, along_psi: Values, slope_psi: Slopes,
 ) -> tuple[float, float]:  # fmt: skip
     """An entry of the table, 0: value, 1: its derivative by x, in line i between j and j + 1, and its slope."""
     b0, b1, b2, b3 = along_psi
