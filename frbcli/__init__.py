@@ -26,8 +26,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.case.schema import remove_law as remove_law
     from frbcli.case.shipped import shipped_cases as shipped_cases
     from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
+    from frbcli.cycles.maps.stability_map import stability_map as stability_map
     from frbcli.cycles.over_key import limit_cycles_over as limit_cycles_over
-    from frbcli.cycles.stability_map import stability_map as stability_map
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
     from frbcli.errors import InputError as InputError
@@ -111,7 +111,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "runup": "frbcli.runs.run",
     "shipped_cases": "frbcli.case.shipped",
     "sommerfeld_chart": "frbcli.linear.bearing_sheet",
-    "stability_map": "frbcli.cycles.stability_map",
+    "stability_map": "frbcli.cycles.maps.stability_map",
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from frbcli.cycles.period_map import SAMPLES, Passage, Wet
+from frbcli.cycles.shooting.period_map import SAMPLES, Passage, Wet
 
 Array = np.ndarray
 NO_OIL = np.zeros((1, 1, 1))

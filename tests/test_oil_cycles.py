@@ -11,11 +11,11 @@ import pytest
 
 import frbcli
 from frbcli.cli.main import run
-from frbcli.cycles.oil_rest import settled
-from frbcli.cycles.period_map import SAMPLES, PeriodMap, Wet, period_map, turned_back
 from frbcli.cycles.result import LimitCycles
-from frbcli.cycles.shooting import Conditions, SlowSpace, fixed_point, ritz, slow_space
-from frbcli.cycles.shot_branch import Shooting, largest
+from frbcli.cycles.shooting.fixed_point import Conditions, SlowSpace, fixed_point, ritz, slow_space
+from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, Wet, period_map, turned_back
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting, largest
 from frbcli.linear.resting import resting_position
 
 FED = ('bearing.supply.pressure="2 bar"', "speed.from=74 Hz", "speed.to=84 Hz")

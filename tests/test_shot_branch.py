@@ -11,9 +11,10 @@ from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
 from frbcli.cycles.films import smooth_films
 from frbcli.cycles.floquet import Multipliers
-from frbcli.cycles.oil_rest import Threshold, located, thresholds
-from frbcli.cycles.shooting import SlowSpace
-from frbcli.cycles.shot_branch import AT_REST_DIFFERENCE, Shooting, Shot, _multipliers, follow_shots
+from frbcli.cycles.shooting.branch import follow_shots
+from frbcli.cycles.shooting.fixed_point import SlowSpace
+from frbcli.cycles.shooting.rest import Threshold, located, thresholds
+from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, Shooting, Shot, multipliers_of
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
@@ -98,7 +99,7 @@ def test_a_multiplier_beside_the_trivial_one_is_told_by_the_sum_of_both() -> Non
     wrong = exact + 2e-3 * np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     assert np.abs(np.linalg.eigvals(wrong).imag).max() > 0.03
     for matrix in (exact, wrong):
-        found = _multipliers(SlowSpace(np.eye(3), matrix, np.zeros((3, 2))), np.array([1.0, 0.0, 0.0]))
+        found = multipliers_of(SlowSpace(np.eye(3), matrix, np.zeros((3, 2))), np.array([1.0, 0.0, 0.0]))
         np.testing.assert_allclose(found.values, [1.0, 1.03, 0.5], atol=1e-9)
         assert found.unstable == 1
 

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 import frbcli
 from frbcli.case.load import load_case_text
 from frbcli.cli.main import run
-from frbcli.cycles.stability_map import Across, StabilityMap
+from frbcli.cycles.maps.stability_map import Across, StabilityMap
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
 

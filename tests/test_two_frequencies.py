@@ -12,12 +12,12 @@ from test_limit_cycles import machine_of, ring_case
 
 import frbcli
 from frbcli.case.load import load_case_text
-from frbcli.cycles import two_frequencies
 from frbcli.cycles.balance import unpacked
 from frbcli.cycles.machine import Loads, Machine, film_loads, transfer, unbalance_motion
 from frbcli.cycles.result import CyclePoint, UnbalancedWhirl
-from frbcli.cycles.two_frequencies import Torus, fitted, of_cycle, samples, solved, with_unbalance
-from frbcli.cycles.with_unbalance import motion_of
+from frbcli.cycles.unbalance import two_frequencies
+from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, solved, with_unbalance
+from frbcli.cycles.unbalance.whirls import motion_of
 
 SHORT = "film.theory=short"
 

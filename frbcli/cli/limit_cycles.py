@@ -21,8 +21,8 @@ from frbcli.cli.runs import OUTPUT, here
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
+    from frbcli.cycles.maps.stability_map import MapPoint, StabilityMap
     from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint, SpectralLine, UnbalancedWhirl
-    from frbcli.cycles.stability_map import MapPoint, StabilityMap
     from frbcli.plot.run_track import RunTrack
 
 ASKED = "asked"
@@ -146,7 +146,7 @@ def _map(
 
     files: picture and table.
     """
-    from frbcli.cycles.stability_map import Across, stability_map
+    from frbcli.cycles.maps.stability_map import Across, stability_map
     from frbcli.scene.films import film_places
 
     picture, csv = files

@@ -14,10 +14,10 @@ from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
 from frbcli.cycles.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.faults import check, check_unbalance, keeps_oil
 from frbcli.cycles.machine import make_machine
-from frbcli.cycles.oil_cycles import limit_cycles_with_oil
 from frbcli.cycles.result import SPEED, LimitCycles, hertz
-from frbcli.cycles.synchronous import synchronous_response
-from frbcli.cycles.with_unbalance import whirls_with_unbalance
+from frbcli.cycles.shooting.diagram import limit_cycles_with_oil
+from frbcli.cycles.unbalance.synchronous import synchronous_response
+from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised

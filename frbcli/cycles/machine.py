@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.film_samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
 from frbcli.cycles.films import smooth_films
-from frbcli.cycles.planes import Part, parts_of
+from frbcli.cycles.rotor_parts import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.linear import LinearRotor
@@ -50,7 +50,7 @@ class Machine:
     shares of the speeds of rotor and rings in omega_J + omega_S and omega_J - omega_S; bodies: see System; drags: (F,)
     N m s; moment: 1 if the moments of the film forces turn the rings, else 0; inertia: (R,) s, of the rings over the
     Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
-    rotor as transfer takes it, see planes.py.
+    rotor as transfer takes it, see rotor_parts.py.
     """
 
     rotor: LinearRotor

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine
-from frbcli.cycles.planes import Part
+from frbcli.cycles.rotor_parts import Part
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.cycles.continuation import Unreachable
-from frbcli.cycles.period_map import wet_at
-from frbcli.cycles.shot_branch import PLACES, Rest, Shooting
+from frbcli.cycles.shooting.period_map import wet_at
+from frbcli.cycles.shooting.shots import PLACES, Rest, Shooting
 from frbcli.errors import NotConverged
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor

@@ -1,8 +1,8 @@
-"""Limit cycles of machines whose films keep their oil: found by shooting, and followed by their arc length in speed.
+"""Limit cycles and resting positions of machines whose films keep their oil, found by shooting.
 
 A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
 the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on
-the branch by the plane across the direction of the last step.
+a branch by the plane across the direction of the last step (branch.py).
 
 Cells that turn with the oil hardly move against a whirl of half the speed: a cycle depends a little on how they lie at
 its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore told as the mean of
@@ -11,40 +11,36 @@ those with cells in several places; how far these lie apart is part of the error
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import ASKED, AT_REST, FLIP, FOLD, LEFT, TORUS
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.floquet import Multipliers
-from frbcli.cycles.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
 from frbcli.cycles.result import hertz
-from frbcli.cycles.shooting import DIFFERENCE, Conditions, SlowSpace, direction_along, fixed_point, ritz, slow_space
+from frbcli.cycles.shooting.fixed_point import (
+    DIFFERENCE,
+    Conditions,
+    SlowSpace,
+    direction_along,
+    fixed_point,
+    ritz,
+    slow_space,
+)
+from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-FIRST, SHORTEST, LONGEST = 0.05, 1e-3, 0.1  # steps along a branch
-MOST_POINTS = 150
-# Growth of a step where directions differ by little, what is left of it where they differ by much; by most.
-LONGER, STRAIGHT, SHORTER, BENT, SHARPEST = 1.5, 0.98, 0.7, 0.95, 0.85
 PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
-SMALL = 0.02  # amplitude over the clearance below which a branch has come back to rest
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3
 REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
 AT_REST_DIFFERENCE = 2e-2  # by which states are disturbed at rest: the kinks blur less, and the gap is wide
 DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are told apart by their sum
 WIDE = 0.2  # smallest gap from which on disturbances have their full size
-# A branch that turns back has a fold if its speed differs by so many times what it differs by between places of the
-# cells, of which at least so much is taken, relative.
-CLEAR, BLUR = 2.0, 2e-4
-REFINED = 6  # evaluations that locate a special point
 
 
 @dataclass(frozen=True)
@@ -236,7 +232,7 @@ class Shooting:
         tangent = direction_along(space, phase, shot.tangent)
         others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in PLACES)
         return Shot(
-            x, p, wet, passage.displacements, space, tangent, _multipliers(space, phase), shot.steps,
+            x, p, wet, passage.displacements, space, tangent, multipliers_of(space, phase), shot.steps,
             tuple(each for each in others if each is not None),
         )  # fmt: skip
 
@@ -299,8 +295,10 @@ def largest(displacements: Array) -> Array:
     return np.asarray(here + (after - before) ** 2 / (8.0 * bend))
 
 
-def _multipliers(space: SlowSpace, phase: Array) -> Multipliers:
-    """Next to a fold two multipliers are 1, with one disturbance for both, and an error enters each with its root: the
+def multipliers_of(space: SlowSpace, phase: Array) -> Multipliers:
+    """The multipliers of a cycle, the trivial one first. phase: (N,) unit direction in which its state moves in time.
+
+    Next to a fold two multipliers are 1, with one disturbance for both, and an error enters each with its root: the
     other one is then what their sum, which has the error itself, is beyond the trivial one."""
     values, states = ritz(space)
     near = np.abs(values - 1.0) < 0.2
@@ -316,117 +314,3 @@ def _multipliers(space: SlowSpace, phase: Array) -> Multipliers:
         first, others[second] = 1.0, (first + others[second]).real - 1.0
     others = others[np.argsort(-np.abs(others), kind="stable")]
     return Multipliers(np.concatenate([[first], others]), defect)
-
-
-def follow_shots(
-    shooting: Shooting,
-    start: Shot,
-    speeds: tuple[float, float],
-    asked: Sequence[float] = (),
-    observe: Callable[[Shot], None] | None = None,
-) -> tuple[tuple[Shot, ...], str]:
-    """The cycles of a branch from one on, special ones among them, and why it ends. speeds: lowest and highest, and
-    asked: those at which cycles are computed exactly, in rad/s."""
-    shots, length, along = [start], FIRST, start.tangent
-    limit = shooting.flow.control.contact_eccentricity
-    lowest, highest = (math.log(speed / shooting.unit) for speed in speeds)
-    while len(shots) < MOST_POINTS:
-        shot = shots[-1]
-        found = _next(shooting, shot, length, along)
-        while found is None and length > SHORTEST:
-            length *= 0.5
-            found = _next(shooting, shot, length, along)
-        if found is None:
-            note = f"It could not be followed beyond {shooting.speed_Hz(shot):.4g} Hz: the steps became too short."
-            return with_folds(shooting, shots), note
-        if observe is not None:
-            observe(found)
-        if not lowest <= found.p[1] <= highest:
-            limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
-            end = shooting.at_speed(shot, found, limit_speed)
-            return with_folds(shooting, [*shots, *([] if end is None else [end])]), LEFT
-        shots += [*special_shots(shooting, shot, found, asked), found]
-        if found.amplitude < SMALL:
-            return with_folds(shooting, shots), AT_REST
-        if found.eccentricity_max.max() > limit:
-            return with_folds(shooting, shots), f"The journal meets its shell, at an eccentricity of {limit}."
-        before, along = along, shooting.direction(shot, found)
-        straight = float(before @ along)
-        if straight > STRAIGHT:
-            length = min(LONGER * length, LONGEST)
-        elif straight < BENT:
-            length *= SHORTER
-    return with_folds(shooting, shots), f"It was followed over {MOST_POINTS} cycles and goes on."
-
-
-def with_folds(shooting: Shooting, shots: Sequence[Shot]) -> tuple[Shot, ...]:
-    """The cycles of a branch with its folds: where its speed turns back by more than places of the cells differ in."""
-    speeds = np.array([float(shot.mean_p[1]) for shot in shots])
-    blur = np.array([float(shot.blur[1]) for shot in shots])
-    found = list(shots)
-    side, extreme = 0, 0  # which way the speed goes, and where it went furthest
-    for i in range(1, len(shots)):
-        gone = speeds[i] - speeds[extreme]
-        if side == 0 or side * gone >= 0.0:
-            clear = side != 0 or abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR)
-            side, extreme = (int(np.sign(gone)), i) if clear else (side, extreme)
-        elif abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR):
-            found[extreme] = _fold(shooting, shots[max(extreme - 1, 0) : extreme + 2], shots[extreme], side)
-            side, extreme = -side, i
-    return tuple(found)
-
-
-def _fold(shooting: Shooting, around: Sequence[Shot], furthest: Shot, side: int) -> Shot:
-    """The cycle of a few that follow each other at which the branch turns back by its tangents, else the one that went
-    furthest; side: 1 if its speed rises before, -1 if it falls."""
-    for one, after in itertools.pairwise(around):
-        if one.tangent[-1] * after.tangent[-1] < 0.0:
-            there = _located(shooting, one, after, lambda shot: float(shot.tangent[-1]))
-            furthest = max(furthest, there, key=lambda shot: side * float(shot.mean_p[1]))
-            break
-    return replace(furthest, kind=FOLD)
-
-
-def special_shots(shooting: Shooting, shot: Shot, after: Shot, asked: Sequence[float]) -> list[Shot]:
-    """Flips, torus points and cycles at speeds asked for within a step."""
-    found: list[Shot] = []
-    change = abs(after.multipliers.unstable - shot.multipliers.unstable)
-    worse = max(shot, after, key=lambda one: one.multipliers.unstable)
-    outside = worse.multipliers.others[: worse.multipliers.unstable]
-    turning = bool(len(outside)) and abs(outside[-1].imag) > 0.05 * abs(outside[-1])
-    if change > 0 and (turning or (bool(len(outside)) and outside[-1].real < 0.0)):
-        few = shot.multipliers.unstable
-        there = _located(shooting, shot, after, lambda one: 0.5 - float(one.multipliers.unstable != few))
-        found.append(replace(there, kind=TORUS if turning else FLIP))
-    for speed in asked:
-        if min(shot.p[1], after.p[1]) < math.log(speed / shooting.unit) <= max(shot.p[1], after.p[1]):
-            there_too = shooting.at_speed(shot, after, speed)
-            found += [] if there_too is None else [replace(there_too, kind=ASKED)]
-    return sorted(found, key=lambda one: abs(one.p[1] - shot.p[1]))
-
-
-def _next(shooting: Shooting, shot: Shot, length: float, along: Array) -> Shot | None:
-    found = shooting.stepped(shot, length, along)
-    return None if found is None or shooting.direction(shot, found) @ along < SHARPEST else found
-
-
-def _located(shooting: Shooting, shot: Shot, after: Shot, told: Callable[[Shot], float]) -> Shot:
-    """The cycle within a step at which a number changes its sign: between the ends by halves of the straight line."""
-    along = shooting.direction(shot, after)
-    length = float(along @ np.concatenate([after.x - shot.x, after.p - shot.p]))
-    low, high, at_low, at_high = 0.0, length, told(shot), told(after)
-    best = shot if abs(at_low) < abs(at_high) else after
-    for _ in range(REFINED):
-        share = min(max(at_low / (at_low - at_high), 0.1), 0.9)
-        middle = low + share * (high - low)
-        there = shooting.stepped(shot, middle, along)
-        if there is None:
-            break
-        value = told(there)
-        if abs(value) <= abs(told(best)):
-            best = there
-        if value * at_low > 0.0:
-            low, at_low = middle, value
-        else:
-            high, at_high = middle, value
-    return best

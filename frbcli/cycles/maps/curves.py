@@ -1,4 +1,4 @@
-"""Curves of Hopf points and of folds in a plane of two numbers, see map_planes.py.
+"""Curves of Hopf points and of folds in a plane of two numbers, see planes.py.
 
 Both are curves of solutions as in continuation.py, with one equation more than the resting positions or the cycles
 that lie on them. That a matrix A is singular is asked by g = 0 of
@@ -34,7 +34,7 @@ from frbcli.cycles.continuation import (
 )
 from frbcli.cycles.equilibria import equations as resting_equations
 from frbcli.cycles.machine import film_loads, transfer
-from frbcli.cycles.map_planes import Plane
+from frbcli.cycles.maps.planes import Plane
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -12,8 +12,6 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import AT_REST, FLIP, FOLD, HOPF, TORUS
 from frbcli.cycles.diagram import SAME, Observer
-from frbcli.cycles.oil_rest import Threshold, resting, thresholds
-from frbcli.cycles.period_map import SAMPLES, period_map
 from frbcli.cycles.result import (
     SPEED,
     SUBCRITICAL,
@@ -26,7 +24,10 @@ from frbcli.cycles.result import (
     SpecialPoint,
     hertz,
 )
-from frbcli.cycles.shot_branch import PLACES, Rest, Shooting, Shot, follow_shots
+from frbcli.cycles.shooting.branch import follow_shots
+from frbcli.cycles.shooting.period_map import SAMPLES, period_map
+from frbcli.cycles.shooting.rest import Threshold, resting, thresholds
+from frbcli.cycles.shooting.shots import PLACES, Rest, Shooting, Shot
 from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair

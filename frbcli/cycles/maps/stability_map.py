@@ -20,8 +20,7 @@ from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
 from frbcli.cycles.equilibria import hopf_at, settled
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
-from frbcli.cycles.map_planes import KeyPlane, Plane, SpeedPlane
-from frbcli.cycles.plane_curves import (
+from frbcli.cycles.maps.curves import (
     MOST_HARMONICS,
     fitted_fold,
     fold_equations,
@@ -29,6 +28,7 @@ from frbcli.cycles.plane_curves import (
     hopf_equations,
     with_harmonics,
 )
+from frbcli.cycles.maps.planes import KeyPlane, Plane, SpeedPlane
 from frbcli.cycles.result import SPEED, SpecialPoint, hertz
 from frbcli.errors import Fault, InputError, NotConverged
 

@@ -17,7 +17,7 @@ from frbcli.cycles.balance import Balance, packed, unpacked
 from frbcli.cycles.branch import Cycle, largest
 from frbcli.cycles.continuation import Equations, Place, Unreachable, corrected, oriented
 from frbcli.cycles.machine import Machine
-from frbcli.cycles.synchronous import Synchronous, driven_motion
+from frbcli.cycles.unbalance.synchronous import Synchronous, driven_motion
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from frbcli.cycles.balance import motion_along, unpacked
 from frbcli.cycles.branch import ASKED, MOMENTS, Cycle
 from frbcli.cycles.continuation import Unreachable
-from frbcli.cycles.locked import locked_near, locked_whirl
 from frbcli.cycles.machine import Machine
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, SpectralLine, UnbalancedWhirl, hertz
-from frbcli.cycles.two_frequencies import Torus, fitted, of_cycle, samples, with_unbalance
+from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
+from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, with_unbalance
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -1,0 +1,1 @@
+"""Stability maps: curves of Hopf points and folds over two numbers."""
