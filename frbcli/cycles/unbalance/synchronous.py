@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.cycles.balance import Balance, packed, unpacked
 from frbcli.cycles.branch import FIRST_HARMONICS, Branch, Follower, follow_branch
-from frbcli.cycles.continuation import Equations, Place, corrected, oriented
+from frbcli.cycles.continuation import Equations, Place, corrected, oriented, unit_vector
 from frbcli.cycles.equilibria import Equilibrium
 from frbcli.cycles.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
 from frbcli.cycles.machine import Machine, unbalance_motion
@@ -22,6 +22,7 @@ from frbcli.cycles.machine import Machine, unbalance_motion
 Array = NDArray[np.float64]
 
 DIFFERENCE = 1e-6  # of the pace
+WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not the synchronous one
 
 
 class Synchronous(Follower):
@@ -66,8 +67,7 @@ def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float)
     motion[0] = resting.u
     share = resting.omega / machine.pace
     guess = np.concatenate([packed(motion), [share, share]])
-    along = np.zeros(len(guess))
-    along[-1] = -1.0
+    along = -unit_vector(len(guess))
     start = corrected(follower.equations(Place(guess, along)), guess, along)
     if start is None:
         return None
