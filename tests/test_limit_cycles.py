@@ -231,8 +231,10 @@ class Unjudged(FoldFollower):
 
 def test_multipliers_of_a_long_shaft_are_those_of_all_its_states() -> None:
     """turbocharger-heavy with 30 modes in each plane: the states that its films see tell the same multipliers, the
-    trivial one and those outside of the unit circle, to far below what the harmonics leave of the trivial one; of few
-    modes all are kept."""
+    trivial one and those outside of the unit circle; of few modes all are kept.
+
+    That holds to 2e-7 on cycles that have the harmonics they need. The last one here lacks some (a diagram gives it
+    more until its trivial multiplier is 1), and that is off by 7e-3: the reduction adds a thousandth of it."""
     case = tomllib.loads(turbocharger().source_text)
     case["rotor"]["modes"] = 30
     machine = machine_of(long := frbcli.case_from_dict(case))
@@ -243,12 +245,15 @@ def test_multipliers_of_a_long_shaft_are_those_of_all_its_states() -> None:
     follow_branch(follower, first_place(machine, hopf), cycles.append, until=lambda _: len(cycles) == 16)
     full, less = state_space(machine), reduced_space(machine)
     assert len(less.still) < 0.5 * len(full.still)
+    defects = []
     for cycle in cycles[3::6]:
         all_, few = (multipliers(machine, space, cycle.y).values for space in (full, less))
-        left = 1e-3 * abs(all_[0] - 1.0)
-        assert abs(few[0] - all_[0]) < max(1e-7, left)
-        np.testing.assert_allclose(few[:12], all_[:12], atol=max(1e-6, left))
+        defects.append(abs(all_[0] - 1.0))
+        resolved = defects[-1] < 1e-4
+        assert abs(few[0] - all_[0]) < (1e-7 if resolved else 1e-3 * defects[-1])
+        np.testing.assert_allclose(few[:12], all_[:12], rtol=0.0, atol=2e-7 if resolved else 1e-3 * defects[-1])
         assert np.abs(few).max() > 1.0
+    assert max(defects[:2]) < 1e-4
     small = machine_of(turbocharger())
     np.testing.assert_array_equal(reduced_space(small).still, state_space(small).still)
 
@@ -479,11 +484,22 @@ def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ign
 
 def test_where_a_branch_turns_back_it_has_a_fold() -> None:
     """Floating ring in short films: the whirl of the inner film turns back near 151 Hz, in a step on which Newton's
-    method does not converge from everywhere."""
+    method does not converge from everywhere. At a fold a second multiplier is 1: it passes from above 1 to below, from
+    unstable cycles to stable ones, while that of the cycles beside it is off by 3e-3 and 4e-3."""
     found = frbcli.limit_cycles(load_case_text(ring_case().source_text, ["speed.to=170.4 Hz"], "ring"))
     (branch,) = found.branches
     speeds = np.array([point.speed_Hz for point in branch.points])
     assert np.count_nonzero(np.diff(np.sign(np.diff(speeds)))) == 1
     (fold,) = found.of("fold")
     assert fold.speed_Hz == speeds.min()
-    assert fold.speed_Hz == pytest.approx(150.93, abs=0.01)
+    at = speeds.argmin()
+    before, here, after = branch.points[at - 1 : at + 2]
+    others = [point.multipliers[1:] for point in (before, here, after)]
+    second = [each[np.argmin(np.abs(each - 1.0))].real for each in others]
+    assert here.kind == "fold"
+    assert abs(here.multipliers[0] - 1.0) < 2e-4
+    assert abs(second[1] - 1.0) < 2e-4
+    assert second[0] > 1.002
+    assert second[2] < 0.998
+    assert not before.stable
+    assert after.stable
