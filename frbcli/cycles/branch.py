@@ -222,6 +222,7 @@ class FoldFollower(Follower):
     tail_of_folds = 1e-2
 
     def multipliers(self, _place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
+        """The trivial one alone, (1,), with no defect: none are computed."""
         return Multipliers(np.ones(1, dtype=complex), 0.0)
 
 

@@ -34,6 +34,7 @@ class Synchronous(Follower):
     share = 1.0
 
     def equations(self, place: Place) -> Equations:
+        """Those of the motions about a place: residual (n,), n = c (2 H + 1) + 1, the last of periods nu = Omega."""
         machine, harmonics, periods = self.machine, (len(place.y) - 2) // self.machine.size // 2, self.periods
         balance = Balance(machine, unpacked(place.y[:-2], machine.size))
 
