@@ -52,7 +52,8 @@ def follow_shots(
         if not lowest <= found.p[1] <= highest:
             limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
             end = shooting.at_speed(shot, found, limit_speed)
-            return with_folds(shooting, [*shots, *([] if end is None else [end])]), LEFT
+            shots += [] if end is None else [*special_shots(shooting, shot, end, asked), end]
+            return with_folds(shooting, shots), LEFT
         shots += [*special_shots(shooting, shot, found, asked), found]
         if found.amplitude < SMALL:
             return with_folds(shooting, shots), AT_REST
