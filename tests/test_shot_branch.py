@@ -58,6 +58,24 @@ def test_flips_and_torus_points_are_named_and_located(twisted: bool, kind: str, 
         assert shot.multipliers.unstable == (unstable if abs(expected) > 1.005 else 0)
 
 
+def test_a_speed_asked_for_in_the_last_step_has_its_cycle() -> None:
+    """At 1.499 of a range to 1.5, which the last step leaves: the amplitude there is 0.5 sqrt(speed - 1)."""
+    flow = round_cycles(lambda _: (-0.2, -0.4), 0.3, True)
+    shooting = Shooting(flow, 1.5)  # type: ignore[arg-type]
+    rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in (0.9, 1.1)]
+    assert rests[0] is not None
+    assert rests[1] is not None
+    hopf = located(shooting, rests[0], rests[1])
+    first = shooting.from_rest(hopf.rest, hopf.number, 0.1)
+    assert first is not None
+    shots, note = follow_shots(shooting, first, (0.9, 1.5), [1.499])
+    assert note == "It leaves the range."
+    (asked,) = [shot for shot in shots if shot.kind == "asked"]
+    assert shots[-2] is asked
+    assert 1.5 * math.exp(asked.p[1]) == pytest.approx(1.499, rel=1e-9)
+    assert asked.eccentricity_max[0] == pytest.approx(0.5 * math.sqrt(0.499), rel=1e-6)
+
+
 def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:
     """The second motion grows from the speed 1.3 on, the first from 1 on."""
     flow = round_cycles(lambda speed: (speed - 1.3, speed - 1.3), 0.3, False)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_limit_cycles import machine_of, ring_case
+from cycle_machines import machine_of, ring_case
 
 import frbcli
 from frbcli.case.load import load_case_text

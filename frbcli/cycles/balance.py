@@ -53,7 +53,7 @@ class Balance:
         loads, rate = loads_along(machine, motion, nu, omega)
         values, slope = _harmonics(loads.values, h), _derivative(loads, h, nu)
         inner = values + kappa * motion
-        out = motion - _through(passing.values, inner)
+        out = motion - through(passing.values, inner)
         out[0] -= machine.rest
         slope[np.arange(h + 1), :, h + np.arange(h + 1), :] += kappa[:, :, None] * np.eye(c)
         by_motion = -np.einsum("kij,kjlm->kilm", passing.values, slope)
@@ -62,12 +62,12 @@ class Balance:
             _harmonics(np.einsum("nij,nj->ni", loads.by_v, rate), h)
             + added * orders * passing.kappa_by_frequency * motion
         )
-        by_nu = -orders * _through(passing.by_frequency, inner) - _through(passing.values, with_nu)
+        by_nu = -orders * through(passing.by_frequency, inner) - through(passing.values, with_nu)
         if self.omega is None:
-            last = -_through(passing.by_speed, inner) - _through(passing.values, _harmonics(loads.by_speed, h))
+            last = -through(passing.by_speed, inner) - through(passing.values, _harmonics(loads.by_speed, h))
             last *= machine.pace
         else:
-            last = _through(passing.values, (np.arange(c) < 2 * machine.film_count) * passing.kappa * motion)
+            last = through(passing.values, (np.arange(c) < 2 * machine.film_count) * passing.kappa * motion)
         n = c * (2 * h + 1)
         residual, jacobian = np.empty(n + 1), np.zeros((n + 1, n + 2))
         residual[:n], jacobian[:n, :n] = packed(out), _real(by_motion)
@@ -130,7 +130,7 @@ def left_out(machine: Machine, y: Array) -> float:
     motion = unpacked(y[:-2], c)
     loads, _ = loads_along(machine, motion, nu, omega)
     beyond = transfer(machine, nu * np.arange(h + 1.0, h + 5.0), omega).values
-    return float(np.abs(_through(beyond, _harmonics(loads.values, h + 4)[h + 1 :])).max())
+    return float(np.abs(through(beyond, _harmonics(loads.values, h + 4)[h + 1 :])).max())
 
 
 def _harmonics(samples: Array, h: int) -> Complex:
@@ -138,8 +138,8 @@ def _harmonics(samples: Array, h: int) -> Complex:
     return np.asarray(np.fft.rfft(samples, axis=0)[: h + 1] / len(samples))
 
 
-def _through(passing: Complex, harmonics: Complex) -> Complex:
-    """(H + 1, c)."""
+def through(passing: Complex, harmonics: Complex) -> Complex:
+    """(m, c) motions that loads with harmonics (m, c) make, each through its own matrix of passing (m, c, c)."""
     return np.asarray(np.einsum("kij,kj->ki", passing, harmonics))
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,11 @@ from frbcli.cycles.continuation import (
     Unreachable,
     corrected,
     fold_between,
+    halved_until,
     next_length,
     oriented,
     step_from,
+    unit_vector,
 )
 from frbcli.cycles.equilibria import HopfPoint
 from frbcli.cycles.floquet import HELPS, TRIVIAL, Multipliers, multipliers
@@ -147,8 +149,7 @@ class Follower:
 
     def entered(self, y: Array, last: float) -> Place | None:
         """The cycle y with the last unknown `last` as a place of the branch, which rises in it; None if it is none."""
-        along = np.zeros(len(y))
-        along[-1] = 1.0
+        along = unit_vector(len(y))
         there = np.append(y[:-1], last)
         return corrected(self.equations(Place(there, along)), there, along)
 
@@ -221,6 +222,7 @@ class FoldFollower(Follower):
     tail_of_folds = 1e-2
 
     def multipliers(self, _place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
+        """The trivial one alone, (1,), with no defect: none are computed."""
         return Multipliers(np.ones(1, dtype=complex), 0.0)
 
 
@@ -238,10 +240,7 @@ def follow_branch(
     cycles: list[Cycle] = []
     note = ""
     for _ in range(strides.points):
-        found = follower.stepped(place, length)
-        while found is None and length > strides.shortest:
-            length *= 0.5
-            found = follower.stepped(place, length)
+        found, length = halved_until(partial(follower.stepped, place), length, strides.shortest)
         if found is None:
             note = _why_not(follower, place)
             break
@@ -309,8 +308,12 @@ def eccentricities(machine: Machine, y: Array) -> Array:
     """(F,) largest eccentricity of each film on the cycle y."""
     motion = unpacked(y[:-2], machine.size)
     u, _ = motion_along(motion, max(MOMENTS, moments(len(motion))))
-    d = u[:, : 2 * machine.film_count].reshape(len(u), -1, 2)
-    return np.asarray(np.hypot(d[:, :, 0], d[:, :, 1]).max(axis=0))
+    return largest_of(u[:, : 2 * machine.film_count])
+
+
+def largest_of(displacements: Array) -> Array:
+    """(F,) largest eccentricities of displacements (n, 2 F)."""
+    return np.asarray(np.hypot(displacements[:, 0::2], displacements[:, 1::2]).max(axis=0))
 
 
 def largest(machine: Machine, y: Array) -> float:
@@ -404,9 +407,7 @@ def at_speed(follower: Follower, place: Place, beyond: Place, speed: float) -> P
     near = resized_like(place, beyond, follower.machine.size)
     share = (speed - near.y[-1]) / (beyond.y[-1] - near.y[-1])
     guess = near.y + share * (beyond.y - near.y)
-    along = np.zeros(len(guess))
-    along[-1] = 1.0
-    found = corrected(follower.equations(beyond), guess, along)
+    found = corrected(follower.equations(beyond), guess, unit_vector(len(guess)))
     return None if found is None else oriented(found, beyond.tangent)
 
 

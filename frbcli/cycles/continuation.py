@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
 Array = NDArray[np.float64]
+Found = TypeVar("Found")
 Equations = Callable[[Array], tuple[Array, Array]]  # residual (n,), and its derivative (n, n + 1)
 
 ITERATIONS = 10
@@ -85,6 +87,13 @@ def corrected(equations: Equations, guess: Array, tangent: Array) -> Place | Non
     return None
 
 
+def unit_vector(size: int, number: int = -1) -> Array:
+    """(size,) direction of one unknown alone, the last one if not given: in the plane across it the unknown is kept."""
+    direction = np.zeros(size)
+    direction[number] = 1.0
+    return direction
+
+
 def oriented(place: Place, direction: Array) -> Place:
     """The point with its tangent turned so that it goes along a direction."""
     if place.tangent @ direction >= 0.0:
@@ -99,6 +108,17 @@ def step_from(equations: Equations, place: Place, length: float, guess: Array | 
     if found is None or (found.side * place.side < 0 and length > CLOSEST):
         return None
     return found if abs(found.tangent @ place.tangent) >= SHARPEST else None
+
+
+def halved_until(
+    stepped: Callable[[float], Found | None], length: float, shortest: float
+) -> tuple[Found | None, float]:
+    """What a step leads to, and its length, which is halved until it leads to something or is not above `shortest`."""
+    found = stepped(length)
+    while found is None and length > shortest:
+        length *= 0.5
+        found = stepped(length)
+    return found, length
 
 
 def next_length(length: float, strides: Strides, before: Place, after: Place) -> float:

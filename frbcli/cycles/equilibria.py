@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.continuation import Place, Strides, Unreachable, corrected, follow, oriented
+from frbcli.cycles.continuation import Place, Strides, Unreachable, corrected, follow, oriented, unit_vector
 from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine, film_loads, transfer
 from frbcli.linear.resting import resting_position, ring_speeds
@@ -150,8 +150,7 @@ def first_place(system: System, machine: Machine, ask: Callable[[Array], tuple[A
     turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
     places = machine.places @ resting[: machine.rotor.size]
     guess = np.concatenate([places, turning / machine.pace, [omega / machine.pace]])
-    along = np.zeros(len(guess))
-    along[-1] = -1.0
+    along = -unit_vector(len(guess))
     found = corrected(ask, guess, along)
     if found is None:
         raise Unreachable
@@ -160,11 +159,9 @@ def first_place(system: System, machine: Machine, ask: Callable[[Array], tuple[A
 
 def at_speed(ask: Callable[[Array], tuple[Array, Array]], near: Place, speed: float) -> Place:
     """The place at a speed over the pace. Raises Unreachable."""
-    along = np.zeros(len(near.y))
-    along[-1] = 1.0
     guess = near.y + (speed - near.y[-1]) / near.tangent[-1] * near.tangent
     guess[-1] = speed
-    found = corrected(ask, guess, along)
+    found = corrected(ask, guess, unit_vector(len(guess)))
     if found is None:
         raise Unreachable
     return oriented(found, near.tangent)
@@ -211,9 +208,7 @@ def _crossing(low: Equilibrium, high: Equilibrium) -> int:
 def settled(machine: Machine, near: Array, omega: float, value: float) -> Equilibrium:
     """The resting position of a machine at a speed in rad/s near to u. Raises Unreachable."""
     guess = np.append(near, omega / machine.pace)
-    along = np.zeros(len(guess))
-    along[-1] = 1.0
-    found = corrected(equations(machine), guess, along)
+    found = corrected(equations(machine), guess, unit_vector(len(guess)))
     if found is None:
         raise Unreachable
     return replace(_equilibrium(machine, state_space(machine), found), value=value)

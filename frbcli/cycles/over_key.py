@@ -45,15 +45,19 @@ class KeyFollower(Follower):
         self.family = family
 
     def machine_at(self, y: Array) -> Machine:
+        """The machine at the value of the key in which y ends, over its largest one."""
         return self.family.machine(float(y[-1]))
 
     def space_at(self, y: Array) -> StateSpace:
+        """All states of that machine."""
         return state_space(self.machine_at(y))
 
     def told(self, y: Array) -> str:
+        """The value of the key at y with its unit."""
         return f"{y[-1] * self.family.high:.4g} {self.family.unit}".rstrip()
 
     def equations(self, place: Place) -> Equations:
+        """Those of the cycles about a place at the speed of the family; derivatives by the key are differences."""
         moving = place.y if self.moves(place.y) else place.tangent
         reference = unpacked(moving[:-2], self.machine.size)
 

@@ -7,13 +7,14 @@ rotor rests; as a falls a whirl is born at a Hopf point in a, and its cycles are
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.balance import packed
 from frbcli.cycles.branch import FIRST_HARMONICS, STRIDES, Follower, at_speed, largest, resized_like
-from frbcli.cycles.continuation import Place, Strides, corrected, follow, next_length
+from frbcli.cycles.continuation import Place, Strides, corrected, follow, halved_until, next_length, unit_vector
 from frbcli.cycles.equilibria import OSCILLATING, Equilibrium
 from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine, film_loads, transfer
@@ -33,10 +34,7 @@ def seed_cycle(machine: Machine, resting: Equilibrium) -> Array | None:
         return None
     follower, place, length = Follower(machine, 0.0, 0.0, omega=resting.omega), hopf, STRIDES.first
     for _ in range(STRIDES.points):
-        found = follower.stepped(place, length)
-        while found is None and length > STRIDES.shortest:
-            length *= 0.5
-            found = follower.stepped(place, length)
+        found, length = halved_until(partial(follower.stepped, place), length, STRIDES.shortest)
         if found is None or largest(machine, found.y) > 1.0:
             return None
         if found.y[-1] <= 0.0:
@@ -50,8 +48,7 @@ def seed_cycle(machine: Machine, resting: Equilibrium) -> Array | None:
 def _stabilised(machine: Machine, resting: Equilibrium) -> Place | None:
     """The Hopf point in a, as the place of a cycle of no size that is followed down in a."""
     space, ask = state_space(machine), _equations(machine, resting.omega)
-    along = np.zeros(machine.size + 1)
-    along[-1] = 1.0
+    along = unit_vector(machine.size + 1)
     low = corrected(ask, np.append(resting.u, 0.0), along)
     if low is None:
         return None

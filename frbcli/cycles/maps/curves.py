@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +29,11 @@ from frbcli.cycles.continuation import (
     Strides,
     Unreachable,
     corrected,
+    halved_until,
     next_length,
     oriented,
     step_from,
+    unit_vector,
 )
 from frbcli.cycles.equilibria import equations as resting_equations
 from frbcli.cycles.machine import film_loads, transfer
@@ -117,8 +120,7 @@ def fold_equations(plane: Plane, y: Array) -> Equations:
         scale = np.linalg.norm(v[:n]) / (2.0 * DIFFERENCE)
         matrix[n, :-1] = -scale * w[:n] @ (ahead[1] - behind[1])
         for number in plane.by_difference:
-            step = np.zeros(len(y))
-            step[number] = DIFFERENCE
+            step = DIFFERENCE * unit_vector(len(y), number)
             more, less = balance(y + step), balance(y - step)
             matrix[:n, number] = (more[0] - less[0]) / (2.0 * DIFFERENCE)
             matrix[n, number] = -w[:n] @ (more[1] - less[1])[:, :-1] @ v[:n] / (2.0 * DIFFERENCE)
@@ -149,8 +151,8 @@ def follow_both(
 
     fitted: a place with as many unknowns as it needs; ends: why a curve ends in a place, or nothing.
     """
-    asked, units = equations(start), np.eye(len(start))
-    place = corrected(asked, start, units[-1]) or corrected(asked, start, units[-2])
+    asked, size = equations(start), len(start)
+    place = corrected(asked, start, unit_vector(size)) or corrected(asked, start, unit_vector(size, -2))
     place = None if place is None else fitted(place)
     if place is None:
         return None
@@ -170,10 +172,8 @@ def _followed(
     found: list[Place] = []
     length = STRIDES.first
     for _ in range(STRIDES.points):
-        there = _stepped(equations, place, length, fitted)
-        while there is None and length > STRIDES.shortest:
-            length *= 0.5
-            there = _stepped(equations, place, length, fitted)
+        stepped = partial(_stepped, equations, place, fitted)
+        there, length = halved_until(stepped, length, STRIDES.shortest)
         if there is None:
             return found, "The steps became too short."
         if not (np.all(there.y[-2:] >= corners[0]) and np.all(there.y[-2:] <= corners[1])):
@@ -191,16 +191,14 @@ def _on_border(equations: Callable[[Array], Equations], there: Place, corners: t
     """The place next to one outside of the rectangle in which the curve leaves it."""
     at, limits = there.y[-2:], np.clip(there.y[-2:], *corners)
     number = int(np.argmax(np.abs(at - limits))) - 2
-    along = np.zeros(len(there.y))
-    along[number] = 1.0
     guess = there.y + (limits[number] - at[number]) / there.tangent[number] * there.tangent
     guess[number] = limits[number]
-    found = corrected(equations(there.y), guess, along)
+    found = corrected(equations(there.y), guess, unit_vector(len(guess), number))
     return there if found is None else oriented(found, there.tangent)
 
 
 def _stepped(
-    equations: Callable[[Array], Equations], place: Place, length: float, fitted: Callable[[Place], Place | None]
+    equations: Callable[[Array], Equations], place: Place, fitted: Callable[[Place], Place | None], length: float
 ) -> Place | None:
     try:
         found = step_from(equations(place.y), place, length)

@@ -7,11 +7,13 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.branch import ASKED, AT_REST, FLIP, FOLD, LEFT, TORUS
+from frbcli.cycles.continuation import halved_until
 from frbcli.cycles.shooting.shots import Shooting, Shot
 
 Array = NDArray[np.float64]
@@ -41,10 +43,7 @@ def follow_shots(
     lowest, highest = (math.log(speed / shooting.unit) for speed in speeds)
     while len(shots) < MOST_POINTS:
         shot = shots[-1]
-        found = _next(shooting, shot, length, along)
-        while found is None and length > SHORTEST:
-            length *= 0.5
-            found = _next(shooting, shot, length, along)
+        found, length = halved_until(partial(_next, shooting, shot, along), length, SHORTEST)
         if found is None:
             note = f"It could not be followed beyond {shooting.speed_Hz(shot):.4g} Hz: the steps became too short."
             return with_folds(shooting, shots), note
@@ -53,7 +52,8 @@ def follow_shots(
         if not lowest <= found.p[1] <= highest:
             limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
             end = shooting.at_speed(shot, found, limit_speed)
-            return with_folds(shooting, [*shots, *([] if end is None else [end])]), LEFT
+            shots += [] if end is None else [*special_shots(shooting, shot, end, asked), end]
+            return with_folds(shooting, shots), LEFT
         shots += [*special_shots(shooting, shot, found, asked), found]
         if found.amplitude < SMALL:
             return with_folds(shooting, shots), AT_REST
@@ -114,7 +114,7 @@ def special_shots(shooting: Shooting, shot: Shot, after: Shot, asked: Sequence[f
     return sorted(found, key=lambda one: abs(one.p[1] - shot.p[1]))
 
 
-def _next(shooting: Shooting, shot: Shot, length: float, along: Array) -> Shot | None:
+def _next(shooting: Shooting, shot: Shot, along: Array, length: float) -> Shot | None:
     found = shooting.stepped(shot, length, along)
     return None if found is None or shooting.direction(shot, found) @ along < SHARPEST else found
 

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from frbcli.cycles.balance import Balance, packed, unpacked
 from frbcli.cycles.branch import Cycle, largest
-from frbcli.cycles.continuation import Equations, Place, Unreachable, corrected, oriented
+from frbcli.cycles.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
 from frbcli.cycles.machine import Machine
-from frbcli.cycles.unbalance.synchronous import Synchronous, driven_motion
+from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -25,7 +25,6 @@ Complex = NDArray[np.complex128]
 ANGLES = 12  # at which theta is tried
 SMALLEST = 1.0 / 64.0  # share of the unbalance, and step to a larger one, at which it is tried last
 SHARP = 1e-5  # of theta
-WHIRLS = 1e-3  # of the clearance: odd harmonics of a motion that is not the synchronous one
 
 
 class Locked(Synchronous):
@@ -63,7 +62,7 @@ def locked_near(machine: Machine, motion: Complex, omega: float, share: float = 
     """The stable motion of two periods of the rotor next to one with harmonics (H + 1, c); None if there is none."""
     follower, speed = Locked(machine, share), omega / machine.pace
     guess = np.concatenate([packed(motion), [0.5 * speed, speed]])
-    along = _at_this_speed(guess)
+    along = unit_vector(len(guess))
     place = corrected(follower.equations(Place(guess, along)), guess, along)
     near = None if place is None else follower.refitted(oriented(place, along))
     fitted = None if near is None else follower.entered(near.y, speed)
@@ -118,7 +117,7 @@ def _guesses(machine: Machine, motion: Complex, nu: float, omega: float, share: 
 def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta: float) -> Array:
     """The cycle with a share of the unbalance shifted by theta, next to y; its phase is that of the reference. Raises
     Unreachable."""
-    found = corrected(_equations(machine, reference, share * np.exp(1j * theta)), y, _at_this_speed(y))
+    found = corrected(_equations(machine, reference, share * np.exp(1j * theta)), y, unit_vector(len(y)))
     if found is None:
         raise Unreachable
     return found.y
@@ -135,9 +134,3 @@ def _equations(machine: Machine, reference: Complex, factor: complex) -> Equatio
         return residual, slope
 
     return at
-
-
-def _at_this_speed(y: Array) -> Array:
-    along = np.zeros(len(y))
-    along[-1] = 1.0
-    return along

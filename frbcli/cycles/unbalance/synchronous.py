@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.cycles.balance import Balance, packed, unpacked
 from frbcli.cycles.branch import FIRST_HARMONICS, Branch, Follower, follow_branch
-from frbcli.cycles.continuation import Equations, Place, corrected, oriented
+from frbcli.cycles.continuation import Equations, Place, corrected, oriented, unit_vector
 from frbcli.cycles.equilibria import Equilibrium
 from frbcli.cycles.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
 from frbcli.cycles.machine import Machine, unbalance_motion
@@ -22,6 +22,7 @@ from frbcli.cycles.machine import Machine, unbalance_motion
 Array = NDArray[np.float64]
 
 DIFFERENCE = 1e-6  # of the pace
+WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not the synchronous one
 
 
 class Synchronous(Follower):
@@ -33,6 +34,7 @@ class Synchronous(Follower):
     share = 1.0
 
     def equations(self, place: Place) -> Equations:
+        """Those of the motions about a place: residual (n,), n = c (2 H + 1) + 1, the last of periods nu = Omega."""
         machine, harmonics, periods = self.machine, (len(place.y) - 2) // self.machine.size // 2, self.periods
         balance = Balance(machine, unpacked(place.y[:-2], machine.size))
 
@@ -66,8 +68,7 @@ def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float)
     motion[0] = resting.u
     share = resting.omega / machine.pace
     guess = np.concatenate([packed(motion), [share, share]])
-    along = np.zeros(len(guess))
-    along[-1] = -1.0
+    along = -unit_vector(len(guess))
     start = corrected(follower.equations(Place(guess, along)), guess, along)
     if start is None:
         return None

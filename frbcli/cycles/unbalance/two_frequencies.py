@@ -20,9 +20,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import packed, unpacked
+from frbcli.cycles.balance import packed, through, unpacked
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.machine import Loads, Machine, Transfer, film_loads, transfer, unbalance_motion
+from frbcli.cycles.unbalance.synchronous import WHIRLS
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -33,7 +34,6 @@ MARGIN = np.array([4, 2])  # by how many orders beyond the largest ones harmonic
 MOST = 600  # harmonics
 REFITS = 12
 SMALLEST = 1.0 / 8.0  # step by which the unbalance is raised
-WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not the synchronous one
 SAMPLES_PER_ORDER, FEWEST = np.array([5, 5]), np.array([32, 16])
 CLOSE = 1e-9  # residual over the clearance that ends Newton's method
 ITERATIONS = 10
@@ -174,7 +174,7 @@ class _Linearised:
         rate = self.sampled(1j * j * torus.motion).reshape(-1, self.machine.size)
         felt = self.analysed(np.einsum("nij,nj->ni", self.loads.by_v, rate))
         felt += j * passing.kappa_by_frequency * torus.motion
-        return -j * _through(passing.by_frequency, self.inner) - _through(passing.values, felt)
+        return -j * through(passing.by_frequency, self.inner) - through(passing.values, felt)
 
     @cached_property
     def row(self) -> Array:
@@ -192,7 +192,7 @@ class _Linearised:
     def residual(self, driven: Complex) -> Array:
         """(n,), the phase last."""
         torus = self.torus
-        out = torus.motion - _through(self.passing.values, self.inner)
+        out = torus.motion - through(self.passing.values, self.inner)
         out[0] -= self.machine.rest
         out[(torus.orders == [0, 1]).all(axis=1)] -= driven
         return np.append(packed(out), self.row @ packed(torus.motion - self.reference))
@@ -204,7 +204,7 @@ class _Linearised:
         u = self.sampled(du).reshape(-1, c)
         v = self.sampled(1j * torus.frequencies[:, None] * du).reshape(-1, c)
         felt = np.einsum("nij,nj->ni", self.loads.by_u, u) + np.einsum("nij,nj->ni", self.loads.by_v, v)
-        out = du - _through(passing.values, self.analysed(felt) + passing.kappa * du)
+        out = du - through(passing.values, self.analysed(felt) + passing.kappa * du)
         out += step[-1] * self.machine.pace * self.by_nu
         return np.append(packed(out), self.row @ step[:-1])
 
@@ -239,16 +239,16 @@ class _ByMean:
         self.factors = []
         for number, own in enumerate(self.places):
             orders = j[own]
-            rates, through = 1j * balance.torus.frequencies[own], balance.passing.values[own]
+            rates, passing = 1j * balance.torus.frequencies[own], balance.passing.values[own]
             kappa = balance.passing.kappa[own]
             if number == 0:  # with the conjugate ones
                 orders, rates = _with_conjugate(orders, -1.0), _with_conjugate(rates)
-                through, kappa = _with_conjugate(through), _with_conjugate(kappa)
+                passing, kappa = _with_conjugate(passing), _with_conjugate(kappa)
             apart = orders[:, None] - orders[None, :]
             slope = by_u[apart] + rates[None, :, None, None] * by_v[apart]
             same = np.arange(len(orders))
             slope[same, same] += kappa[:, :, None] * np.eye(c)
-            matrix = -np.einsum("jab,jlbd->jald", through, slope).reshape(len(orders) * c, -1)
+            matrix = -np.einsum("jab,jlbd->jald", passing, slope).reshape(len(orders) * c, -1)
             matrix[np.arange(len(matrix)), np.arange(len(matrix))] += 1.0
             self.factors.append(lu_factor(self.bordered(matrix, own) if number == 0 else matrix, check_finite=False))
 
@@ -292,9 +292,4 @@ def _left_out(machine: Machine, torus: Torus) -> Orders:
     balance = _Linearised(machine, torus, torus.motion)
     loads = harmonics(balance.loads.values.reshape(*balance.counts, -1), beyond)
     passing = transfer(machine, beyond @ np.array([torus.nu, torus.omega]), torus.omega)
-    return np.asarray(beyond[np.abs(_through(passing.values, loads)).max(axis=1) > TAIL])
-
-
-def _through(passing: Complex, motion: Complex) -> Complex:
-    """(m, c)."""
-    return np.asarray(np.einsum("mij,mj->mi", passing, motion))
+    return np.asarray(beyond[np.abs(through(passing.values, loads)).max(axis=1) > TAIL])

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.balance import motion_along, unpacked
-from frbcli.cycles.branch import ASKED, MOMENTS, Cycle
+from frbcli.cycles.branch import ASKED, MOMENTS, Cycle, largest_of
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.machine import Machine
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, SpectralLine, UnbalancedWhirl, hertz
@@ -143,7 +143,7 @@ def _free_whirl(machine: Machine, torus: Torus) -> UnbalancedWhirl:
         speed_Hz=hertz(torus.omega),
         frequency_Hz=hertz(torus.nu),
         locked=False,
-        eccentricity_max=_largest(displacements.reshape(-1, films)),
+        eccentricity_max=largest_of(displacements.reshape(-1, films)),
         ring_speeds_Hz=hertz(machine.pace) * torus.motion[0, films:].real,
         lines=_main(lines, ("nu", "Omega")),
         stable=None,
@@ -164,16 +164,11 @@ def _locked_whirl(machine: Machine, cycle: Cycle) -> UnbalancedWhirl:
         speed_Hz=hertz(omega),
         frequency_Hz=0.5 * hertz(omega),
         locked=True,
-        eccentricity_max=_largest(displacements),
+        eccentricity_max=largest_of(displacements),
         ring_speeds_Hz=hertz(machine.pace) * motion[0, films:].real,
         lines=_main(lines, (_half(1), _half(2))),
         stable=cycle.multipliers.stable,
     )
-
-
-def _largest(displacements: Array) -> Array:
-    """(F,) largest eccentricities of displacements (n, 2 F)."""
-    return np.asarray(np.hypot(displacements[:, 0::2], displacements[:, 1::2]).max(axis=0))
 
 
 def _axis(harmonic: Complex) -> Array:

@@ -1,0 +1,35 @@
+"""Machines whose limit cycles are tested: a floating ring and a turbocharger in short films."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+
+import frbcli
+from frbcli.case.shipped import find_shipped
+from frbcli.cycles.machine import Machine, make_machine
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import make_system
+
+
+def machine_of(case: frbcli.Case) -> Machine:
+    """The machine of a case up to its highest speed."""
+    return make_machine(make_system(case, make_plan(case)), 2.0 * math.pi * case.speed.end)
+
+
+def ring_case() -> frbcli.Case:
+    """A floating ring without openings."""
+    case = tomllib.loads(find_shipped("floating-ring"))
+    case["bearing"]["inner"]["supply"] = {"kind": "none"}
+    case["film"] = {"theory": "short", "cavitation": "half-sommerfeld"}
+    case["bearing"]["outer"]["supply"] = {"kind": "none"}
+    return frbcli.case_from_dict(case)
+
+
+def turbocharger() -> frbcli.Case:
+    """A flexible rotor on two floating rings without openings."""
+    case = tomllib.loads(find_shipped("turbocharger-heavy"))
+    for bearing in case["bearing"]:
+        bearing["inner"]["supply"] = {"kind": "none"}
+    case["film"] = {"theory": "short", "cavitation": "half-sommerfeld"}
+    return frbcli.case_from_dict(case)
