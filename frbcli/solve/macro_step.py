@@ -19,7 +19,7 @@ from frbcli.solve.dense import solve_dense
 from frbcli.solve.films import make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.micro_step import Told, films_follow, parabola
-from frbcli.solve.ring_spin import NoRings, Rings, make_rings, spin_up
+from frbcli.solve.ring_spin import Rings, make_rings, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import FORCE, STAGE_ROWS, X_0, U, V, accelerate, begin_lag, limit_of, norm, predict, start_stage
 from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, Output, RotorData, State
@@ -49,7 +49,7 @@ class Exchange(NamedTuple):
     responses: Array
     given: Array
     told: Told
-    rings: Rings | NoRings
+    rings: Rings
     aside: Scratch
 
 
@@ -164,7 +164,7 @@ def _turn_rings(
 
 @compiled()
 def _ask_for_torques(
-    films: Any, work: Any, rotor: RotorData, control: Control, aside: Scratch, motion: Array, rings: Rings | NoRings
+    films: Any, work: Any, rotor: RotorData, control: Control, aside: Scratch, motion: Array, rings: Rings
 ) -> None:
     """The torques on the rings with the journals where they are now, see _tell for the motion."""
     if rotor.spins.shape[0] > 0:

@@ -13,7 +13,7 @@ from frbcli.rotor.excitation import rotation
 from frbcli.solve.film_forces import move_film
 from frbcli.solve.films import NEWTON_LIMIT, accept_films, begin_stage
 from frbcli.solve.journal_newton import forces
-from frbcli.solve.ring_spin import NoRings, Rings, set_speeds
+from frbcli.solve.ring_spin import Rings, set_speeds
 from frbcli.solve.stage import FORCE, X_0, U, lagrange
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE, Control, RotorData, State
 from frbcli.solve.step import SMALLEST_STEP, shorter, step_after
@@ -90,7 +90,7 @@ def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
 @compiled(makes_arrays=True)
 def films_follow(
     films: Any, work: Any, rotor: RotorData, tableau: Tableau, control: Control, state: State, piece: int, told: Told,
-    film: Array, rings: Rings | NoRings,
+    film: Array, rings: Rings,
 ) -> bool:  # fmt: skip
     """Take the films through a macro step; FORCE is then theirs. Returns whether that succeeded."""
     times, speeds, profile_angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS, Array, Indices, compiled
+from frbcli.compiled import Array, Indices, compiled
 from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.contact import feel
 from frbcli.solve.film_forces import drag_integral
@@ -26,18 +25,9 @@ class Rings(NamedTuple):
     held: Array
 
 
-class NoRings(NamedTuple):
-    """The same for a rotor alone, for which nothing of how rings turn is compiled."""
-
-    bodies: Array
-    angles: Array
-    torque: Array
-
-
-def make_rings(count: int) -> Rings | NoRings:
+def make_rings(count: int) -> Rings:
     """For so many rings, all at rest."""
-    bodies, angles, torque = np.zeros(1 + count), np.zeros(1 + count), np.zeros(count)
-    return Rings(bodies, angles, torque, np.zeros(count)) if count else NoRings(bodies, angles, torque)
+    return Rings(np.zeros(1 + count), np.zeros(1 + count), np.zeros(count), np.zeros(count))
 
 
 @compiled(inline=True)
@@ -68,8 +58,9 @@ def guess_speeds(
         angles[1 + r] = at[Q, i] + g * bodies[1 + r]
 
 
+@compiled()
 def spin_up(
-    films: Any, work: Any, rotor: RotorData, s: int, g: float, control: Control, scratch: Scratch, rings: Any
+    films: Any, work: Any, rotor: RotorData, s: int, g: float, control: Control, scratch: Scratch, rings: Rings
 ) -> float:
     """Let the films' torques (4.17) turn the rings: speeds and angles of the stage. Returns how far, in rad, the angle
     of a ring was off.
@@ -78,22 +69,10 @@ def spin_up(
     middle between them, at both in the same sense. How Couette's term of a ring falls with its own speed is taken in by
     Newton's method: a ring of little inertia follows it at once, and plain iterations would go to and fro.
     """
-    raise NotImplementedError
-
-
-@overload(spin_up, jit_options=AS_KERNELS, strict=False)
-def _chosen(films, work, rotor, s, g, control, scratch, rings):  # type: ignore[no-untyped-def]
-    if rings.instance_class is NoRings:
-        return lambda films, work, rotor, s, g, control, scratch, rings: 0.0
-    return _turn_rings
-
-
-def _turn_rings(
-    films: Any, work: Any, rotor: RotorData, s: int, g: float, control: Control, scratch: Scratch, rings: Rings
-) -> float:
-    """spin_up of rings."""
     count, clearances, film, at = rotor.spins.shape[0], rotor.clearances, scratch.film, scratch.at
     bodies, angles, torque, held = rings
+    if count == 0:
+        return 0.0
     for r in range(count):
         torque[r] = held[r] = 0.0
     for f in range(clearances.shape[0]):

@@ -18,7 +18,7 @@ from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterat
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
 from frbcli.solve.inverse import outdated, prepare
 from frbcli.solve.journal_newton import correct, forces
-from frbcli.solve.ring_spin import NoRings, Rings, guess_speeds, make_rings, set_speeds, spin_up
+from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, Output, RotorData, State
@@ -50,7 +50,7 @@ class Own(NamedTuple):
     newton: Array
     past: Array
     q_new: Array
-    rings: Rings | NoRings
+    rings: Rings
 
 
 class Space(NamedTuple):
