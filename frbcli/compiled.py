@@ -102,9 +102,13 @@ def call_of(numbers: int) -> Callable[..., Any]:
 
 
 def _follow(made: Any, *sources: Path) -> None:
-    """Have the cache of a kernel follow its sources: what its index is compared with when it is read, to which numba
-    has no public way."""
-    made._cache._cache_file._source_stamp = sources_digest(*sources)
+    """Have the cache of a kernel follow its sources, to which numba has no public way.
+
+    What its index is compared with before it is read as a whole: an older one may name types that are no longer there,
+    and could not be read.
+    """
+    file, digest = made._cache._cache_file, sources_digest(*sources)
+    file._version, file._source_stamp = f"{file._version} {digest}", digest
 
 
 @cache

@@ -78,6 +78,35 @@ def test_a_kernel_follows_those_it_calls_in_other_files(tmp_path: Path, imported
     assert answer(tmp_path) == (3.0, 1)
 
 
+TYPED = """
+from typing import NamedTuple
+from frbcli.compiled import compiled
+
+class {kind}(NamedTuple):
+    x: float
+
+@compiled()
+def of(given):
+    return given.x
+
+def outer(x):
+    return of({kind}(x))
+
+outer.stats = of.stats
+"""
+
+
+def test_a_cache_that_names_a_type_which_is_no_longer_there_is_not_read(tmp_path: Path) -> None:
+    """As after an update that renames a record: numba alone ends with an error when it reads such a cache."""
+    room = package(tmp_path, IMPORTS[0])
+    (room / "outer.py").write_text(TYPED.format(kind="Older"))
+    assert answer(tmp_path) == (1.0, 0)
+    assert answer(tmp_path) == (1.0, 1)
+    (room / "outer.py").write_text(TYPED.format(kind="Newer"))
+    assert answer(tmp_path) == (1.0, 0)
+    assert answer(tmp_path) == (1.0, 1)
+
+
 def test_every_kernel_of_the_package_is_compiled_so() -> None:
     """A bare njit would be back to a cache that does not see what changed."""
     import frbcli
