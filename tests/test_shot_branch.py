@@ -20,15 +20,21 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system
 
 
-def branch(flow: KnownFlow, low: float, high: float, begun: tuple[float, float]) -> tuple[Threshold, tuple[Shot, ...]]:
-    """The Hopf point between two speeds and the cycles that begin there."""
-    shooting = Shooting(flow, high)  # type: ignore[arg-type]
+def started(shooting: Shooting, flow: KnownFlow, begun: tuple[float, float]) -> tuple[Threshold, Shot]:
+    """The Hopf point between two speeds and the first cycle beside it."""
     rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in begun]
     assert rests[0] is not None
     assert rests[1] is not None
     hopf = located(shooting, rests[0], rests[1])
     first = shooting.from_rest(hopf.rest, hopf.number, 0.1)
     assert first is not None
+    return hopf, first
+
+
+def branch(flow: KnownFlow, low: float, high: float, begun: tuple[float, float]) -> tuple[Threshold, tuple[Shot, ...]]:
+    """The Hopf point between two speeds and the cycles that begin there."""
+    shooting = Shooting(flow, high)  # type: ignore[arg-type]
+    hopf, first = started(shooting, flow, begun)
     shots, note = follow_shots(shooting, first, (low, high))
     assert note == "It leaves the range."
     return hopf, shots
@@ -62,18 +68,38 @@ def test_a_speed_asked_for_in_the_last_step_has_its_cycle() -> None:
     """At 1.499 of a range to 1.5, which the last step leaves: the amplitude there is 0.5 sqrt(speed - 1)."""
     flow = round_cycles(lambda _: (-0.2, -0.4), 0.3, True)
     shooting = Shooting(flow, 1.5)  # type: ignore[arg-type]
-    rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in (0.9, 1.1)]
-    assert rests[0] is not None
-    assert rests[1] is not None
-    hopf = located(shooting, rests[0], rests[1])
-    first = shooting.from_rest(hopf.rest, hopf.number, 0.1)
-    assert first is not None
+    _, first = started(shooting, flow, (0.9, 1.1))
     shots, note = follow_shots(shooting, first, (0.9, 1.5), [1.499])
     assert note == "It leaves the range."
     (asked,) = [shot for shot in shots if shot.kind == "asked"]
     assert shots[-2] is asked
     assert 1.5 * math.exp(asked.p[1]) == pytest.approx(1.499, rel=1e-9)
     assert asked.eccentricity_max[0] == pytest.approx(0.5 * math.sqrt(0.499), rel=1e-6)
+
+
+class NearOnly(Shooting):
+    """Finds cycles at a speed from one that is within two hundredths of it alone."""
+
+    def at_speed(self, shot: Shot, other: Shot, omega: float) -> Shot | None:
+        near = min(abs(math.log(omega / self.unit) - one.p[1]) for one in (shot, other))
+        return super().at_speed(shot, other, omega) if near < 0.02 else None
+
+
+def test_a_branch_comes_as_near_to_a_speed_as_its_cycle_asks_for() -> None:
+    """Steps are up to a tenth long: both the end of the range and a speed asked for lie further from the ends of a step
+    than their cycles are found from."""
+    flow = round_cycles(lambda _: (-0.2, -0.4), 0.3, True)
+    shooting = NearOnly(flow, 1.5)  # type: ignore[arg-type]
+    _, first = started(shooting, flow, (0.9, 1.1))
+    wide, _ = follow_shots(shooting, first, (0.9, 3.0))
+    speeds = [math.exp(shot.p[1]) * 1.5 for shot in wide]
+    last = max(range(1, len(speeds) - 1), key=lambda n: speeds[n] / speeds[n - 1])
+    between, end = math.sqrt(speeds[last - 1] * speeds[last]), math.sqrt(speeds[last] * speeds[last + 1])
+    shots, note = follow_shots(shooting, first, (0.9, end), [between])
+    assert note == "It leaves the range."
+    (asked,) = [shot for shot in shots if shot.kind == "asked"]
+    assert 1.5 * math.exp(asked.p[1]) == pytest.approx(between, rel=1e-9)
+    assert 1.5 * math.exp(shots[-1].p[1]) == pytest.approx(end, rel=1e-9)
 
 
 def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:

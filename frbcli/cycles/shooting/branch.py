@@ -52,6 +52,9 @@ def follow_shots(
         if not lowest <= found.p[1] <= highest:
             limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
             end = shooting.at_speed(shot, found, limit_speed)
+            if end is None and length > SHORTEST:  # a straight line to it is too far
+                length *= 0.5
+                continue
             shots += [] if end is None else [*special_shots(shooting, shot, end, asked), end]
             return with_folds(shooting, shots), LEFT
         shots += [*special_shots(shooting, shot, found, asked), found]
@@ -109,9 +112,18 @@ def special_shots(shooting: Shooting, shot: Shot, after: Shot, asked: Sequence[f
         found.append(replace(there, kind=TORUS if turning else FLIP))
     for speed in asked:
         if min(shot.p[1], after.p[1]) < math.log(speed / shooting.unit) <= max(shot.p[1], after.p[1]):
-            there_too = shooting.at_speed(shot, after, speed)
+            there_too = _at_speed(shooting, shot, after, speed)
             found += [] if there_too is None else [replace(there_too, kind=ASKED)]
     return sorted(found, key=lambda one: abs(one.p[1] - shot.p[1]))
+
+
+def _at_speed(shooting: Shooting, shot: Shot, after: Shot, speed: float) -> Shot | None:
+    """The cycle at a speed in rad/s within a step: from its ends, else from one between them that is nearer to it."""
+    found = shooting.at_speed(shot, after, speed)
+    if found is None:
+        nearer = _located(shooting, shot, after, lambda one: float(one.p[1]) - math.log(speed / shooting.unit))
+        found = shooting.at_speed(nearer, after if nearer is shot else shot, speed)
+    return found
 
 
 def _next(shooting: Shooting, shot: Shot, along: Array, length: float) -> Shot | None:
