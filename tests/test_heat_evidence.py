@@ -51,7 +51,7 @@ def test_power_of_journal_shell_and_pump_is_the_dissipation(cavitation: str, ecc
     motion = Motion(d, (20.0, 30.0), omega)
     solution = FilmSolver(film).steady(motion)
     pressure = film.pressure(solution.state)
-    f, c = force(film, pressure), film.section.clearance
+    f, c = force(film, film.mean_pressure(solution.state)), film.section.clearance
     moment = c * (d[0] * f[1] - d[1] * f[0])
     power = 0.5 * moment * omega - c * (f[0] * motion.v[0] + f[1] * motion.v[1])
     section = film.section

@@ -57,7 +57,7 @@ def in_metres(film: SourceFilm, state: tuple[tuple[float, float], tuple[float, f
 
 
 def steady(film: VolumeFilm, motion: Motion) -> Array:
-    return np.array(force(film, film.pressure(FilmSolver(film).steady(motion).state)))
+    return np.array(force(film, film.mean_pressure(FilmSolver(film).steady(motion).state)))
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def squeezed(film: VolumeFilm, periods: int, steps: int) -> list[Moment]:
 
 
 def vertical(film: VolumeFilm, moments: list[Moment]) -> np.ndarray:
-    return np.array([force(film, film.pressure(moment.solution.state))[1] for moment in moments])
+    return np.array([force(film, film.mean_pressure(moment.solution.state))[1] for moment in moments])
 
 
 def reference() -> dict[tuple[str, str], list[float]]:

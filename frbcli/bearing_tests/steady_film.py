@@ -82,7 +82,7 @@ def settled(
     if start is None or start.shape != film.grid.shape:  # the edges of openings cut other cells
         start = film.from_coarser(coarse, FilmSolver(coarse).steady(motion).w)
     solution = FilmSolver(film).steady(motion, start)
-    return np.array(force(film, film.pressure(solution.state))), solution.w
+    return np.array(force(film, film.mean_pressure(solution.state))), solution.w
 
 
 def _films(

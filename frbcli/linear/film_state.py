@@ -86,7 +86,7 @@ def under_vertical_load(film: VolumeFilm, eccentricity: float, omega: float) -> 
         motion = Motion(d, (0.0, 0.0), omega)
         at = film_at(film, eccentricity, omega)
         solution = steady_solution(film, motion)
-        f_x, f_y = force(at, film.pressure(solution.state))
+        f_x, f_y = force(at, film.mean_pressure(solution.state))
         if f_x == 0.0 and f_y == 0.0:
             raise NotConverged(f"The film carries nothing at an eccentricity of {eccentricity:g}.")
         off = math.remainder(0.5 * math.pi - math.atan2(f_y, f_x), 2.0 * math.pi)

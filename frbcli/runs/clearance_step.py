@@ -44,7 +44,7 @@ def with_clearances(before: System, after: System, profile: SpeedProfile, state:
             d = turned(displacement(after, state, i), -turn)
             _refill(before.volumes[i], after.volumes[i], d, state, i)
             film = after.volumes[i]
-            forces[i] = turned(force(film, film.pressure(film.cells(state.wet[W, i]))), turn)
+            forces[i] = turned(force(film, film.mean_pressure(film.cells(state.wet[W, i]))), turn)
     state.a[:] = accelerations(after, rotation, state.q, state.v, forces)
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
     numbers[ERROR_BEFORE] = numbers[STEP_BEFORE] = 0.0

@@ -164,7 +164,7 @@ def _cell_forces(plan: Plan, system: System, case: Case) -> Forces:
     def settled(film: VolumeFilm, at: Array, rate: Array, omega: float) -> Array:
         d, v = at / film.section.clearance, rate / film.section.clearance
         motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
-        return np.array(force(film, film.pressure(steady_solution(film, motion).state)))
+        return np.array(force(film, film.mean_pressure(steady_solution(film, motion).state)))
 
     def forces(i: int, at: Array, rate: Array, omega: float) -> tuple[Array, Array]:
         return settled(fine[i], at, rate, omega), settled(system.volumes[i], at, rate, omega)

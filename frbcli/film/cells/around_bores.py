@@ -14,7 +14,7 @@ from frbcli.film.cells.openings import wrapped
 from frbcli.film.gap import Hole, Section
 from frbcli.film.grid import Array
 
-REACH = 2.0  # cells around a bore whose flows follow the local solutions; no more than half-way to the next opening
+REACH = 2.5  # cells around a bore whose flows follow the local solutions; no more than half-way to the next opening
 MOST = 1000  # cells of a patch: a bore that is so much larger than a cell needs none
 WHOLE = 1e-9  # by which the middle of a bore may miss a plane of symmetry, or its shape a circle
 

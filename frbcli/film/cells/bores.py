@@ -6,20 +6,25 @@ own is a sum of
 
     ln(r / a),   (r^n - a^2n / r^n) cos(n t) and sin(n t),  n = 1, 2,   (a^2 - r^2) / 4,
 
-the last one with a source of 1. The conductances between the cells around the bore are changed as little as possible
-so that the flows which cells pass on dissipate what they do in these solutions: of each two solutions P and Q,
+the last one with a source of 1. Cells of the size h around and along that pass on what they differ by do not have
+ln(r / a) in a distance, but h^2 / 12 times cos(4 t) / r^2 less, and in place of cos(t) / r they have h^2 / 4 times
+cos(5 t) / r^3 more: with these the solutions balance there up to the fourth order. The conductances between the cells
+around the bore are changed as little as possible so that the flows which cells pass on dissipate what they do in these
+solutions: of each two solutions P and Q,
 
     sum over the cells of P_i (flow of Q out of cell i) = 0.
 
 The total flow for a given pressure in the distance is then that of the bore, wherever it lies among the cells, as with
-Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source and in the
-force are those for which the solution with a source balances, and the integrals of the solutions over the film are
-exact.
+Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are those for
+which the solution with a source balances, and with the areas of the force the integrals of the solutions over the film
+are exact, less what parabolas over the width (axial.py) count at the ends for the oil that leaves there: it is right
+for oil that comes out of the whole width, but that of a bore comes out of the place where the solutions are exact.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -33,6 +38,7 @@ Mask = NDArray[np.bool_]
 TOGETHER, EACH, STAY = 100.0, 0.1, 0.01
 AREAS = 1e3  # the same of what the areas should do, against a change of a whole cell that touches the bore
 LEAST = 0.1  # of a conductance that remains: no cell is cut off
+NEAR = 0.5  # of the size of a cell squared: so near to the middle of a bore its solution in a distance is none
 LARGEST = 0.8  # change of an area over that of its cell, for bores that are small in cells of very unequal sides
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -64,16 +70,16 @@ class Fitted(NamedTuple):
 
 def fit(patch: Patch, around: Array, along: Array) -> Fitted:
     """Conductances near to around (nx - 1, ny) and along (nx, ny - 1) and areas that the local solutions ask for."""
-    values = _at_middles(patch, patch.x[1:-1], patch.y[1:-1])
+    values = in_balances(patch, patch.x[1:-1], patch.y[1:-1])
     values[:, patch.held] = 0.0
     flows, beyond = _flows(values, around, along), _beyond(patch, values)
     flows[:, patch.held], beyond[:, patch.held] = 0.0, 0.0
     kept = np.clip(1.0 + _changes(patch, values[:-1], flows[:-1], beyond[:-1]), LEAST, None)
-    split, chosen = around.size, values[_chosen(patch)]
+    split, chosen = around.size, _chosen(patch)
     out = beyond[-1] + flows[-1] @ kept  # of the solution with a source
-    source = _areas(patch, chosen, _products(chosen, (out - patch.open_)[None])[:, 0])
+    source = _areas(patch, values[chosen], _products(values[chosen], (out - patch.open_)[None])[:, 0])
     kept_around, kept_along = kept[:split].reshape(around.shape), kept[split:].reshape(along.shape)
-    return Fitted(around * kept_around, along * kept_along, source, _load(patch, chosen))
+    return Fitted(around * kept_around, along * kept_along, source, _load(patch))
 
 
 def solutions(x: Array, y: Array, a: float, mirrored: bool) -> Array:
@@ -103,9 +109,20 @@ def integrals(patch: Patch, values: Array) -> Array:
     return total
 
 
-def _at_middles(patch: Patch, x: Array, y: Array) -> Array:
-    """(solutions, nx, ny) at all pairs of x (nx,) and y (ny,)."""
-    return solutions(x[:, None] + 0.0 * y, y + 0.0 * x[:, None], patch.a, patch.mirrored)
+def in_balances(patch: Patch, x: Array, y: Array) -> Array:
+    """(solutions, nx, ny) at all pairs of x (nx,) and y (ny,), in a distance as the balances of the cells have them:
+    with what these add, which is 0 on the edge of the bore."""
+    place, a = x[:, None] + 1j * y, patch.a
+    values = solutions(place.real, place.imag, a, patch.mirrored)
+    square = np.maximum(np.abs(place) ** 2, 1e-300)
+    size = 0.5 * (patch.dx.mean() ** 2 + patch.dy.mean() ** 2)
+    part = size * np.maximum(1.0 - a**2 / square, 0.0) / (1.0 + (NEAR * size / square) ** 4)
+    values[0] -= a / 12.0 * part * (place**4).real / square**3
+    dipole = 0.25 * a**2 * part * place**5 / square**4
+    values[1] -= dipole.real
+    if not patch.mirrored:
+        values[3] -= dipole.imag
+    return values
 
 
 def _flows(values: Array, around: Array, along: Array) -> Array:
@@ -127,10 +144,10 @@ def _beyond(patch: Patch, values: Array) -> Array:
     """(solutions, nx, ny) flow of the cells of the patch to those beyond it."""
     x, y, flow = patch.x, patch.y, np.zeros_like(values)
     for cell, other in ((0, 0), (-1, -1)):
-        outside = _at_middles(patch, x[[other]], y[1:-1])[:, 0]
+        outside = in_balances(patch, x[[other]], y[1:-1])[:, 0]
         flow[:, cell] += patch.dy / abs(x[other] - x[1:-1][cell]) * (values[:, cell] - outside)
     for cell, other in ((0, 0),) if patch.mirrored else ((0, 0), (-1, -1)):
-        outside = _at_middles(patch, x[1:-1], y[[other]])[:, :, 0]
+        outside = in_balances(patch, x[1:-1], y[[other]])[:, :, 0]
         flow[:, :, cell] += patch.dx / abs(y[other] - y[1:-1][cell]) * (values[:, :, cell] - outside)
     return flow
 
@@ -159,17 +176,28 @@ def _changes(patch: Patch, values: Array, flows: Array, beyond: Array) -> Array:
     return np.asarray(np.linalg.lstsq(np.vstack(rows), np.concatenate(wanted), rcond=None)[0])
 
 
-def _load(patch: Patch, chosen: Array) -> Array:
+def _load(patch: Patch) -> Array:
     """(nx, ny) areas of the force. A pressure that is the same everywhere has the force that it has on all cells, also
     on the journal's side: the first moment of the areas stays."""
     size = np.outer(patch.dx, patch.dy)
-    lever = patch.x[1:-1, None] + 0.0 * patch.y[1:-1]
-    lever = np.where(patch.held, 0.0, lever - lever[patch.held].mean())
+    x, y = patch.x[1:-1, None] + 0.0 * patch.y[1:-1], patch.y[1:-1] + 0.0 * patch.x[1:-1, None]
+    chosen = np.where(patch.held, 0.0, solutions(x, y, patch.a, patch.mirrored)[_chosen(patch)])
+    lever = np.where(patch.held, 0.0, x - x[patch.held].mean())
     fields = np.concatenate([chosen, lever[None]])
     have = _products(fields, patch.open_[None])[:, 0]
-    want = np.append(integrals(patch, chosen), (lever * size).sum())
+    want = np.append(integrals(patch, chosen) - _by_parabolas(patch), (lever * size).sum())
     change = np.where(patch.held, 0.0, _areas(patch, fields, want - have) - size)
     return size + _limited(np.where(patch.held, -change.sum() / patch.held.sum(), change), size)
+
+
+def _by_parabolas(patch: Patch) -> Array:
+    """(n,) what parabolas over the width add to the integrals of the solutions that areas hold to by the flow into the
+    bore, which leaves at the ends: h^2 / 24 of it for rows of the size h. Fewer than three have none."""
+    rows = patch.held.any(axis=0)
+    flow = (math.pi if patch.mirrored else 2.0 * math.pi) * patch.a
+    flows = np.zeros(len(_chosen(patch)))
+    flows[0], flows[-1] = flow, -0.5 * patch.a * flow
+    return flows * float(np.mean(patch.dy[rows] ** 2)) / 24.0 * (len(patch.dy) >= 3)
 
 
 def _areas(patch: Patch, fields: Array, lacking: Array) -> Array:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from frbcli.compiled import Array, Indices, compiled
 from frbcli.film.cells.balances import CHANNELS_NET, SIDES
 from frbcli.film.cells.block_cyclic import CENTRE
+from frbcli.film.cells.clipped import clipped_push
 from frbcli.film.cells.data import (
     CAVITY,
     CHANNEL_CENTRIFUGAL,
@@ -138,6 +139,9 @@ def push_of_channel(
 ) -> tuple[float, float]:  # fmt: skip
     """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
     m, k = states.shape[1], states.shape[2]
+    if numbers[CLIPS] == 2.0:
+        _, _, x, y, _, _ = clipped_push(numbers, ring, cells, states, fields, k + SIDES + slot, k + SIDES + slot)
+        return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y
     clips, x, y = numbers[CLIPS] != 0.0, 0.0, 0.0
     for i in range(m):
         p = 0.0

@@ -24,9 +24,10 @@ ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
 
 # Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; SOLVER_AT: of ring_solver; CENTRIFUGAL: by
-# which given pressures fall with the square of the grid's speed, in s; BORED: 1 where flows around take the gaps of
-# both cells, as beside bores; SETTLED: share of its pace that its balances may be off by in the mean; from PARAMETERS
-# on: those of its law, of a centred journal at 1 rad/s.
+# which given pressures fall with the square of the grid's speed, in s; CLIPS: 1 where forces clip the pressure at p_cav
+# cell by cell, 2 where between the middles of cells; BORED: 1 where flows around take the gaps of both cells, as beside
+# bores; SETTLED: share of its pace that its balances may be off by in the mean; from PARAMETERS on: those of its law,
+# of a centred journal at 1 rad/s.
 (
     ASPECT,
     REFERENCE,
@@ -138,7 +139,7 @@ def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Ar
         FOLLOW_AT: follow_at,
         CELLS_AT: cells_at,
         SOLVER_AT: ring_solver(grid.shape[1]),
-        CLIPS: float(law.clips),
+        CLIPS: float(law.clips) + float(film.clips_between),
         REMEMBERS: float(law.keeps_oil),
         NEAR: ENDS[section.near],
         FAR: ENDS[section.far],

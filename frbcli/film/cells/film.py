@@ -9,6 +9,7 @@ import numpy as np
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cells.grid import VolumeGrid, fitted_grid, volume_grid
 from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.plain.clipped import clipped_means
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
@@ -96,8 +97,21 @@ class VolumeFilm:
         )
 
     def pressure(self, state: CellState) -> Array:
-        """(m, k) scaled gauge pressure for loads and flows: clipped at p_cav if the law says so (3.29)."""
+        """(m, k) scaled gauge pressure in the middles of the cells: clipped at p_cav if the law says so (3.29)."""
         return np.maximum(state.pressure, self.scales.cavitation) if self.law.clips else state.pressure
+
+    @property
+    def clips_between(self) -> bool:
+        """Whether forces clip between the middles of cells, see clipped.py: not beside a circumferential groove, whose
+        cavities end within the width, so that their edges cross the rows of cells at a slant."""
+        return self.law.clips and self.section.far != "groove"
+
+    def mean_pressure(self, state: CellState) -> Array:
+        """(m, k) scaled gauge pressure for forces: where the law clips, that above p_cav in the mean over each cell."""
+        if not self.clips_between:
+            return self.pressure(state)
+        cavity = self.scales.cavitation
+        return cavity + clipped_means(state.pressure - cavity)
 
     def content(self, motion: Motion, w: Array) -> Array:
         """(m, k) oil in the cells, H theta."""

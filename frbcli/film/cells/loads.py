@@ -74,7 +74,7 @@ def loads(
     ambient = film.section.ambient_pressure
     scale = film.section.pressure_scale
     return Loads(
-        force=force(film, pressure),
+        force=force(film, film.mean_pressure(solution.state)),
         torque=torque(film, motion, solution, motion.omega if slip is None else slip, factor),
         p_max=ambient + scale * peak(film, pressure),
         p_min=ambient + scale * float(np.min(pressure)),
@@ -101,7 +101,7 @@ def torque(
     """
     grid, section = film.grid, film.section
     theta = solution.state.fraction if factor == "local" else np.ones(grid.shape)
-    pressure = film.pressure(solution.state)
+    pressure = film.mean_pressure(solution.state)
     area = section.copies * section.radius * section.width
     shear = (1.0 - grid.cover) * grid.size * theta / gap_height(section, motion.d, grid.centre)[:, None]
     pushing = force_weights(section, grid) * pressure

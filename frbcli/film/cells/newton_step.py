@@ -8,6 +8,7 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balances import GridMotion, balances
 from frbcli.film.cells.block_cyclic import CENTRE
+from frbcli.film.cells.clipped import clipped_push
 from frbcli.film.cells.data import (
     AREA,
     CAVITY,
@@ -35,7 +36,10 @@ def film_loads(
     """Force on the journal with the changes delta (m, k, k + SIDES): (x, y) after the film's own change, and its
     derivatives (xx, xy, yx, yy) by the journal's velocities, in N and N s."""
     m, k = states.shape[1], states.shape[2]
-    cavity, clips = numbers[CAVITY], numbers[CLIPS] != 0.0
+    scale, cavity, clips = numbers[FORCE_SCALE], numbers[CAVITY], numbers[CLIPS] != 0.0
+    if numbers[CLIPS] == 2.0:
+        f_x, f_y, xx, yx, xy, yy = clipped_push(numbers, ring, cells, states, delta, k + 1, k + 2)
+        return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
     f_x, f_y, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(m):
         p, x, y = 0.0, 0.0, 0.0
@@ -54,7 +58,6 @@ def film_loads(
         xy += ring[PUSH_X, i] * y
         yx += ring[PUSH_Y, i] * x
         yy += ring[PUSH_Y, i] * y
-    scale = numbers[FORCE_SCALE]
     return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
 
 

@@ -52,5 +52,5 @@ def steady_force(
             np.zeros(FLOWS),
         )  # fmt: skip
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
-    at = np.array(force(film, film.pressure(solution.state)))
+    at = np.array(force(film, film.mean_pressure(solution.state)))
     return FilmForce(at, slopes[0] / CARRIED, slopes[1])
