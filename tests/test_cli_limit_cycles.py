@@ -134,6 +134,9 @@ def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality:
         assert kind.fold_Hz == pytest.approx(found.of("fold")[0].speed_Hz, rel=3e-6)
     else:
         assert kind.fold_Hz is None
+
+
+def test_a_film_whose_cycles_are_not_followed_has_no_kind_of_threshold() -> None:
     assert threshold_kind(frbcli.load_case("jeffcott", ["film.cavitation=reynolds"]), 170.0) is None
 
 

@@ -119,6 +119,18 @@ def test_error_of_cells_from_two_runs() -> None:
     assert FewerCells(1.0, exact[:2]).error(exact, system) is None
 
 
+@pytest.mark.parametrize(("least", "stated"), [(0.0, 0.0), (3e-3, 3e-3), (0.1, 1e-2)])
+def test_runs_that_agree_by_chance(least: float, stated: float) -> None:
+    """The journal goes to 1e-2 of the clearance in both runs: no error larger than that is stated."""
+    case = load_case("rigid-two-phase")
+    system = make_system(case, make_plan(case))
+    row = np.zeros((1, 2 * system.rotor.size + 2))
+    row[0, 0] = 1e-2 * system.clearances[0]
+    found = FewerCells(0.5, row, least).error(row, system)
+    assert found is not None
+    assert (found.eccentricity, found.displacement) == pytest.approx((stated, stated))
+
+
 def test_between_rings_only_lengths_count() -> None:
     """A journal that is as far out in another direction errs in its place, but not in its eccentricity."""
     case = load_case("floating-ring")

@@ -324,7 +324,8 @@ def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
 def test_a_small_synchronous_motion_is_the_linear_response() -> None:
     """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
     stability and is zero where that changes."""
-    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=1e-3 g*mm", "speed.from=50 Hz"])
+    settings = ["film.theory=short", "rotor.unbalance=1e-3 g*mm", "speed.from=120 Hz", "speed.to=185 Hz"]
+    case = frbcli.load_case("jeffcott", settings)
     points = frbcli.limit_cycles(case).synchronous[::4]
     linear = frbcli.response(case, sorted(point.speed_Hz for point in points))
     journal = linear.points.index("journal")
@@ -350,6 +351,7 @@ def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ign
     assert response[0].eccentricity_max[0] == pytest.approx(seen.max(), abs=2e-4)
 
 
+@pytest.mark.nightly
 def test_where_a_branch_turns_back_it_has_a_fold() -> None:
     """Floating ring in short films: the whirl of the inner film turns back near 151 Hz, in a step on which Newton's
     method does not converge from everywhere. At a fold a second multiplier is 1: it passes from above 1 to below, from

@@ -111,8 +111,8 @@ def check_time_loop_ends_in_the_cycle(found: LimitCycles, periods: int, atol: fl
 
 
 def test_the_cycle_is_what_the_time_loop_ends_in() -> None:
-    """At 82 Hz, where disturbances lose 6 % in a period: after 300 periods, the mean over 150."""
-    check_time_loop_ends_in_the_cycle(diagram(), 450, 1e-4)
+    """At 82 Hz, where disturbances lose 6 % in a period: after 160 periods, the mean over 80."""
+    check_time_loop_ends_in_the_cycle(diagram(), 240, 1e-4)
 
 
 @pytest.mark.nightly

@@ -25,10 +25,12 @@ class CellErrors:
 @dataclass(frozen=True)
 class FewerCells:
     """A run on fewer cells. share: of the difference between the runs that the error of the finer one may be; samples:
-    at the same times as those of the run, see March; the last ones may be missing."""
+    at the same times as those of the run, see March; the last ones may be missing; least: error of the eccentricity
+    that is stated even if both runs agree, which they may by chance; no more than the largest eccentricity."""
 
     share: float
     samples: Array
+    least: float = 0.0
 
     def at(self, there: NDArray[np.bool_]) -> FewerCells:
         """The same at some of the times only, (m,) whether at each time of the run."""
@@ -45,12 +47,14 @@ class FewerCells:
         runs = samples[:, :n], other[:, :n]
         eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
         points = [_largest(apart[:, :n], selection, system.clearances[0]) for _, selection in rotor.points]
-        spins = np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0)
+        spins = float(np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0))
         top = max(float(np.abs(samples[:, 2 * n]).max(initial=0.0)), 1e-300)
         first = 2 * n + 1
-        oil = np.abs(apart[:, first : first + len(system.names)][:, list(system.remembering)]).max(initial=0.0)
-        found = max(eccentric), max([*films, *points]), float(spins) / top, float(oil)
-        return CellErrors(*(self.share * off for off in found))
+        oil = float(np.abs(apart[:, first : first + len(system.names)][:, list(system.remembering)]).max(initial=0.0))
+        reach = max(_largest(samples[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True))
+        least = min(self.least, reach)
+        eccentricity, displacement = (max(least, self.share * off) for off in (max(eccentric), max([*films, *points])))
+        return CellErrors(eccentricity, displacement, self.share * spins / top, self.share * oil)
 
 
 def _largest(apart: Array, selection: Array, room: float) -> float:

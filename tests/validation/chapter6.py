@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from frbcli.analysis.ridges import ridge_speeds, ridges
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
@@ -55,9 +56,19 @@ def run_up(folder: Path, name: str, until_s: float, *settings: str) -> RunUp:
 
 
 def whirl_onset(run: Run, key: str) -> float:
-    """`key` of the first onset of a whirl of about half the rotor speed, NaN if there is none."""
-    whirls = (event for event in run.events if event["kind"] == "onset" and event["frequency_ratio"] < WHIRLS)
-    return next((float(event[key]) for event in whirls), math.nan)
+    """`key`, t_s or speed_Hz, of the first onset of a whirl of about half the rotor speed, NaN if there is none. A
+    vibration of another frequency that began before may turn into it without an end, which is no event."""
+    onsets = [event for event in run.events if event["kind"] == "onset"]
+    whirls = (event for event in onsets if event["frequency_ratio"] < WHIRLS)
+    begun = next((float(event[key]) for event in whirls), math.nan)
+    if not onsets or not math.isnan(begun):
+        return begun
+    lines = ridges(run, ridge_speeds(run), run.references["clearance_m"])
+    other = np.flatnonzero(~(lines.whirls & (lines.whirl_Hz < WHIRLS * lines.speed_Hz)))
+    later = lines.speed_Hz[other[-1] + 1 if len(other) else 0 :]
+    if not len(later):
+        return math.nan
+    return float(later[0]) if key == "speed_Hz" else float(np.interp(later[0], run["speed_Hz"], run["time_s"]))
 
 
 def slow_onset(folder: Path, name: str, begin_Hz: float, end_Hz: float, *settings: str) -> float:

@@ -23,7 +23,7 @@ TITLE = "## Floating rings, chapter 7"
 HEAD = f"""{TITLE}
 
 Written by `cd tests && python -m validation.chapter_7_page FOLDER` from the run-ups of `validation.chapter_7`,
-with the cells of the plan for a target of 4.5e-3 (48 x 6, two-phase 64 x 8); cases and trends are in
+with the cells of the plan for a target of 4.5e-3 (56 x 5, two-phase 64 x 8); cases and trends are in
 [floating-rings](floating-rings.md). Where several films whirl, all are listed, and the one nearest to the
 printed number counts. With targets of 1e-3 to 2e-3 onsets move by 1 % at most, those of the turbocharger at 1.2
 bar by up to 4 %.

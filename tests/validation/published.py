@@ -40,7 +40,7 @@ and of the penalty model (target 3e-3), and after 4 s; the onset; oil created, a
 
 With x_1 = 0.99 the published form follows the penalty model, free to air and in an oil bath, and does not starve.
 With x_1 = 0.9 the resting position is nearer to the centre; the onset of whirl is earlier than with the penalty model
-(6.47 s, above) and later than in the conservative form (5.40 s). Not run because of their cost: onsets with x_1 =
+(6.47 s, above) and later than in the conservative form (5.31 s). Not run because of their cost: onsets with x_1 =
 0.99, and 2 bar in the circumferential groove with x_1 = 0.99. There the points of an element are either full or
 cavitated, and the steps become small. The last run was stopped during its whirl.
 
