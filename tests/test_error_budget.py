@@ -14,9 +14,10 @@ from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.error_budget import BEFORE_WHIRL, quiet_until, summed
-from frbcli.runs.fewer_cells import fewer_cells, on_fewer_cells
+from frbcli.runs.fewer_cells import SAFETY, SAFETY_OF_RINGS, SAFETY_OF_RINGS_AT_REST, fewer_cells, on_fewer_cells
 from frbcli.runs.film_error import FilmErrors
 from frbcli.runs.run import runup
+from frbcli.scene.cell_choice import cell_error
 from frbcli.scene.plan import make_plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import make_segments
@@ -143,6 +144,30 @@ def test_between_rings_only_lengths_count() -> None:
     assert found is not None
     assert found.eccentricity == pytest.approx(0.0, abs=1e-12)
     assert found.displacement > 0.1
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "times"),
+    [
+        ("rigid-two-phase", [], SAFETY),
+        ("floating-ring", [], SAFETY_OF_RINGS),
+        ("floating-ring", ["speed.from=200 Hz"], SAFETY_OF_RINGS_AT_REST),
+        ("floating-ring", ["speed.from=200 Hz", "bearing.ring.spin=blocked"], SAFETY),
+    ],
+)
+def test_the_share_of_the_difference_that_is_stated(name: str, settings: list[str], times: float) -> None:
+    """As both meshes are expected to err, times the safety of the kind of run; turning rings that are at rest beside a
+    journal that turns from the start have the largest."""
+    case = load_case(name, settings)
+    plan = make_plan(case)
+    assert plan.cells is not None
+    cells = fewer_cells(case, plan, make_system(case, plan))
+    assert cells is not None
+    found = on_fewer_cells(march.March(case, plan, make_segments(case, plan), run_up_profile(case)), 0.0)
+    assert found is not None
+    own, others = (cell_error(case, each) for each in (plan.cells, cells))
+    assert found.share == pytest.approx(times * own / (others - own))
+    assert found.least == pytest.approx(0.5 * own)
 
 
 def test_a_run_that_does_not_begin_on_fewer_cells(monkeypatch: pytest.MonkeyPatch) -> None:

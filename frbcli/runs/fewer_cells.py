@@ -21,8 +21,8 @@ from frbcli.solve.state import RUNNING
 
 Observer = Callable[[Progress], None]
 
-# Errors differ from those of the shipped cases; most of all those of rings that do not turn yet in a fast start.
-SAFETY, SAFETY_OF_RINGS = 1.5, 2.0
+# Errors differ from those of the shipped cases; most of all those of rings at rest beside a journal that turns.
+SAFETY, SAFETY_OF_RINGS, SAFETY_OF_RINGS_AT_REST = 1.5, 2.0, 4.0
 LEAST = 0.5  # of the error that these cells were expected to make, which is 1.3 to 7 times the true one
 
 
@@ -42,8 +42,15 @@ def on_fewer_cells(march: March, until: float, observe: Observer | None = None) 
         if observe is not None:
             observe(other.progress(until))
     own, others = (cell_error(march.case, found) for found in (march.plan.cells, cells))
-    safety = SAFETY_OF_RINGS if march.system.ring_count else SAFETY
+    safety = _safety(march.case, march.system)
     return FewerCells(safety * own / (others - own), other.samples, LEAST * own)
+
+
+def _safety(case: Case, system: System) -> float:
+    if not system.ring_count:
+        return SAFETY
+    at_rest = case.speed.start != 0.0 and case.start.position != "resting"
+    return SAFETY_OF_RINGS_AT_REST if at_rest else SAFETY_OF_RINGS
 
 
 def fewer_cells(case: Case, plan: Plan, system: System) -> tuple[int, int] | None:
