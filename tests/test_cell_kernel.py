@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.special import wrightomega
 
 from frbcli.film.cavitation.barotropic import Barotropic
 from frbcli.film.cavitation.compiled import LAW_NUMBERS, compiled_cells, wright_omega
@@ -76,10 +76,11 @@ def test_compiled_laws_are_the_plain_ones(law: Law) -> None:
 
 
 def test_wrights_function_solves_its_equation() -> None:
-    for x in np.concatenate([np.linspace(-35.0, 60.0, 500), [200.0, 1e4]]):
-        omega = wright_omega(x)
-        assert omega + math.log(omega) == pytest.approx(x, abs=1e-12, rel=1e-13)
-    assert wright_omega(-50.0) == pytest.approx(math.exp(-50.0), rel=1e-12)
+    x = np.concatenate([np.linspace(-36.9, 12.0, 2000), np.geomspace(1.0, 1e8, 500)])
+    omega, logarithm = np.array([wright_omega(value) for value in x]).T
+    assert np.allclose(omega, wrightomega(x), rtol=3e-12, atol=0.0)
+    assert np.allclose(logarithm, np.log(wrightomega(x)), rtol=1e-12, atol=1e-12)
+    assert wright_omega(-50.0)[0] == 0.0
 
 
 def film_like(shape: tuple[int, int], closed: bool, seed: int) -> np.ndarray:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.axial import BEND
@@ -80,27 +82,49 @@ class GridMotion(NamedTuple):
     rate: float = 0.0
 
 
-@compiled()
-def end_flow(
-    kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, length: float,
-    steepness: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance)."""
+@compiled(inline=True)
+def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
+    """By how much the pressure towards an end is above that of the groove there, or of the air, by a parabola through
+    the last cell and the one beyond it; and its derivatives by the pressures of the two."""
     rise, change = last - groove, bend * (last - beyond)
     by_last, by_beyond = 1.0 + bend, -bend
     if abs(change) > BEND * abs(rise):
         side = math.copysign(BEND, change) * math.copysign(1.0, rise) if rise != 0.0 else 0.0
         change, by_last, by_beyond = side * rise, 1.0 + side, 0.0
+    return rise + change, by_last, by_beyond
+
+
+@compiled()
+def edge_pressures(
+    numbers: Array, ring: Array, pressures: Array, d_x: float, d_y: float, far: int, edge: Array
+) -> None:  # fmt: skip
+    """edge (m,) <- pressures above that of the air at a free end times its steepness, by Wright's omega function, see
+    ends.py. pressures: (m, k); d: of the journal over the clearance."""
+    m, k = pressures.shape
+    steepness = STEEPNESS / numbers[AMBIENT]
+    j, b = (k - 1, max(k - 2, 0)) if far == 1 else (0, min(1, k - 1))
+    rise, bend = (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
+    for i in range(m):
+        h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
+        felt, _, _ = felt_at_end(pressures[i, j], pressures[i, b], bend, 0.0)
+        edge[i] = math.log(PREFACTOR * steepness / (h * h * h * numbers[ASPECT] * rise)) + steepness * felt
+    for i in range(m):  # side by side
+        edge[i], _ = wright_omega(edge[i])
+
+
+@compiled(inline=True)
+def end_flow(
+    kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, steepness: float,
+    edge: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance).
+
+    edge: of edge_pressures, at a free end."""
+    felt, by_last, by_beyond = felt_at_end(last, beyond, bend, groove)
     if kind == FREE:
-        omega = wright_omega(math.log(PREFACTOR * steepness * length / conductance) + steepness * (last + change))
-        slope = conductance * omega / (1.0 + omega)
-        return (
-            conductance / steepness * omega,
-            slope * by_last,
-            slope * by_beyond,
-            omega * omega / (steepness * (1.0 + omega)),
-        )
-    felt = rise + change
+        slope = conductance * edge / (1.0 + edge)
+        by_conductance = edge * edge / (steepness * (1.0 + edge))
+        return conductance / steepness * edge, slope * by_last, slope * by_beyond, by_conductance
     return conductance * felt, conductance * by_last, conductance * by_beyond, felt
 
 
@@ -253,28 +277,29 @@ def _store(
                 stencil[CENTRE, i, j] += kept
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def _flow_through_ends(
     numbers: Array, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
     flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, g = motion.d_x, motion.d_y, motion.g
-    steepness = STEEPNESS / numbers[AMBIENT]
-    for i in range(m):
-        s, c = ring[SIN, i], ring[COS, i]
-        h = ring[GAP, i] + d_x * s - d_y * c
-        cube, square = h * h * h, 3.0 * h * h
-        for far in range(2):
-            kind = int(numbers[FAR]) if far == 1 else int(numbers[NEAR])
-            j = k - 1 if far == 1 else 0
-            if kind == CLOSED or cells[UNKNOWN, i, j] == 0.0:
+    steepness, edge = STEEPNESS / numbers[AMBIENT], np.empty(m)
+    for far in range(2):
+        kind = int(numbers[FAR]) if far == 1 else int(numbers[NEAR])
+        if kind == CLOSED:
+            continue
+        j, b = (k - 1, max(k - 2, 0)) if far == 1 else (0, min(1, k - 1))
+        rise, bend = (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
+        groove = numbers[FAR_PRESSURE] if far == 1 else 0.0
+        if kind == FREE:
+            edge_pressures(numbers, ring, states[PRESSURE], d_x, d_y, far, edge)
+        for i in range(m):
+            if cells[UNKNOWN, i, j] == 0.0:
                 continue
-            b = max(j - 1, 0) if far == 1 else min(1, k - 1)
-            rise, bend = (
-                (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
-            )
-            groove = numbers[FAR_PRESSURE] if far == 1 else 0.0
+            s, c = ring[SIN, i], ring[COS, i]
+            h = ring[GAP, i] + d_x * s - d_y * c
+            cube, square = h * h * h, 3.0 * h * h
             unit = numbers[ASPECT] * ring[LENGTH, i] * rise
             flow, by_last, by_beyond, by_conductance = end_flow(
                 kind,
@@ -283,8 +308,8 @@ def _flow_through_ends(
                 cube * unit,
                 bend,
                 groove,
-                ring[LENGTH, i],
                 steepness,
+                edge[i],
             )
             by_gap = g * by_conductance * square * unit
             right[i, j, k] -= flow

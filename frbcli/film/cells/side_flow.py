@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.cells.balances import end_flow
+from frbcli.film.cells.balances import edge_pressures, end_flow
 from frbcli.film.cells.data import (
     AMBIENT,
     ASPECT,
@@ -14,6 +14,7 @@ from frbcli.film.cells.data import (
     FAR,
     FAR_BEND,
     FAR_RISE,
+    FREE,
     GAP,
     LENGTH,
     NEAR,
@@ -28,26 +29,28 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.states import PRESSURE, STATES
 
 
-@compiled()
+@compiled(makes_arrays=True)
 def side_flow(
     numbers: Array, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, far_open: bool
 ) -> float:
     """Outflow through the ends in the film's units, by one section; d: in the frame of its cells."""
     m, k = states.shape[1], states.shape[2]
-    steepness, total = STEEPNESS / numbers[AMBIENT], 0.0
+    steepness, total, edge = STEEPNESS / numbers[AMBIENT], 0.0, np.empty(m)
     for far in range(2 if far_open else 1):
         kind = int(numbers[FAR]) if far == 1 else int(numbers[NEAR])
         if kind == CLOSED:
             continue
         j, b = (k - 1, max(k - 2, 0)) if far == 1 else (0, min(1, k - 1))
         rise, bend = (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
+        if kind == FREE:
+            edge_pressures(numbers, ring, states[PRESSURE], d_x, d_y, far, edge)
         for i in range(m):
             if cells[UNKNOWN, i, j] == 0.0:
                 continue
             h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
             conductance = h * h * h * numbers[ASPECT] * ring[LENGTH, i] * rise
             flow, _, _, _ = end_flow(
-                kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, ring[LENGTH, i], steepness
+                kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, steepness, edge[i]
             )
             total += max(flow, 0.0)
     return total
