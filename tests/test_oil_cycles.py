@@ -97,8 +97,9 @@ def after_transients(flow: PeriodMap, wet: Wet, period: float, omega: float, per
     return np.mean([largest(piece) for piece in pieces], axis=0), (len(times) - 1) / (times[-1] - times[0])
 
 
-def check_time_loop_ends_in_the_cycle(found: LimitCycles, periods: int, atol: float) -> None:
-    """The stable cycle at the speed asked for is what a run of so many periods has become, from 0.4 off rest on."""
+def check_time_loop_ends_in_the_cycle(found: LimitCycles, periods: int, atol: float, rtol: float = 1e-5) -> None:
+    """The stable cycle at the speed asked for is what a run of so many periods has become, from 0.4 off rest on: its
+    eccentricities to atol, its frequency to rtol."""
     (cycle,) = [point for branch in found.branches for point in branch.points if point.kind == "asked"]
     assert cycle.stable
     flow, omega = period_map(found.case), 2.0 * math.pi * cycle.speed_Hz
@@ -107,7 +108,7 @@ def check_time_loop_ends_in_the_cycle(found: LimitCycles, periods: int, atol: fl
     rest.wet.q[0] += 0.4 * flow.scale
     eccentricity, frequency = after_transients(flow, rest.wet, 1.0 / cycle.frequency_Hz, omega, periods)
     np.testing.assert_allclose(cycle.eccentricity_max, eccentricity, atol=atol)
-    assert cycle.frequency_Hz == pytest.approx(frequency, rel=1e-5)
+    assert cycle.frequency_Hz == pytest.approx(frequency, rel=rtol)
 
 
 def test_the_cycle_is_what_the_time_loop_ends_in() -> None:
@@ -126,11 +127,12 @@ def test_the_cycle_of_a_flexible_rotor_is_what_the_time_loop_ends_in() -> None:
 @pytest.mark.nightly
 def test_the_cycle_of_a_floating_ring_is_what_the_time_loop_ends_in() -> None:
     """Two films and a ring whose speed follows slowly, 64 x 5 cells, at 66 Hz, before the fold of the branch: after
-    300 periods."""
+    300 periods. The cycle is a mean over places of the cells, whose round-off moves its frequency: by 2e-5 between two
+    forms of the same law; the frequencies of the time loop differed by 3e-6."""
     settings = ['bearing.inner.supply={kind="circumferential-groove",pressure="2 bar"}', "film.cavitation=two-phase"]
     settings += ["speed.from=61 Hz", "speed.to=66.3 Hz", "accuracy.mesh=[5,64]"]
     found = frbcli.limit_cycles(frbcli.load_case("floating-ring", settings), [66.0])
-    check_time_loop_ends_in_the_cycle(found, 450, 2e-4)
+    check_time_loop_ends_in_the_cycle(found, 450, 2e-4, 3e-5)
 
 
 @pytest.mark.nightly
