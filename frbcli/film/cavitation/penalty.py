@@ -15,7 +15,7 @@ PREFACTOR = 0.01  # a of (3.31)
 # in a wide gap. Where the film carries, w is a pressure, where it cavitates a source: with both of one size, Newton's
 # method crosses the front between them as if it were none (30, 100, 400: 4.2, 3.3, 3.4 iterations; 1: 6.9).
 SPREAD = 100.0
-LARGE, NOTHING = 1e8, -37.0  # arguments of omega: the largest, and that below which omega is nothing
+LARGE, NOTHING = 1e16, -37.0  # arguments of omega: the largest, and that below which omega is nothing
 SLOWEST = 1.0  # rad/s: the dimensionless pressure refers to a speed that must not vanish
 STANDS, BY_ECCENTRICITY, BY_ECCENTRICITY_AND_SPEED = 0.0, 1.0, 2.0
 
@@ -113,9 +113,9 @@ def wright_omega(x: float) -> tuple[float, float]:
     omega. Without a branch and without a function of libraries but the root, so that a loop over it can run on the
     vector units."""
     at = min(max(x, NOTHING), LARGE)
-    root = math.sqrt(math.sqrt(math.sqrt(math.sqrt(max(at, 1.0)))))
-    # To begin with: x / (1 + x) ln x, that by Pade's approximation of 16 ln(root); a parabola; x. Off by 0.1 at most.
-    far = 48.0 * (root * root - 1.0) * at / ((root * root + 4.0 * root + 1.0) * (1.0 + at))
+    root = math.sqrt(math.sqrt(math.sqrt(math.sqrt(math.sqrt(max(at, 1.0))))))
+    # To begin with: x / (1 + x) ln x, that by Pade's approximation of 32 ln(root); a parabola; x. Off by 0.3 at most.
+    far = 96.0 * (root * root - 1.0) * at / ((root * root + 4.0 * root + 1.0) * (1.0 + at))
     low = min(max(at, -4.0), 1.0)
     near = -0.5783 + low * (0.661 - 0.0523 * low)
     logarithm = far if at > 1.0 else (near if at > -4.0 else at)
@@ -135,6 +135,6 @@ def wright_omega(x: float) -> tuple[float, float]:
     left, slope = at - logarithm - omega, 1.0 + omega
     step = 2.0 * left * slope / (2.0 * slope * slope + left * omega)
     logarithm += step
-    omega *= 1.0 + step * (1.0 + 0.5 * step)  # the step is less than 1e-4
+    omega *= 1.0 + step * (1.0 + 0.5 * step)  # below x = 1 the step is less than 1e-4
     omega = at - logarithm if at > 1.0 else omega
     return (omega if x > NOTHING else 0.0), logarithm
