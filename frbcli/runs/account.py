@@ -13,7 +13,7 @@ def account(run: Run) -> list[tuple[str, str, str]]:
     film = error.get("film_force_relative")
     against = "against a finer mesh" if error.get("model_relative") is None else "of the short-bearing theory"
     return [
-        ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.2g} ms per hour"),
+        ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.2g} ms/h"),
         (
             "steps",
             f"{cost['steps']}",
