@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -76,11 +77,13 @@ def test_compiled_laws_are_the_plain_ones(law: Law) -> None:
 
 
 def test_wrights_function_solves_its_equation() -> None:
-    x = np.concatenate([np.linspace(-36.9, 12.0, 2000), np.geomspace(1.0, 1e16, 1000)])
+    x = np.concatenate([np.linspace(-36.9, 12.0, 2000), np.geomspace(1.0, 1e12, 1000)])
     omega, logarithm = np.array([wright_omega(value) for value in x]).T
-    assert np.allclose(omega, wrightomega(x), rtol=3e-12, atol=0.0)
-    assert np.allclose(logarithm, np.log(wrightomega(x)), rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(omega + np.log(omega), x, rtol=1e-13, atol=1e-12)
+    np.testing.assert_allclose(omega, wrightomega(x), rtol=1e-12)
+    np.testing.assert_allclose(logarithm, np.log(wrightomega(x)), rtol=1e-12, atol=1e-12)
     assert wright_omega(-50.0)[0] == 0.0
+    assert wright_omega(1e15) == pytest.approx((1e15, math.log(1e15)), rel=1e-11)
 
 
 def film_like(shape: tuple[int, int], closed: bool, seed: int) -> np.ndarray:

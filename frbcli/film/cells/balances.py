@@ -83,6 +83,15 @@ class GridMotion(NamedTuple):
 
 
 @compiled(inline=True)
+def section_end(numbers: Array, k: int, far: bool) -> tuple[int, int, int, float, float]:
+    """Of the end z = 0 of a section with k cells along, or of z = 1: its kind, the last cell and the one beyond it, and
+    how the pressure falls there by those of the two, see EndSlope."""
+    if far:
+        return int(numbers[FAR]), k - 1, max(k - 2, 0), numbers[FAR_RISE], numbers[FAR_BEND]
+    return int(numbers[NEAR]), 0, min(1, k - 1), numbers[NEAR_RISE], numbers[NEAR_BEND]
+
+
+@compiled(inline=True)
 def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
     """By how much the pressure towards an end is above that of the groove there, or of the air, by a parabola through
     the last cell and the one beyond it; and its derivatives by the pressures of the two."""
@@ -95,36 +104,35 @@ def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple
 
 
 @compiled()
-def edge_pressures(
-    numbers: Array, ring: Array, pressures: Array, d_x: float, d_y: float, far: int, edge: Array
+def falls_to_air(
+    numbers: Array, ring: Array, pressures: Array, d_x: float, d_y: float, far: bool, falls: Array
 ) -> None:  # fmt: skip
-    """edge (m,) <- pressures above that of the air at a free end times its steepness, by Wright's omega function, see
-    ends.py. pressures: (m, k); d: of the journal over the clearance."""
+    """falls (m,) <- of the pressure from the last cells to a free end, times the steepness b of (4.37): Wright's omega
+    function, see ends.py. pressures: (m, k) of the cells; d: of the journal over the clearance."""
     m, k = pressures.shape
     steepness = STEEPNESS / numbers[AMBIENT]
-    j, b = (k - 1, max(k - 2, 0)) if far == 1 else (0, min(1, k - 1))
-    rise, bend = (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
+    _, j, b, rise, bend = section_end(numbers, k, far)
     for i in range(m):
         h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
         felt, _, _ = felt_at_end(pressures[i, j], pressures[i, b], bend, 0.0)
-        edge[i] = math.log(PREFACTOR * steepness / (h * h * h * numbers[ASPECT] * rise)) + steepness * felt
+        falls[i] = math.log(PREFACTOR * steepness / (h * h * h * numbers[ASPECT] * rise)) + steepness * felt
     for i in range(m):  # side by side
-        edge[i], _ = wright_omega(edge[i])
+        falls[i], _ = wright_omega(falls[i])
 
 
 @compiled(inline=True)
 def end_flow(
     kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, steepness: float,
-    edge: float,
+    fall: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance).
 
-    edge: of edge_pressures, at a free end."""
+    fall: at a free end, see falls_to_air."""
     felt, by_last, by_beyond = felt_at_end(last, beyond, bend, groove)
     if kind == FREE:
-        slope = conductance * edge / (1.0 + edge)
-        by_conductance = edge * edge / (steepness * (1.0 + edge))
-        return conductance / steepness * edge, slope * by_last, slope * by_beyond, by_conductance
+        slope = conductance * fall / (1.0 + fall)
+        by_conductance = fall * fall / (steepness * (1.0 + fall))
+        return conductance / steepness * fall, slope * by_last, slope * by_beyond, by_conductance
     return conductance * felt, conductance * by_last, conductance * by_beyond, felt
 
 
@@ -284,16 +292,14 @@ def _flow_through_ends(
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, g = motion.d_x, motion.d_y, motion.g
-    steepness, edge = STEEPNESS / numbers[AMBIENT], np.empty(m)
-    for far in range(2):
-        kind = int(numbers[FAR]) if far == 1 else int(numbers[NEAR])
+    steepness, falls = STEEPNESS / numbers[AMBIENT], np.empty(m)
+    for far in (False, True):
+        kind, j, b, rise, bend = section_end(numbers, k, far)
         if kind == CLOSED:
             continue
-        j, b = (k - 1, max(k - 2, 0)) if far == 1 else (0, min(1, k - 1))
-        rise, bend = (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
-        groove = numbers[FAR_PRESSURE] if far == 1 else 0.0
+        groove = numbers[FAR_PRESSURE] if far else 0.0
         if kind == FREE:
-            edge_pressures(numbers, ring, states[PRESSURE], d_x, d_y, far, edge)
+            falls_to_air(numbers, ring, states[PRESSURE], d_x, d_y, far, falls)
         for i in range(m):
             if cells[UNKNOWN, i, j] == 0.0:
                 continue
@@ -309,7 +315,7 @@ def _flow_through_ends(
                 bend,
                 groove,
                 steepness,
-                edge[i],
+                falls[i],
             )
             by_gap = g * by_conductance * square * unit
             right[i, j, k] -= flow

@@ -5,21 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.cells.balances import edge_pressures, end_flow
+from frbcli.film.cells.balances import end_flow, falls_to_air, section_end
 from frbcli.film.cells.data import (
     AMBIENT,
     ASPECT,
     CLOSED,
     COS,
-    FAR,
-    FAR_BEND,
-    FAR_RISE,
     FREE,
     GAP,
     LENGTH,
-    NEAR,
-    NEAR_BEND,
-    NEAR_RISE,
     SIN,
     UNKNOWN,
     volume_films,
@@ -35,22 +29,20 @@ def side_flow(
 ) -> float:
     """Outflow through the ends in the film's units, by one section; d: in the frame of its cells."""
     m, k = states.shape[1], states.shape[2]
-    steepness, total, edge = STEEPNESS / numbers[AMBIENT], 0.0, np.empty(m)
-    for far in range(2 if far_open else 1):
-        kind = int(numbers[FAR]) if far == 1 else int(numbers[NEAR])
-        if kind == CLOSED:
+    steepness, total, falls = STEEPNESS / numbers[AMBIENT], 0.0, np.empty(m)
+    for far in (False, True):
+        kind, j, b, rise, bend = section_end(numbers, k, far)
+        if kind == CLOSED or (far and not far_open):
             continue
-        j, b = (k - 1, max(k - 2, 0)) if far == 1 else (0, min(1, k - 1))
-        rise, bend = (numbers[FAR_RISE], numbers[FAR_BEND]) if far == 1 else (numbers[NEAR_RISE], numbers[NEAR_BEND])
         if kind == FREE:
-            edge_pressures(numbers, ring, states[PRESSURE], d_x, d_y, far, edge)
+            falls_to_air(numbers, ring, states[PRESSURE], d_x, d_y, far, falls)
         for i in range(m):
             if cells[UNKNOWN, i, j] == 0.0:
                 continue
             h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
             conductance = h * h * h * numbers[ASPECT] * ring[LENGTH, i] * rise
             flow, _, _, _ = end_flow(
-                kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, steepness, edge[i]
+                kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, steepness, falls[i]
             )
             total += max(flow, 0.0)
     return total
