@@ -196,7 +196,7 @@ def test_a_browser_shows_it_and_reads_it_out(run: Run, tmp_path: Path) -> None:
     </script>"""
     target = tmp_path / "page.html"
     target.write_text(text.replace("</body>", f"{pointing}</body>"), encoding="utf-8")
-    given = [str(browser()), "--no-sandbox", "--disable-gpu", "--host-resolver-rules=MAP * ~NOTFOUND"]
+    given = [str(browser()), "--headless", "--no-sandbox", "--disable-gpu", "--host-resolver-rules=MAP * ~NOTFOUND"]
     shown = subprocess.run(
         [*given, "--dump-dom", target.as_uri()], capture_output=True, text=True, timeout=120, check=True
     ).stdout
