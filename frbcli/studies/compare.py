@@ -26,6 +26,7 @@ from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
 from frbcli.runs.run import earlier_run, is_interrupted, runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.film_faults import require_films
 from frbcli.scene.plan import THEORIES, make_plan
 
 if TYPE_CHECKING:
@@ -150,6 +151,7 @@ def compare(
     Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
     allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
     """
+    require_films(case)
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings, thermals)
     cases = [_with_models(case, variant) for variant in variants]

@@ -31,6 +31,7 @@ from frbcli.html import Tabular
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
+from frbcli.scene.film_faults import require_films
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -106,6 +107,7 @@ def fit(
     """
     from scipy.optimize import least_squares  # scipy.optimize takes longer to import than a plan to make
 
+    require_films(case)
     numbers = _numbers(case, keys, bounds or {})
     with TemporaryDirectory(prefix="frb-fit-") as folder:
         trial = _Trial(case, measurement, numbers, signal, Path(folder) / "run.h5", observe)
