@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from frbcli.bearing_tests.faults import bearing_faults, motion_faults
 from frbcli.case.bearing import Bores, SingleFilmBearing
+from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
@@ -150,7 +151,7 @@ def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
 
 def with_model(case: Case, cavitation: str) -> Case:
     """The case with a cavitation model for its film."""
-    return case.model_copy(update={"film": case.film.model_copy(update={"cavitation": cavitation})})
+    return altered(case, {"film": altered(case.film, {"cavitation": cavitation})})
 
 
 def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.cycles.equilibria import Equilibrium, settled
 from frbcli.cycles.faults import check
@@ -39,7 +38,7 @@ class Family:
 
     def system(self, share: float) -> System:
         """The system at a share of the largest value. Raises InputError if the case cannot have it."""
-        case = load_case_text(self.case.source_text, [*self.settings, self.setting(share)], self.case.name)
+        case = self.case.with_settings(*self.settings, self.setting(share))
         check(case)
         return make_system(case, make_plan(case))
 

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from frbcli.case.model import altered
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import label_of, laws
 from frbcli.film.cavitation.two_phase import TwoPhase
@@ -89,7 +90,7 @@ def _compared(law: type[Law], given: Any) -> list[Any]:
     found = [given]
     for key, values in law.compared:
         others = {*values, getattr(given, key)}
-        found = [one.model_copy(update={key: value}) for one in found for value in sorted(others)]
+        found = [altered(one, {key: value}) for one in found for value in sorted(others)]
     return found
 
 

@@ -10,7 +10,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
-from frbcli.film.section_faults import section_faults
+from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.channels import MIDDLE, channel_faults
 from frbcli.scene.films import FilmPlace, film_places
 from frbcli.scene.heat_faults import heat_faults
@@ -42,7 +42,7 @@ def _supply_faults(case: Case, key: str, place: FilmPlace) -> list[Fault]:
     section = film_section(case, place.geometry, place.feed_holes)
     if not law_named(case.cavitation(place.geometry)).keeps_oil:  # such a film makes its oil, and cannot run dry
         section = ends_at_ambient(section)
+    at, value = (f"{key}.supply.kind", supply.kind) if runs_dry(section) else (key, place.name)
     return [
-        Fault(key, place.name, None, f"cannot be solved: {found.problem}.", found.remedy)
-        for found in section_faults(section)
+        Fault(at, value, None, f"cannot be solved: {found.problem}.", found.remedy) for found in section_faults(section)
     ]

@@ -194,7 +194,7 @@ def _with_rung(case: Case, rung: Rung) -> Case:
 
 
 def _with(case: Case, *settings: str) -> Case:
-    return load_case_text(case.source_text, settings, name=case.name)
+    return case.with_settings(*settings)
 
 
 def _check_names(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> None:

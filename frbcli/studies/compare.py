@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import models
@@ -273,7 +272,7 @@ def _with_models(case: Case, variant: Variant) -> Case:
         # the loss of a run without heat is recorded by choice alone
         *([f"output.signals=[{', '.join(map(json.dumps, signals))}]"] if variant.thermal == NO_HEAT else []),
     )
-    return load_case_text(case.source_text, settings, name=case.name)
+    return case.with_settings(*settings)
 
 
 def _fits(case: Case, variant: Variant) -> bool:

@@ -24,7 +24,6 @@ from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import Values, bearing_clearance
 from frbcli.analysis.spectrum import window_length
 from frbcli.case.listing import values as listed
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, FrbError, InputError
 from frbcli.html import Tabular
@@ -159,7 +158,7 @@ class _Trial:
     def case_at(self, x: Values) -> Case:
         """The case with the numbers that are exp(x) times those at first."""
         settings = [f"{key}={value!r}" for key, value in self._values(x).items()]
-        return load_case_text(self._case.source_text, settings, name=self._case.name)
+        return self._case.with_settings(*settings)
 
     def _values(self, x: Values) -> dict[str, float]:
         return {n.key: n.start * math.exp(change) for n, change in zip(self._numbers, x.tolist(), strict=True)}
