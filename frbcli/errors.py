@@ -53,6 +53,10 @@ class InputError(FrbError):
         super().__init__(source + "".join(f"\n  {fault}" for fault in faults[:MOST_TOLD]) + more)
 
 
+class FrozenError(InputError, ValueError):
+    """A part of a case was to be changed in place, or copied with changes that are not checked."""
+
+
 class RunFileError(InputError):
     """A run file cannot be read or does not hold what is asked of it."""
 

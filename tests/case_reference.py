@@ -30,7 +30,9 @@ modelled, and `frb schema > case.schema.json` writes a schema for editors.
   that are not modelled are refused before anything is computed.
 
 From Python, `frbcli.case_from_dict` takes the same tables as nested dicts with the same checks. `case.source_text` is
-the TOML text of any case, also of one that was made or changed in Python; a run file contains it.
+the TOML text of any case, also of one that was made or changed in Python; a run file contains it. A case is frozen:
+`case.with_settings("oil.viscosity = 50 mPa*s", ...)`, or with a dict `{"oil.viscosity": "50 mPa*s"}`, gives another
+case, checked as a file is.
 
 This page is written from the schema by `cd tests && python -m case_reference`; a test checks that it is up to date.
 """

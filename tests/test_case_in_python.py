@@ -13,9 +13,11 @@ import pytest
 import frbcli
 from frbcli.case.bearing import CircumferentialGroove, SingleFilmBearing
 from frbcli.case.load import case_from_dict, describes, load_case, load_case_text
+from frbcli.case.model import Model
 from frbcli.case.rotor import RigidRotor
 from frbcli.case.schema import Case
 from frbcli.case.shipped import shipped_names
+from frbcli.case.text import as_tables
 from frbcli.case.toml import parse
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import read_run
@@ -72,10 +74,10 @@ def test_digits_that_no_readable_unit_has_are_kept() -> None:
 
 def test_a_changed_case_has_its_own_text() -> None:
     case = load_case("jeffcott")
-    faster = case.model_copy(update={"given_speed": case.speed.model_copy(update={"end": np.float64(400.0)})})
+    faster = case.with_settings({"speed.to": np.float64(400.0)})
     assert load_case_text(faster.source_text).speed.end == 400.0
     assert load_case_text(case.source_text).speed.end == 300.0
-    assert faster.model_copy(update={"given_speed": case.speed}).source_text == case.source_text
+    assert faster.with_settings({"speed": case.speed}) == case
     for same in (copy.deepcopy(case), copy.copy(case), pickle.loads(pickle.dumps(case))):
         assert same == case
         assert same.source_text == case.source_text
@@ -100,9 +102,81 @@ def test_bearings_made_in_python_are_numbered_as_in_a_file() -> None:
     case = made(rotor=rotor, shaft=shaft, bearing=(bearing, {**RIGID["bearing"], "position": "90 mm"}))
     assert [found.name for found in case.bearings] == ["1", "2"]
     assert load_case_text(case.source_text) == case
-    swapped = case.model_copy(update={"bearings": (bearing, case.bearings[0])})
-    assert [found.name for found in load_case_text(swapped.source_text).bearings] == ["", "1"]
+    swapped = case.with_settings({"bearing": [{**as_tables(bearing), "name": "left"}, case.bearings[0]]})
+    assert [found.name for found in load_case_text(swapped.source_text).bearings] == ["left", "1"]
     assert made(bearing=bearing).bearings == (bearing,)
+
+
+# --- with settings ---
+
+
+def test_settings_are_read_as_in_a_file() -> None:
+    case = load_case("jeffcott")
+    text = case.with_settings("oil.viscosity = 50 mPa*s", "speed.to=200 Hz")
+    assert (text.oil.viscosity, text.speed.end) == (0.05, 200.0)
+    table = case.with_settings({"oil.viscosity": "50 mPa*s", "speed": {"from": 0, "to": "200 Hz", "duration": 10.0}})
+    assert text == table == load_case("jeffcott", ["oil.viscosity=50 mPa*s", "speed.to=200 Hz"])
+    assert load_case_text(text.source_text) == text
+    assert case == load_case("jeffcott")
+    assert case.with_settings() == case
+    assert case.with_settings({"title": "3"}).title == "3"
+    assert case.with_settings({"title": "a"}, "title=b", {"title": None}).title == ""
+    assert case.with_settings({"thermal": None, "start.displacement": np.array([0.1, 0.0])}).start.displacement
+
+
+def test_every_fault_of_settings_is_told_at_once() -> None:
+    with pytest.raises(InputError) as caught:
+        load_case("jeffcott").with_settings(
+            "nothing", "oil.viscositi=1 Pa*s", {"bearing.clearance": "35 mn", "bearing.supply.pressure": 5.0, "": 1}
+        )
+    keys = [fault.key for fault in caught.value.faults]
+    assert set(keys) == {"--set", "settings", "oil.viscositi", "bearing.clearance", "bearing.supply.pressure"}
+    with pytest.raises(InputError, match="is no setting"):
+        load_case("jeffcott").with_settings(["oil.viscosity=50 mPa*s"])  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="nested too deeply"):
+        load_case("jeffcott").with_settings({"oil": _deep()})
+
+
+def _deep() -> dict[str, Any]:
+    deep: dict[str, Any] = {}
+    deep["in"] = deep
+    return deep
+
+
+def records() -> list[type[Model]]:
+    """Every frozen record that a case is made of."""
+    found = [Model]
+    for each in found:
+        found += [model for model in each.__subclasses__() if model not in found]
+    return found
+
+
+@pytest.mark.parametrize("record", records(), ids=lambda record: record.__name__)
+def test_no_record_is_changed_in_another_way(record: type[Model]) -> None:
+    some = record.__new__(record)
+    name = next(iter(record.model_fields), "anything")
+    for key in (name, "unknown"):
+        for change in (
+            lambda key=key: some.model_copy(update={key: 1}),
+            lambda key=key: some.copy(update={key: 1}),
+            lambda key=key: setattr(some, key, 1),
+            lambda key=key: delattr(some, key),
+            lambda key=key: record.model_construct(**{key: 1}),
+        ):
+            with pytest.raises(InputError, match=r"frozen.*case\.with_settings\("):
+                change()
+
+
+def test_the_records_of_a_case_are_all_found() -> None:
+    assert {"Case", "Oil", "SingleFilmBearing", "RingFilm", "TwoPhase", "Accuracy"} <= {r.__name__ for r in records()}
+
+
+def test_what_model_copy_did_not_change_is_changed() -> None:
+    case = load_case("jeffcott")
+    with pytest.raises(InputError, match=r"Oil\.viscosity"):
+        case.oil.model_copy(update={"viscosity": 0.05})
+    assert frbcli.make_plan(case) is not None
+    assert case.with_settings("oil.viscosity = 50 mPa*s").viscosity(case.bearings[0]) == 0.05  # type: ignore[arg-type]
 
 
 # --- from a dict ---
@@ -162,7 +236,7 @@ def test_a_changed_case_records_its_own_text_with_its_run(tmp_path: Path) -> Non
     case = load_case("jeffcott", ["film.theory=short", "speed.to=60 Hz", "speed.duration=0.05 s"])
     path = tmp_path / "run.h5"
     runup(case, path)
-    changed = case.model_copy(update={"oil": case.oil.model_copy(update={"given_viscosity": 0.013})})
+    changed = case.with_settings({"oil.viscosity": 0.013})
     with pytest.raises(InputError, match="another case"):
         runup(changed, path, resume=True)
     runup(changed, path)

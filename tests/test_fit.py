@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +17,10 @@ from synthetic_run import CLEARANCE, Rotor, make_run
 import frbcli
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.ridges import ridge_speeds, ridges
+from frbcli.case.listing import values
+from frbcli.case.machine_keys import machine_fault
 from frbcli.cli.main import frb
+from frbcli.cycles.maps.stability_map import Across
 from frbcli.errors import InputError
 from frbcli.plot.ridges import against_figure, fit_figure
 from frbcli.results.store import Run
@@ -26,6 +30,7 @@ from frbcli.studies.fit import Fit, fit
 BASE = ["film.theory=short", "speed.duration=4 s", "accuracy.target=0.01", "rotor.unbalance=10 g*mm"]
 TRUE = {"bearing.clearance": 38.3e-6, "oil.viscosity": 10.4e-3}
 NOISE_um = 0.3
+OTHER_TABLES = ("accuracy", "output", "speed", "start", "motion")
 COLUMNS = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n", "--clearance", "35 um"]
 
 
@@ -181,6 +186,37 @@ def test_what_cannot_be_fitted_is_refused_before_a_run(
 ) -> None:
     with pytest.raises(InputError, match=re.escape(words)):
         fit(frbcli.load_case("jeffcott"), make_run(Rotor()), keys, bounds)
+
+
+@pytest.mark.parametrize("name", ["jeffcott", "turbocharger-car-heat", "squeeze"])
+def test_numbers_that_are_not_of_the_machine_are_never_varied(name: str) -> None:
+    """Numbers that tell how a run is made or computed, in every function that varies one of the machine."""
+    case = frbcli.load_case(name, [] if name != "squeeze" else ["contact.stiffness=1e8 N/m"])
+    numbers = [value for value in values(case) if isinstance(value.value, float)]
+    others = [each.key for each in numbers if each.key.partition(".")[0] in OTHER_TABLES]
+    ends = (".ramp", "cutoff", "hottest_film", "contact.eccentricity")
+    others += [each.key for each in numbers if each.key.endswith(ends)]
+    assert len(others) >= 4
+    machine = frbcli.load_case("jeffcott", ["film.theory=short"])
+    gap = ("bearing.clearance", "30 um", "40 um")
+    for key in [*others, "accuracy.tolerance", "rotor.cutoff", "bearing.0.clearance_steps.0.time"]:
+        varied: list[Callable[[str], object]] = [
+            lambda key: frbcli.limit_cycles_over(machine, key, "1", "2", 200.0),
+            lambda key: frbcli.stability_map(machine, key, "1", "2"),
+            lambda key: frbcli.stability_map(machine, key, "1", "2", across=Across(*gap, 200.0)),
+            lambda key: frbcli.stability_map(machine, *gap, across=Across(key, "1", "2", 200.0)),
+        ]
+        if key in others and case.given_rotor is not None:
+            varied.append(lambda key: fit(case, make_run(Rotor()), [key]))
+        for vary in varied:
+            with pytest.raises(InputError, match=r"is no number of the machine.*e\.g\. bearing\.clearance"):
+                vary(key)
+    assert not [each.key for each in numbers if each.key not in others and machine_fault(each.key, "")]
+
+
+def test_a_number_without_effect_is_not_found(measurement: Run) -> None:
+    with pytest.raises(InputError, match=r"oil\.density: changes nothing"):
+        fit(frbcli.load_case("jeffcott", BASE), measurement, ["oil.density"])
 
 
 def test_a_measurement_at_a_constant_speed_is_refused() -> None:

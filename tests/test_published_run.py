@@ -96,7 +96,7 @@ def test_a_full_film_is_that_of_the_other_forms() -> None:
 
 def replace_mesh(case: Case) -> Case:
     """The case on the mesh that is planned for it."""
-    return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"mesh": None})})
+    return case.with_settings({"accuracy.mesh": None})
 
 
 def test_a_fed_film_moves_as_in_the_conservative_form() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frbcli.case.bearing import Bores, CircumferentialGroove, SingleFilmBearing
+from frbcli.case.bearing import Bores, SingleFilmBearing
 from frbcli.case.schema import Case, Motion
 from frbcli.errors import Fault
 
@@ -32,8 +32,8 @@ def motion_faults(motion: Motion | None, test: str) -> list[Fault]:
     return faults
 
 
-def bearing_faults(case: Case, test: str, keeps: bool) -> list[Fault]:
-    """Of the bearing, for the test called "rotation", "squeeze" or "whirl"; keeps: whether its film keeps its oil."""
+def bearing_faults(case: Case, test: str) -> list[Fault]:
+    """Of the bearing, for the test called "rotation", "squeeze" or "whirl"."""
     if len(case.bearings) != 1:
         problem = "are too many: a kinematic test is of one bearing."
         return [Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")]
@@ -45,17 +45,9 @@ def bearing_faults(case: Case, test: str, keeps: bool) -> list[Fault]:
     if not isinstance(bearing, SingleFilmBearing):
         problem = "is not modelled in this version of kinematic tests."
         return [Fault("bearing.kind", bearing.kind, None, problem, 'Modelled is: "single-film".')]
-    supply, faults = bearing.supply, []
-    if keeps and supply.kind == "none" and bearing.ends == "free-to-air":
-        problem = "with ends free to air gets no oil: the bearing runs dry."
-        remedy = 'Add a supply to [bearing], or write ends = "oil-bath".'
-        faults.append(Fault("bearing.supply.kind", supply.kind, None, problem, remedy))
-    if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, 0.5, 1.0):
-        problem = "is neither in the middle nor at an end: the two films would differ."
-        value = f"{supply.axial_position:g}"
-        faults.append(Fault("bearing.supply.axial_position", value, None, problem, "Write 0.5, 0 or 1."))
+    supply = bearing.supply
     turns = test == "rotation" and case.motion is not None and case.motion.speed
     if isinstance(supply, Bores) and supply.on == "journal" and turns:
         problem = "turn with the journal: no film is steady in which the journal keeps its place."
-        faults.append(Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".'))
-    return faults
+        return [Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".')]
+    return []

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from frbcli.bearing_tests.faults import bearing_faults, motion_faults
 from frbcli.case.bearing import Bores, SingleFilmBearing
+from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
@@ -14,10 +15,9 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
-from frbcli.film.section_faults import section_faults
 from frbcli.scene.bearing_models import chosen_model, model_decisions
+from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import make_law
-from frbcli.scene.heat_faults import heat_faults
 from frbcli.scene.planned import Decision
 from frbcli.scene.published import DIFFUSIONS, ELEMENTS
 from frbcli.scene.section import film_rectangle, film_section
@@ -87,10 +87,6 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     assert isinstance(bearing, SingleFilmBearing)
     assert case.motion is not None
     section = film_section(case, bearing)
-    keeps = law_named(cavitation).keeps_oil
-    if problems := section_faults(section if keeps else ends_at_ambient(section)):  # one that makes its oil has some
-        faults = (Fault("bearing", "", None, f"cannot be solved: {p.problem}.", p.remedy) for p in problems)
-        raise InputError(case.name or "case", tuple(faults))
     rectangle = film_rectangle(bearing, section)
     law = law_named(cavitation)
     closed = law.closed and bearing.ends == "free-to-air"
@@ -129,7 +125,7 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
 
 def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
     """Of a bearing model. Raises as kinematic_plan."""
-    faults = [*motion_faults(case.motion, test), *bearing_faults(case, test, False)]
+    faults = [*motion_faults(case.motion, test), *bearing_faults(case, test), *film_faults(case)]
     if cavitation:
         problem = f"has no effect on film.theory = {case.film.theory}, a bearing model."
         faults.append(Fault("--cavitation", cavitation, None, problem, "Leave it out."))
@@ -137,7 +133,7 @@ def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
     rate = TWO_PI * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
     from frbcli.scene.bearing_model_films import model_faults  # numba takes longer to import than a plan to make
 
-    faults += [*model_faults(case, rate), *heat_faults(case)]
+    faults += model_faults(case, rate)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
     bearing, model = case.bearings[0], chosen_model(case)
@@ -155,7 +151,7 @@ def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
 
 def with_model(case: Case, cavitation: str) -> Case:
     """The case with a cavitation model for its film."""
-    return case.model_copy(update={"film": case.film.model_copy(update={"cavitation": cavitation})})
+    return altered(case, {"film": altered(case.film, {"cavitation": cavitation})})
 
 
 def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
@@ -213,9 +209,8 @@ def _film_decision(law: type[Law], rectangular: bool) -> Decision:
 
 def _refuse(case: Case, cavitation: str, test: str) -> None:
     faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test)]
-    faults += bearing_faults(case, test, cavitation in names() and law_named(cavitation).keeps_oil)
-    if cavitation in names():
-        faults += heat_faults(with_model(case, cavitation))
+    faults += bearing_faults(case, test)
+    faults += film_faults(with_model(case, cavitation) if cavitation in names() else case)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
 

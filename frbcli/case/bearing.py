@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema
 
 from frbcli.case.laws import Cavitation
-from frbcli.case.model import Model
+from frbcli.case.model import Model, altered
 from frbcli.case.quantities import (
     Angle,
     Clearance,
@@ -262,7 +262,7 @@ def _named(bearing: object, name: str) -> object:
     if isinstance(bearing, dict):
         return {"name": name, **bearing}
     if isinstance(bearing, SingleFilmBearing | FloatingRingBearing) and not bearing.name:
-        return bearing.model_copy(update={"name": name})
+        return altered(bearing, {"name": name})
     return bearing
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import functools
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,13 @@ from frbcli.case.faults import objections, with_nearest_kinds
 from frbcli.case.model import Model
 from frbcli.case.ross import with_rotor_file
 from frbcli.case.schema import Case
-from frbcli.case.settings import with_setting
+from frbcli.case.settings import with_setting, with_value
 from frbcli.case.shipped import find_shipped, nearest, shipped_names
 from frbcli.case.text import as_tables
 from frbcli.case.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.errors import Fault, InputError
+
+_Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
 
 LARGEST_FILE = 262_144  # bytes; a case has some thousand
 LONGEST_SHOWN = 150  # characters of a value or a path in a fault
@@ -50,13 +53,32 @@ def load_case_text(
         data = parse(text)
     except TomlFault as error:
         raise InputError(source, (error.fault,)) from None
-    data, overridden, faults = _apply(data, settings)
+    data, overridden, faults = _apply(data, [functools.partial(with_setting, setting=setting) for setting in settings])
     case, data, found = _checked(data, name, folder)
     if found:
         faults += _located(found, data, overridden, text)
     if faults or case is None:
         raise _refused(source, faults)
     return case.with_source_text(to_toml(data))
+
+
+def with_settings(case: Case, settings: Iterable[str | Mapping[str, object]]) -> Case:
+    """As Case.with_settings, which is the way to call it."""
+    applied: list[_Set] = []
+    for given in settings:
+        if isinstance(given, str):
+            applied.append(functools.partial(with_setting, setting=given))
+        elif isinstance(given, Mapping):
+            applied += [functools.partial(_with_value, key=key, value=value) for key, value in given.items()]
+        else:
+            problem, remedy = "is no setting.", 'Write "key = value" or {"key": value}.'
+            raise InputError(case.name or "case", (Fault("settings", str(type(given)), None, problem, remedy),))
+    data, overridden, faults = _apply(parse(case.source_text), applied)
+    changed, data, found = _checked(data, case.name or "case", ".")
+    faults += _located(found, data, overridden, "")
+    if faults or changed is None:
+        raise _refused(case.name or "case", faults)
+    return changed.with_source_text(to_toml(data))
 
 
 def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Path = ".") -> Case:
@@ -145,13 +167,17 @@ def _unreadable(source: str | Path, problem: str, remedy: str) -> InputError:
     return InputError(shown, (Fault("CASE", shown, None, problem, remedy),))
 
 
-def _apply(data: dict[str, Any], settings: Sequence[str]) -> tuple[dict[str, Any], list[lines.Path], list[Fault]]:
+def _with_value(data: Mapping[str, Any], key: object, value: object) -> tuple[dict[str, Any], lines.Path]:
+    return with_value(data, str(key), _plain(value))
+
+
+def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, Any], list[lines.Path], list[Fault]]:
     """`data` with the settings, their paths, and their faults."""
     overridden: list[lines.Path] = []
     faults: list[Fault] = []
     for setting in settings:
         try:
-            data, path = with_setting(data, setting)
+            data, path = setting(data)
             overridden.append(path)
         except TomlFault as error:
             faults.append(error.fault)

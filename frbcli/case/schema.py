@@ -9,13 +9,14 @@ Rules that tie several keys together are in `checks.py`.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
 from frbcli.case.bearing import Bearings, FilmGeometry, FloatingRingBearing, RingFilm
 from frbcli.case.laws import Cavitation, adopt, attribute
-from frbcli.case.model import Model, with_default
+from frbcli.case.model import Model, altered, with_default
 from frbcli.case.oil import Oil
 from frbcli.case.quantities import (
     Angle,
@@ -250,9 +251,20 @@ class Case(Model):
         told = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
         return html_table(self.title or self.name, ("key", "SI", "", "reads"), told, len(told))
 
+    def with_settings(self, *settings: str | Mapping[str, object]) -> Case:
+        """This case with other values of some keys, checked as a case file is; this case itself stays.
+
+        settings: as `--set` takes them, "oil.viscosity = 50 mPa*s", or dicts of them by key, {"oil.viscosity": "50
+        mPa*s"}, whose values are quantities with a unit, numbers in SI, or tables; None leaves a key out. Later ones
+        take precedence. Raises InputError with every fault of the settings and of the case that they make.
+        """
+        from frbcli.case.load import with_settings  # it reads cases
+
+        return with_settings(self, settings)
+
     def same_run(self, other: Case) -> bool:
         """Whether `other` is the same machine and run; labels may differ."""
-        return self.model_copy(update=_UNCOMPUTED) == other.model_copy(update=_UNCOMPUTED)
+        return altered(self, _UNCOMPUTED) == altered(other, _UNCOMPUTED)
 
     @property
     def rotor(self) -> Rotor:

@@ -22,11 +22,26 @@ def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any],
     of tables: "bearing.0.width"; index 0 of a single table is the table itself.
     """
     key, equals, value = setting.partition("=")
-    parts = [part.strip() for part in key.split(".")]
-    if not (equals and all(parts) and len(parts) <= DEEPEST_KEY and _encodable(setting)):
+    parts = _parts(key)
+    if not (equals and parts and _encodable(setting)):
         raise _refuse("--set", "is not of the form key.path=value.", 'Write e.g. --set speed.to="200 Hz".')
     copy = dict(data)
     return copy, _insert(copy, parts, _value(value), ())
+
+
+def with_value(data: Mapping[str, Any], key: str, value: Any) -> tuple[dict[str, Any], Path]:
+    """As with_setting, with a value as a file has it; None takes the key out."""
+    parts = _parts(key)
+    if not (parts and _encodable(key)):
+        raise _refuse(key or "settings", "is not of the form key.path.", 'Write e.g. {"speed.to": "200 Hz"}.')
+    copy = dict(data)
+    return copy, _insert(copy, parts, value, ())
+
+
+def _parts(key: str) -> list[str]:
+    """The parts of a dotted key, none if it is no such."""
+    parts = [part.strip() for part in key.split(".")]
+    return parts if all(parts) and len(parts) <= DEEPEST_KEY else []
 
 
 def _value(text: str) -> Any:
@@ -49,6 +64,9 @@ def _insert(table: dict[str, Any], parts: list[str], value: Any, above: Path) ->
     """Set a value in `table`, copying every table on the way; the path that was set."""
     head, *rest = parts
     path: Path = (*above, head)
+    if not rest and value is None:
+        table.pop(head, None)
+        return path
     if not rest:
         table[head] = value
         return path

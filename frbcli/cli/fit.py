@@ -119,7 +119,6 @@ def _row(number: Fitted) -> tuple[str, ...]:
 def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
     """Bounds by keys, in SI: each is read as a value of the case."""
     from frbcli.case.listing import values
-    from frbcli.case.load import load_case_text
 
     found = {}
     for text in given:
@@ -129,7 +128,7 @@ def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]
             raise click.UsageError(f"--bounds {text} is not of the form KEY=LOW,HIGH.")
         read = []
         for side in (low, high):
-            changed = load_case_text(case.source_text, [f"{key}={side.strip()}"], name=case.name)
+            changed = case.with_settings(f"{key}={side.strip()}")
             read.append(next((v.value for v in values(changed) if v.key == key), None))
         if not all(isinstance(value, float) for value in read):
             raise click.UsageError(f"--bounds {text}: {key} is no number of the case.")

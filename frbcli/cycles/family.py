@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from frbcli.case.load import load_case_text
+from frbcli.case.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.cycles.equilibria import Equilibrium, settled
 from frbcli.cycles.faults import check
@@ -39,7 +39,7 @@ class Family:
 
     def system(self, share: float) -> System:
         """The system at a share of the largest value. Raises InputError if the case cannot have it."""
-        case = load_case_text(self.case.source_text, [*self.settings, self.setting(share)], self.case.name)
+        case = self.case.with_settings(*self.settings, self.setting(share))
         check(case)
         return make_system(case, make_plan(case))
 
@@ -58,7 +58,9 @@ class Family:
 
 
 def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
-    """The ends of a range, text with one unit, and that unit. Raises InputError."""
+    """The ends of a range of a number of the machine, text with one unit, and that unit. Raises InputError."""
+    if fault := machine_fault(key, "--over or --and"):
+        raise InputError(case.name or "case", (fault,))
     (first, unit), (last, other) = _number(key, low), _number(key, high)
     if unit != other or not first < last:
         problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'

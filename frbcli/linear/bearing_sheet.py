@@ -23,6 +23,7 @@ from frbcli.linear.film_state import FilmState, film_state, no_state, under_vert
 from frbcli.linear.resting import ring_speeds
 from frbcli.linear.sheet_machines import MachineAt, machines, systems
 from frbcli.rotor.held import held_rotor
+from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
 from frbcli.scene.published import is_published
 from frbcli.scene.remedies import advised
@@ -131,7 +132,7 @@ def sommerfeld_chart(
 
 
 def _check(case: Case) -> None:
-    faults = []
+    faults = film_faults(case)
     if case.film.bearing_model:
         problem = "is a bearing model: it tells the force, and neither pressures nor oil."
         faults.append(Fault("film.theory", case.film.theory, None, problem, "Write finite or auto."))

@@ -28,6 +28,7 @@ from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.turbocharger import turbocharger_rotor
+from frbcli.scene.film_faults import require_films
 from frbcli.scene.findings import findings
 from frbcli.scene.turbocharger import all_modes, journals, wheels
 
@@ -69,6 +70,7 @@ def critical_map(
 ) -> CriticalMap:
     """The map of the rotor of a case over a stiffness in N/m of each of its bearings, by default STIFFNESSES over
     DECADES; resting: of the case, for the stiffness of its films. Raises InputError if a stiffness is not positive."""
+    require_films(case)
     given = _default(case) if stiffness is None else np.array(sorted(stiffness), dtype=np.float64)
     if not len(given) or not (np.isfinite(given).all() and given[0] > 0.0):
         fault = Fault("stiffness", "", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".')

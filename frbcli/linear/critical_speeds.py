@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.case.model import altered
 from frbcli.case.schema import Case, FilmModel
 from frbcli.errors import FrbError, NotConverged
 from frbcli.linear.heat import Finder, machine_finder
@@ -38,7 +39,7 @@ def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
     full = case
     if not case.film.bearing_model:
         film = FilmModel(cavitation="half-sommerfeld", theory=case.film.theory)
-        full = case.model_copy(update={"film": film})
+        full = altered(case, {"film": film})
     top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))
     try:
         plan = make_plan(full)

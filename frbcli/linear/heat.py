@@ -15,6 +15,7 @@ from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.linear.film_heat import end_flows, film_heat
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
+from frbcli.scene.film_faults import require_films
 from frbcli.scene.heat import Heat, heat_of
 from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
@@ -95,6 +96,7 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
 
     Raises InputError for a case that cannot be modelled or has no heat, NotConverged where its heat does not balance.
     """
+    require_films(case)
     if case.heat is None:
         remedy = 'Add the table [thermal] with model = "lumped".'
         raise InputError(case.name or "case", (Fault("thermal", "", None, "is missing.", remedy),))

@@ -18,6 +18,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, reduction_error, whirl_modes
+from frbcli.scene.film_faults import require_films
 from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
 
 if TYPE_CHECKING:
@@ -103,6 +104,7 @@ def natural_modes(
     rotor speeds, by default from standstill to the highest speed of the case. Raises InputError if the case has another
     rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not as many as bearings.
     """
+    require_films(case)
     rotor = turbocharger_of(case)
     speeds = np.linspace(0.0, max(case.speed.start, case.speed.end), SPEEDS) if speeds_Hz is None else speeds_Hz
     springs = _springs(case, stiffness)

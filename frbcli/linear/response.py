@@ -24,6 +24,7 @@ from frbcli.html import Tabular
 from frbcli.linear.stability import StabilityPoint, default_speeds, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
+from frbcli.scene.film_faults import require_films
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -109,6 +110,7 @@ def response(
     observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, has
     films that eight coefficients do not describe, or rests nowhere.
     """
+    require_films(case)
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
     system, points = stability_points(case, asked, observe)
     resting = [point for point in points if point.films]

@@ -28,6 +28,7 @@ from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.channels import coupled
+from frbcli.scene.film_faults import require_films
 from frbcli.scene.keys import bearing_key, cavitation_keys
 from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
@@ -166,6 +167,7 @@ def stability(
 
     Raises InputError if the case cannot be modelled or a speed is not positive.
     """
+    require_films(case)
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
@@ -190,6 +192,7 @@ def stability_points(
 
 
 def _check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
+    require_films(case)
     _check_speeds(case, speeds_Hz)
     if faults := _without_coefficients(case):
         raise InputError(case.name or "case", tuple(faults))

@@ -9,10 +9,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from frbcli.case.model import altered
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import label_of, laws
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.plot.style import COLOURS, GREY, Picture, new_figure, styled
+from frbcli.scene.film_faults import require_films
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -28,7 +30,9 @@ LEAST, WIDEST = 1e-6, 1.2  # p / p_cav over which the models are compared
 
 
 def law_figure(case: Case) -> Picture:
-    """theta(p) of the conserving models with the parameters of a case, whose own model is drawn thick."""
+    """theta(p) of the conserving models with the parameters of a case, whose own model is drawn thick. Raises
+    InputError for a case whose films cannot be modelled."""
+    require_films(case)
     film, cavity = case.film, case.oil.cavitation_pressure
     with styled():
         words = f"oil fraction over pressure; the case's model: {label_of(film.cavitation)}"
@@ -86,7 +90,7 @@ def _compared(law: type[Law], given: Any) -> list[Any]:
     found = [given]
     for key, values in law.compared:
         others = {*values, getattr(given, key)}
-        found = [one.model_copy(update={key: value}) for one in found for value in sorted(others)]
+        found = [altered(one, {key: value}) for one in found for value in sorted(others)]
     return found
 
 

@@ -94,9 +94,6 @@ def _geometry_faults(key: str, film: FilmGeometry) -> list[Fault]:
     elif isinstance(supply, CircumferentialGroove) and supply.ramp > 0.0:
         problem = "is a ramp of the pressure, which a bearing model cannot represent."
         faults.append(Fault(f"{key}.supply.ramp", f"{supply.ramp:g} s", None, problem, "Write 0 s."))
-    elif isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, 0.5, 1.0):
-        problem, value = "makes two different films.", f"{supply.axial_position:g}"
-        faults.append(Fault(f"{key}.supply.axial_position", value, None, problem, "Write 0.5, 0 or 1."))
     if film.lobes is not None:
         value = f"{film.lobes.count} lobes"
         faults.append(Fault(f"{key}.lobes", value, None, "are a shape that a bearing model cannot represent.", remedy))

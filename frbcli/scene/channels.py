@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from frbcli.case.bearing import Bores, CircumferentialGroove, FloatingRingBearing, RingFilm
+from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cells.channels import Channel, FeedHole, channel_resistance
@@ -30,7 +31,7 @@ def feed_holes_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
     if not coupled(bearing) or opens_to_groove(bearing) or not isinstance(supply, Bores):
         return None
     offset = (supply.axial_position - MIDDLE) * bearing.inner.width / bearing.outer.width
-    return supply.model_copy(update={"axial_position": MIDDLE + offset})
+    return altered(supply, {"axial_position": MIDDLE + offset})
 
 
 def centrifugal_pressure(case: Case, bearing: FloatingRingBearing) -> float:

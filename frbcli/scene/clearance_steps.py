@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import TypeVar
 
 from frbcli.case.bearing import Bearing, FilmGeometry, FloatingRingBearing
+from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.films import film_places
@@ -25,7 +26,7 @@ def step_times(case: Case) -> tuple[float, ...]:
 
 def case_at(case: Case, time: float) -> Case:
     """The case with the clearances that it has at a time in s."""
-    return case.model_copy(update={"bearings": tuple(_bearing_at(bearing, time) for bearing in case.bearings)})
+    return altered(case, {"bearings": tuple(_bearing_at(bearing, time) for bearing in case.bearings)})
 
 
 def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
@@ -54,10 +55,10 @@ def _films(case: Case) -> Iterator[FilmGeometry]:
 def _bearing_at(bearing: Bearing, time: float) -> Bearing:
     if isinstance(bearing, FloatingRingBearing):
         both = {"inner": _film_at(bearing.inner, time), "outer": _film_at(bearing.outer, time)}
-        return bearing.model_copy(update=both)
+        return altered(bearing, both)
     return _film_at(bearing, time)
 
 
 def _film_at(film: Film, time: float) -> Film:
     passed = [step.clearance for step in film.clearance_steps if step.time <= time]
-    return film.model_copy(update={"given_clearance": passed[-1], "clearance_steps": ()}) if passed else film
+    return altered(film, {"given_clearance": passed[-1], "clearance_steps": ()}) if passed else film

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from frbcli.case.model import altered
 from frbcli.case.schema import MACRO_STEP, STEPS_PER_REVOLUTION, Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.clearance_steps import step_times
@@ -79,7 +80,7 @@ def _responsible(case: Case, plan: Plan) -> _Asked:
 
 def _by_accuracy(case: Case, plan: Plan) -> Iterator[_Asked]:
     given = case.accuracy
-    coarser = case.model_copy(update={"accuracy": given.model_copy(update={"mesh": None})})
+    coarser = altered(case, {"accuracy": altered(given, {"mesh": None})})
     usual = make_plan(coarser)
     solves, tables = solve_us(plan) / solve_us(usual), (1.0 + before_s(case, plan)) / (1.0 + before_s(coarser, usual))
     yield _Asked(max(solves, tables), "accuracy.mesh", f"{list(given.mesh or ())}", "Take fewer elements.")

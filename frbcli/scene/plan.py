@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRingBearing
+from frbcli.case.model import altered
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
@@ -72,8 +73,8 @@ def make_plan(case: Case) -> Plan:
 def _about_target(case: Case, plan: Plan) -> Decision:
     """What the target needs, and why the plan has something else."""
     accuracy = case.accuracy
-    by_itself = accuracy.model_copy(update={"mesh": None, "tolerance": None})
-    asked = _plan(case.model_copy(update={"accuracy": by_itself}), accuracy.target)
+    by_itself = altered(accuracy, {"mesh": None, "tolerance": None})
+    asked = _plan(altered(case, {"accuracy": by_itself}), accuracy.target)
     error, needed = expected_error(plan).eccentricity, expected_error(asked).eccentricity
     own = f"expected error {error:.1g}, {_total_s(case, plan):.2g} s"
     told = f"{accuracy.target:g}"

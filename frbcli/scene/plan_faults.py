@@ -4,27 +4,21 @@ from __future__ import annotations
 
 import math
 
-from frbcli.case.bearing import CircumferentialGroove
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.film.cavitation.table import law_named
-from frbcli.film.gap import ends_at_ambient
-from frbcli.film.section_faults import section_faults
-from frbcli.scene.channels import channel_faults
 from frbcli.scene.clearance_steps import clearance_faults
 from frbcli.scene.coupling import APART, chosen_coupling, coupling_fault
-from frbcli.scene.film_choice import MIDDLE, all_clipped, needs_cells
+from frbcli.scene.film_choice import all_clipped, needs_cells
+from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places, is_plain
-from frbcli.scene.heat_faults import heat_faults
 from frbcli.scene.published import published_faults
-from frbcli.scene.section import film_section
 from frbcli.scene.tabulated import solution_fault
 
 
 def plan_faults(case: Case) -> list[Fault]:
     """Every part of a case that cannot be modelled in a run."""
-    faults = list[Fault]()
+    faults = film_faults(case)
     if case.film.bearing_model:
         from frbcli.scene.bearing_model_films import model_faults  # numba takes longer to import than a plan to make
 
@@ -38,8 +32,6 @@ def plan_faults(case: Case) -> list[Fault]:
         missing("film.theory", "short", (remedy,))
     elif case.film.theory == "short" and any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case)):
         missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
-    faults += heat_faults(case)
-    faults += channel_faults(case)
     faults += clearance_faults(case)
     if case.film.bearing_model:
         return faults + signal_faults(case, False) or _bearing_faults(case)
@@ -51,16 +43,6 @@ def plan_faults(case: Case) -> list[Fault]:
     may_turn = needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
         missing("film.grid", "half-speed", ("auto; it is for films on cells without openings and lobes",))
-    for place in film_places(case):
-        supply = place.geometry.supply
-        if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):
-            missing("bearing.supply.axial_position", f"{supply.axial_position:g}", ("0.5, 0 and 1",))
-            continue
-        section = film_section(case, place.geometry, place.feed_holes)
-        if not law_named(case.cavitation(place.geometry)).keeps_oil:  # such a film cannot run dry
-            section = ends_at_ambient(section)
-        for found in section_faults(section):
-            faults.append(Fault("bearing", place.name, None, f"cannot be solved: {found.problem}.", found.remedy))
     return faults or _bearing_faults(case)
 
 

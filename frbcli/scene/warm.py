@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.case.bearing import FloatingRingBearing, RingFilm, SingleFilmBearing
+from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.film.grid import Array
 from frbcli.scene.films import film_places
@@ -41,9 +42,9 @@ def warm_case(case: Case, viscosities: Array, clearances: Array) -> Case:
     bearings: list[SingleFilmBearing | FloatingRingBearing] = []
     for bearing in case.bearings:
         if isinstance(bearing, SingleFilmBearing):
-            bearings.append(bearing.model_copy(update=next(values)))
+            bearings.append(altered(bearing, next(values)))
         else:
-            inner: RingFilm = bearing.inner.model_copy(update=next(values))
-            outer: RingFilm = bearing.outer.model_copy(update=next(values))
-            bearings.append(bearing.model_copy(update={"inner": inner, "outer": outer}))
-    return case.model_copy(update={"bearings": tuple(bearings), "thermal": None})
+            inner: RingFilm = altered(bearing.inner, next(values))
+            outer: RingFilm = altered(bearing.outer, next(values))
+            bearings.append(altered(bearing, {"inner": inner, "outer": outer}))
+    return altered(case, {"bearings": tuple(bearings), "thermal": None})

@@ -21,6 +21,7 @@ from frbcli.runs.run import runup
 from frbcli.scene.cost import solve_us
 from frbcli.scene.coupling import COUPLINGS
 from frbcli.scene.film_choice import DEFAULT_MESH
+from frbcli.scene.film_faults import require_films
 from frbcli.scene.plan import THEORIES, make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.system import make_system
@@ -54,6 +55,7 @@ def accuracy(
     reference raises NotConverged. Raises InputError for names that there are not, and for
     a case that cannot be modelled.
     """
+    require_films(case)
     _check_names(case, theories, couplings)
     if case.film.bearing_model:
         problem = "is a bearing model, which has no theories and meshes to compare."
@@ -192,7 +194,7 @@ def _with_rung(case: Case, rung: Rung) -> Case:
 
 
 def _with(case: Case, *settings: str) -> Case:
-    return load_case_text(case.source_text, settings, name=case.name)
+    return case.with_settings(*settings)
 
 
 def _check_names(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> None:

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import models
@@ -26,6 +25,7 @@ from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
 from frbcli.runs.run import earlier_run, is_interrupted, runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.film_faults import require_films
 from frbcli.scene.plan import THEORIES, make_plan
 
 if TYPE_CHECKING:
@@ -150,6 +150,7 @@ def compare(
     Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
     allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
     """
+    require_films(case)
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings, thermals)
     cases = [_with_models(case, variant) for variant in variants]
@@ -271,7 +272,7 @@ def _with_models(case: Case, variant: Variant) -> Case:
         # the loss of a run without heat is recorded by choice alone
         *([f"output.signals=[{', '.join(map(json.dumps, signals))}]"] if variant.thermal == NO_HEAT else []),
     )
-    return load_case_text(case.source_text, settings, name=case.name)
+    return case.with_settings(*settings)
 
 
 def _fits(case: Case, variant: Variant) -> bool:

@@ -24,13 +24,14 @@ from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import Values, bearing_clearance
 from frbcli.analysis.spectrum import window_length
 from frbcli.case.listing import values as listed
-from frbcli.case.load import load_case_text
+from frbcli.case.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, FrbError, InputError
 from frbcli.html import Tabular
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
+from frbcli.scene.film_faults import require_films
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,10 +103,12 @@ def fit(
 
     bounds: SI, by key, default a factor of SPAN both ways; signal: of the run, "journal" or "journal_NAME"; observe:
     called with the number of each run and the numbers that it is made with. Raises InputError for a key that is no
-    positive number of the case, bounds that do not hold it, or a case that cannot be run.
+    positive number of the machine, bounds that do not hold it, or a case that cannot be run; after the first runs for a
+    number that the ridges do not depend on.
     """
     from scipy.optimize import least_squares  # scipy.optimize takes longer to import than a plan to make
 
+    require_films(case)
     numbers = _numbers(case, keys, bounds or {})
     with TemporaryDirectory(prefix="frb-fit-") as folder:
         trial = _Trial(case, measurement, numbers, signal, Path(folder) / "run.h5", observe)
@@ -157,7 +160,7 @@ class _Trial:
     def case_at(self, x: Values) -> Case:
         """The case with the numbers that are exp(x) times those at first."""
         settings = [f"{key}={value!r}" for key, value in self._values(x).items()]
-        return load_case_text(self._case.source_text, settings, name=self._case.name)
+        return self._case.with_settings(*settings)
 
     def _values(self, x: Values) -> dict[str, float]:
         return {n.key: n.start * math.exp(change) for n, change in zip(self._numbers, x.tolist(), strict=True)}
@@ -196,8 +199,14 @@ class _Trial:
             ahead[number] = min(x[number] + STEP, limits[1, number])
             behind[number] = max(x[number] - STEP, limits[0, number])
             change = self.residuals(ahead, scatter, limits) - self.residuals(behind, scatter, limits)
+            if not change.any() and np.abs(self.residuals(x, scatter, limits)).max() < LARGE:
+                raise self._without_effect(self._numbers[number].key)
             columns.append(change / (ahead[number] - behind[number]))
         return np.stack(columns, axis=1)
+
+    def _without_effect(self, key: str) -> InputError:
+        problem = "changes nothing that is compared with the measurement: it cannot be found from it."
+        return InputError(self._case.name, (Fault("--vary", key, None, problem, "Leave it out."),))
 
 
 def _compared(measured: Ridges) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -283,6 +292,8 @@ def _numbers(case: Case, keys: Sequence[str], bounds: Mapping[str, tuple[float, 
 
 def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
     known = {value.key: value for value in listed(case)}
+    if key in known and (fault := machine_fault(key, "--vary")):
+        raise InputError(case.name, (fault,))
     if key not in known:
         alike = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
         near = alike or difflib.get_close_matches(key, known, cutoff=0.8)

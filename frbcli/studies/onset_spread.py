@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import FrbError, InputError
 from frbcli.linear.stability import stability
@@ -121,7 +120,7 @@ def _run(
 ) -> OnsetRun:
     with TemporaryDirectory(prefix="frb-onset-") as folder:
         try:
-            other = load_case_text(case.source_text, settings, name=case.name)
+            other = case.with_settings(*settings)
             run = runup(other, Path(folder) / "run.h5", observe=watch)
         except FrbError as error:
             return OnsetRun(changed, math.nan, to, problem=str(error))

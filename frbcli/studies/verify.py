@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
@@ -48,9 +47,7 @@ def verify(case: Case, run: Run, observe: Callable[[Progress], None] | None = No
     with TemporaryDirectory(prefix="frb-verify-") as folder:
 
         def other(*settings: str) -> Run:
-            return again(
-                load_case_text(case.source_text, settings, name=case.name), Path(folder) / "run.h5", observe=observe
-            )
+            return again(case.with_settings(*settings), Path(folder) / "run.h5", observe=observe)
 
         finer = other(f"accuracy.tolerance={0.5 * plan.tolerance!r}", f"accuracy.steps_per_revolution={steps}")
         apart, cpu_s, coupling = difference(run, finer), float(finer.cost["cpu_s"]), None

@@ -14,7 +14,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from frbcli.case.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
@@ -152,7 +151,7 @@ def check_table_format(table_format: str) -> None:
 def _case(case: Case, chosen: Settings) -> Case | InputError:
     """The case of a point that can be modelled, or why it cannot."""
     try:
-        its_case = load_case_text(case.source_text, [f"{key}={value}" for key, value in chosen.items()], case.name)
+        its_case = case.with_settings(*(f"{key}={value}" for key, value in chosen.items()))
         make_plan(its_case)
     except InputError as error:
         return error
@@ -178,7 +177,7 @@ def _compile(tasks: Sequence[Task]) -> None:
         moment = (f"speed.from={case.speed.end!r}", f"speed.duration={max(WARM_UP_s, 2 * case.output.step)!r}")
         with TemporaryDirectory(prefix="frb-sweep-") as folder:
             run = Path(folder) / "moment.h5"
-            solve(Task(0, {}, load_case_text(case.source_text, moment, case.name), task.method, run))
+            solve(Task(0, {}, case.with_settings(*moment), task.method, run))
 
 
 def _header(case: Case, settings: Sequence[Settings], method: str) -> dict[str, Any]:

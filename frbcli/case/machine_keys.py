@@ -1,0 +1,26 @@
+"""Which keys of a case are numbers of the machine, and which say how it is run, computed and recorded."""
+
+from __future__ import annotations
+
+import re
+
+from frbcli.errors import Fault
+
+TABLES = ("rotor", "shaft", "disk", "bearing", "oil", "film", "thermal")
+# Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
+# course and the end of a run. And the one number of the machine in another table.
+OTHERS = re.compile(r"rotor\.cutoff|.*\.ramp|.*\.clearance_steps\..*\.time|thermal\.hottest_film")
+CONTACT_STIFFNESS = "contact.stiffness"
+
+_NUMBERED = re.compile(r"\.\d+(?=\.|$)")
+
+
+def machine_fault(key: str, option: str) -> Fault | None:
+    """Why a key cannot be varied as a number of the machine; None if it is one. option: where it was given."""
+    table = key.partition(".")[0].strip()
+    if key == CONTACT_STIFFNESS or (table in TABLES and not OTHERS.fullmatch(_NUMBERED.sub(".0", key.strip()))):
+        return None
+    problem = "is no number of the machine: it tells how a run is made or computed."
+    tables = ", ".join(f"[{name}]" for name in TABLES[:-1])
+    remedy = f"Vary a key of {tables} or [{TABLES[-1]}], e.g. bearing.clearance; frb sweep takes any key."
+    return Fault(option, key, None, problem, remedy)

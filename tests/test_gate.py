@@ -1,0 +1,128 @@
+"""The gate: every public function that takes a case, and every command that takes CASE, refuses the same faulty cases
+with the same sentence, before anything is computed. Both lists are made from the code."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.case.schema import Case
+from frbcli.cli.main import COMMANDS, run
+from frbcli.errors import InputError
+
+MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'
+GROOVE = ("jeffcott", ("bearing.supply.axial_position=0.3",), "bearing.supply.axial_position = 0.3: is neither in the")
+# Channels of a ring beside the end of a narrower outer film, a faulty opening that no rule of one table sees
+BEYOND = (
+    "floating-ring",
+    ("bearing.channels=coupled", "bearing.inner.supply.axial_position=0.07", "bearing.outer.width=10 mm",
+     "bearing.outer.supply.axial_position=0"),
+    "out of the film of 0 to 10 mm",
+)  # fmt: skip
+DRY = ("jeffcott", ("bearing.supply={kind='none'}", "bearing.ends=free-to-air", "film.cavitation=elrod"),
+       "both ends are free to air and nothing supplies oil")  # fmt: skip
+APART = ("turbocharger-car", ("bearing.1.outer.supply.axial_position=0.3",), "bearing.1.outer.supply.axial_position")
+FAULTY = pytest.mark.parametrize("faulty", [GROOVE, BEYOND, DRY, APART], ids=["groove", "beyond", "dry", "second"])
+Faulty = tuple[str, tuple[str, ...], str]
+
+FUNCTIONS: dict[str, tuple[Any, ...]] = {
+    "accuracy": (),
+    "bearing_sheet": ([20.0], 30.0),
+    "compare": (),
+    "critical_map": (),
+    "damped_modes": (20.0,),
+    "fit": (None, ["oil.viscosity"]),
+    "limit_cycles": (),
+    "limit_cycles_over": ("bearing.clearance", "30 um", "40 um", 200.0),
+    "make_plan": (),
+    "natural_modes": (),
+    "response": (),
+    "rotation": (),
+    "rundown": ("run.h5",),
+    "runup": ("run.h5",),
+    "sommerfeld_chart": (),
+    "squeeze": (),
+    "stability": (),
+    "stability_map": ("bearing.clearance", "30 um", "40 um"),
+    "sweep": ({"speed.to": ["200 Hz", "210 Hz"]}, "study"),
+    "warm_machine": (),
+    "whirl": (),
+}
+WORDS: dict[str, tuple[str, ...]] = {
+    "bearing": ("--load", "30 N", "--speed", "50 Hz"),
+    "fit": ("--measured", "measured.csv", "--time", "t", "--speed", "n", "--x", "x", "--y", "y", "--clearance",
+            "35 um", "--vary", "oil.viscosity"),
+    "plot": ("--what", "law"),
+    "sweep": ("--set", "speed.to=200 Hz,210 Hz"),
+}  # fmt: skip
+NO_CASE = {"waterfall", "report", "export", "schema"}  # of runs and measurements
+TEXTS = {"cases"}  # copies texts, computes nothing
+
+
+def public_functions() -> list[str]:
+    """The public functions that take a case."""
+    found = {name: getattr(frbcli, name) for name in frbcli.__all__}
+    return [name for name, each in found.items() if inspect.isfunction(each) and _takes_a_case(each)]
+
+
+def _takes_a_case(function: Callable[..., Any]) -> bool:
+    return any(parameter.annotation in ("Case", Case) for parameter in inspect.signature(function).parameters.values())
+
+
+def case_commands() -> list[str]:
+    """The commands with an argument CASE."""
+    commands = {name: importlib.import_module(module).command for name, (module, _) in COMMANDS.items()}
+    return [name for name, command in commands.items() if any(map(_is_case, command.params))]
+
+
+def _is_case(parameter: click.Parameter) -> bool:
+    return isinstance(parameter, click.Argument) and "CASE" in (parameter.metavar or "")
+
+
+def test_every_function_and_command_has_its_trial() -> None:
+    assert set(public_functions()) == set(FUNCTIONS)
+    assert set(COMMANDS) - set(case_commands()) == NO_CASE | TEXTS
+
+
+@FAULTY
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_refuse(name: str, faulty: Faulty, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    source, settings, sentence = faulty
+    case = frbcli.load_case(source, [*settings, MOTION])
+    with pytest.raises(InputError) as caught:
+        getattr(frbcli, name)(case, *FUNCTIONS[name])
+    assert sentence in str(caught.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+@FAULTY
+@pytest.mark.parametrize("name", case_commands())
+def test_commands_refuse(
+    name: str, faulty: Faulty, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    if "measured.csv" in WORDS.get(name, ()):
+        _measured(tmp_path / "measured.csv")
+    source, settings, sentence = faulty
+    words = [word for setting in (*settings, MOTION) for word in ("--set", setting)]
+    before = set(tmp_path.iterdir())
+    assert run([name, source, *words, *WORDS.get(name, ())]) == 2
+    assert sentence in capsys.readouterr().err
+    assert set(tmp_path.iterdir()) == before
+
+
+def _measured(path: Path) -> None:
+    t = np.linspace(0.0, 10.0, 20_001)
+    speed = 30.0 * t
+    angle = np.pi * speed * t
+    table = np.stack([t, speed, 5e-6 * np.cos(angle), 5e-6 * np.sin(angle)], axis=1)
+    np.savetxt(path, table, delimiter=",", header="t,n,x,y", comments="")
