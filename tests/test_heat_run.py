@@ -103,6 +103,40 @@ def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:
     assert books[DISSIPATED] == pytest.approx(books[CARRIED] + books[GIVEN] + kept, rel=1e-10)
 
 
+def test_a_long_step_of_heat_ends_in_balance_and_loses_nothing() -> None:
+    """Steps a thousand times as long as nodes of little capacity take."""
+    node = "{ capacity = 1e-15, conductance = 2, temperature = 330 }"
+    heat = heat_of(ring_case(f"thermal.shaft={node}", f"thermal.housing={node}"))
+    model, count = heat.model._replace(inlet=np.array([1, -1])), len(heat.start)
+    now = np.zeros((FILM_ROWS, 2))
+    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
+    t, gain, books = heat.start.copy(), np.zeros(count), np.zeros(BOOKS)
+    for _ in range(30):
+        heat_step(*kernel_arrays(model)[:4], now, 10.0, t, gain, books)
+    free = np.isfinite(model.capacity)
+    assert rates(model, t, now[POWER], now[FLOW], now[CLEARANCE])[free] == pytest.approx(0.0, abs=1e-9 * 380.0)
+    kept = float(model.capacity[free] @ (t - heat.start)[free])
+    assert books[DISSIPATED] == pytest.approx(books[CARRIED] + books[GIVEN] + kept, rel=1e-10)
+
+
+@pytest.mark.parametrize("wall", ["shaft", "housing"])
+def test_walls_that_store_next_to_nothing_run_as_those_that_store_little(wall: str, tmp_path: Path) -> None:
+    def run_of(capacity: float) -> Run:
+        node = f"thermal.{wall}={{ capacity = {capacity}, conductance = 2, temperature = '90 degC' }}"
+        return runup(single("rotor.gravity=9.81", *at_speed(40.0, 0.05), "thermal.clearance=follows", node),
+                     tmp_path / "run.h5", force=True)  # fmt: skip
+
+    little = run_of(1e-5)
+    for capacity in (1e-9, 1e-15):
+        run = run_of(capacity)
+        for name in ("temperature_K", f"temperature_{wall}_K"):  # one for a step, in which they rise by 0.3 K at first
+            np.testing.assert_allclose(run[name][1:], little[name][1:], rtol=0.0, atol=0.5)
+            assert run[name][-1] == pytest.approx(little[name][-1], abs=0.01)
+        np.testing.assert_allclose(run["eccentricity"], little["eccentricity"], rtol=0.0, atol=2e-4)
+        assert run.cost["steps"] < 1.2 * little.cost["steps"]
+        assert run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
+
+
 def test_films_in_balance_gain_nothing() -> None:
     """Power proportional to the viscosity, flow to its inverse; the inner film is fed through the outer one."""
     heat = heat_of(ring_case("thermal.housing=60 degC", "thermal.films=quasi-steady"))

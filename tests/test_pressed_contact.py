@@ -142,7 +142,7 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
             forces(data, work, clearances, contact_at(touches, stiffness), g, 1, iteration, rows)
             if not cells or work.grids[0, BALANCE] != OPEN:
                 return rows
-            move_cells(work.w[0], work.fields[0], work.grids[0], 0.0, 0.0, g, np.zeros(0))
+            move_cells(work.w[0], work.states[0], work.fields[0], work.grids[0], 0.0, 0.0, g, np.zeros(0))
         raise AssertionError(f"{kind} did not settle at {d}")
 
     return ask
@@ -286,7 +286,7 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
             return iteration, force, states[FRACTION]
         if leaps:
             grid[LAW + EMPTY] = -math.inf
-        move_cells(work.w[0], work.fields[0], grid, 0.0, 0.0, g, np.zeros(0))
+        move_cells(work.w[0], work.states[0], work.fields[0], grid, 0.0, 0.0, g, np.zeros(0))
     return iteration + 1, force, states[FRACTION]
 
 

@@ -36,9 +36,10 @@ from frbcli.film.cells.data import (
     UNKNOWN,
     VolumeFilms,
 )
+from frbcli.film.cells.film import ABOVE_KINK
 from frbcli.film.cells.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.ring_solver import solve_ring_at
-from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, cell_states, follow_law, hold
+from frbcli.film.cells.states import FRACTION, FRACTION_SLOPE, PRESSURE_SLOPE, cell_states, follow_law, hold
 from frbcli.solve.stage import FilmMotion, lagrange
 
 # How a film's grid stands, where the journal is in it, whether its cells balance (see OPEN), how far the journals were
@@ -174,13 +175,18 @@ def cell_numbers(
 
 
 @compiled()
-def move_cells(w: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: float, changes: Array) -> int:
+def move_cells(
+    w: Array, states: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: float, changes: Array,
+) -> int:  # fmt: skip
     """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
     pressures, changes (slots,); 1 if the film is to be asked again.
 
     Of a small gap in a short step the oil counts far more than its flow, and a cell's oil is an S over w: steep between
     empty and full, flat on both sides. From one flat side Newton's method would leap to the other and back for ever; a
     cell that leaps over all of the steep part stops in its middle, from where it gets to its end directly.
+
+    In a cavity at p_cav w is a source or missing oil, and its size says nothing of a pressure: a cell that becomes full
+    begins with p_cav, as its neighbours and the forces take it. Else a spurious peak of the pressure opens a free end.
     """
     m, k = w.shape
     empty = grid[LAW + EMPTY]
@@ -196,6 +202,8 @@ def move_cells(w: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: 
                 w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
             if max(before, w[i, j]) > 0.0 and min(before, w[i, j]) < empty:
                 w[i, j] = 0.5 * empty
+            if w[i, j] > 0.0 and states[PRESSURE_SLOPE, i, j] == 0.0:
+                w[i, j] = ABOVE_KINK
     return 1 if grid[BALANCE] == OPEN else 0
 
 

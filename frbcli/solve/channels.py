@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.compiled import Array, compiled
+from frbcli.dense import solve_dense
 from frbcli.film.cells.balances import BY_ITSELF, SIDES
 from frbcli.film.cells.channel_flow import (
     channel_pressures,
@@ -24,7 +25,6 @@ from frbcli.film.cells.channel_flow import (
 from frbcli.film.cells.data import FILM, SLOT, VolumeFilms
 from frbcli.film.cells.states import follow_law
 from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN, LAW
-from frbcli.solve.dense import solve_dense
 
 
 @compiled()

@@ -215,7 +215,7 @@ def _move_film(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-d
         return lambda films, work, f, u_x, u_y, share, g: 0
 
     def volumes(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
-        unsettled = move_cells(work.w[f], work.fields[f], work.grids[f], u_x, u_y, g, work.changes[f])
+        unsettled = move_cells(work.w[f], work.states[f], work.fields[f], work.grids[f], u_x, u_y, g, work.changes[f])
         if films.numbers[f, REMEMBERS] != 0.0 and work.grids[f, BALANCE] == AHEAD:
             s = int(work.grids[f, STAGE])
             store_ahead(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frbcli.compiled import Array, compiled
-from frbcli.solve.dense import solve_dense
+from frbcli.dense import solve_dense
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 
 LASTS = 0.01  # relative change of the speed over which a gyroscopic rotor keeps its inverse

@@ -9,8 +9,8 @@ import math
 from typing import Any
 
 from frbcli.compiled import Array, compiled
+from frbcli.dense import solve_dense
 from frbcli.solve.contact import feel, push_back, shell_ahead
-from frbcli.solve.dense import solve_dense
 from frbcli.solve.film_forces import film_numbers, follow_channels, join_films, meet_channels, move_film, step_back
 from frbcli.solve.stage import BY_X, BY_Y, CORRECTION, FOLLOWS_X, FOLLOWS_Y, FORCE, OMEGA, U_0, X_0, FilmMotion, U, norm
 from frbcli.solve.state import Control

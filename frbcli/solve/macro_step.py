@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import Indices, compiled
+from frbcli.dense import solve_dense
 from frbcli.rotor.excitation import rotation
-from frbcli.solve.dense import solve_dense
 from frbcli.solve.films import make_work, write_oil
 from frbcli.solve.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.micro_step import Told, films_follow, parabola

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import Array, compiled
+from frbcli.dense import solve_dense
 from frbcli.thermal.model import AT_ZERO, SLOPE, HeatModel
 
 # Rows of the links: two nodes, conductance at the reference clearance W/K, the film whose clearance divides it or -1.
@@ -25,9 +26,9 @@ HEAT_AT_ZERO, HEAT_SLOPE, MIXING, HOTTEST, ETA_0, A, C, BY_FORMULA, BALANCED = r
 # temperature, kept by the films; and 1 + the film that became too hot, 0 if none.
 DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
 # Rows of what a film is now: power W, flow m^3/s, viscosity Pa s, clearance m, scale of its pressures over that of its
-# table, share of its gap that is oil.
-POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, FILM_ROWS = range(7)
-LONGEST = 0.2  # of a time constant: explicit steps between nodes
+# table, share of its gap that is oil, heat that its oil takes along W/K.
+POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, OIL_HEAT, FILM_ROWS = range(8)
+LONGEST = 0.2  # of the shortest time constant: an explicit step
 ITERATIONS, FURTHEST, SETTLED = 30, 30.0, 1e-9  # of a film in balance: the steps of Newton's method and its end, K
 
 
@@ -75,18 +76,31 @@ def write_clearances(films: Array, growth: Array, bodies: int, state: Array, now
 def write_rates(
     capacity: Array, links: Array, films: Array, numbers: Array, now: Array, temperatures: Array, gain: Array
 ) -> tuple[float, float]:
-    """gain (n,) <- W that each node gains from what the films do now (FILM_ROWS, F).
+    """gain (n,) <- W that each node gains from what the films do now (FILM_ROWS, F), whose OIL_HEAT is written.
 
     Returns what the oil carries away and what nodes of given temperature take, W.
     """
-    count, carried, given, mixing = films.shape[1], 0.0, 0.0, numbers[MIXING]
+    for f in range(films.shape[1]):
+        source = int(films[INLET, f])
+        at = temperatures[source] if source >= 0 else films[SUPPLY, f]
+        rise = temperatures[f] - at
+        mean = at + 0.5 * rise / numbers[MIXING]
+        now[OIL_HEAT, f] = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * mean) * now[FLOW, f]
+    return _write_gains(capacity, links, films, numbers[MIXING], now, temperatures, gain)
+
+
+@compiled(inline=True)
+def _write_gains(
+    capacity: Array, links: Array, films: Array, mixing: float, now: Array, temperatures: Array, gain: Array
+) -> tuple[float, float]:
+    """write_rates with the OIL_HEAT that is there: linear in the temperatures."""
+    count, carried, given = films.shape[1], 0.0, 0.0
     for i in range(gain.shape[0]):
         gain[i] = now[POWER, i] if i < count else 0.0
     for f in range(count):
         source = int(films[INLET, f])
         at = temperatures[source] if source >= 0 else films[SUPPLY, f]
-        rise = temperatures[f] - at
-        heat = (numbers[HEAT_AT_ZERO] + numbers[HEAT_SLOPE] * (at + 0.5 * rise / mixing)) * now[FLOW, f]
+        rise, heat = temperatures[f] - at, now[OIL_HEAT, f]
         gain[f] -= heat * rise / mixing
         carried += heat * rise / mixing
         if source >= 0:  # this oil has come through the film that feeds this one
@@ -167,6 +181,41 @@ def balance_films(links: Array, films: Array, numbers: Array, now: Array, temper
         temperatures[f] = t
 
 
+@compiled(makes_arrays=True)
+def _follow_implicitly(
+    capacity: Array, links: Array, films: Array, numbers: Array, now: Array, step: float, temperatures: Array,
+    gain: Array,
+) -> None:  # fmt: skip
+    """temperatures (n,) <- after a step by Euler's implicit formula; gain (n,): as write_rates has left it."""
+    n, count, balanced = temperatures.shape[0], films.shape[1], numbers[BALANCED] != 0.0
+    matrix, change = np.zeros((n, n)), np.zeros((n, 1))
+    for f in range(count):
+        source, heat = int(films[INLET, f]), now[OIL_HEAT, f]
+        matrix[f, f] += heat / numbers[MIXING]
+        if source >= 0:
+            matrix[f, source] -= heat / numbers[MIXING]
+            matrix[source, source] += heat
+    for k in range(links.shape[1]):
+        i, j, film = int(links[FIRST, k]), int(links[SECOND, k]), int(links[OF_FILM, k])
+        passed = links[CONDUCTANCE, k]
+        if film >= 0:
+            passed *= films[REFERENCE, film] / now[CLEARANCE, film]
+        matrix[i, i] += passed
+        matrix[j, j] += passed
+        matrix[i, j] -= passed
+        matrix[j, i] -= passed
+    for i in range(n):
+        if capacity[i] == math.inf or (balanced and i < count):  # keeps its temperature
+            for j in range(n):
+                matrix[i, j] = 1.0 if i == j else 0.0
+        else:
+            matrix[i, i] += (held_share(films, now, i) if i < count else 1.0) * capacity[i] / step
+            change[i, 0] = gain[i]
+    solve_dense(matrix, change)
+    for i in range(n):
+        temperatures[i] += change[i, 0]
+
+
 @compiled(inline=True)
 def heat_step(
     capacity: Array, links: Array, films: Array, numbers: Array, now: Array, step: float, temperatures: Array,
@@ -175,22 +224,24 @@ def heat_step(
     """temperatures (n,) <- after a step in s in which the films dissipate and let out what `now` says; books (BOOKS,)
     add up where the heat goes. gain: (n,) scratch.
 
-    Explicit steps, a share of the shortest time constant each: what one node loses is what others gain, to round-off.
+    An explicit step, or where that is not short against the time constants of all nodes, an implicit one, in which
+    nodes of little capacity are in balance: what one node loses is what others gain, to round-off.
     """
-    balanced = numbers[BALANCED] != 0.0
+    balanced, count = numbers[BALANCED] != 0.0, films.shape[1]
     if balanced:
         balance_films(links, films, numbers, now, temperatures)
-    count = 1 + int(step * fastest(capacity, links, films, numbers, now, gain) / LONGEST)
-    part = step / count
-    for _ in range(count):
-        carried, given = write_rates(capacity, links, films, numbers, now, temperatures, gain)
-        books[CARRIED] += part * carried
-        books[GIVEN] += part * given
-        for i in range(temperatures.shape[0]):
-            if i < films.shape[1]:
-                books[DISSIPATED] += part * now[POWER, i]
-                if not balanced:
-                    books[IN_FILMS] += part * gain[i]
-                    temperatures[i] += part * gain[i] / (held_share(films, now, i) * capacity[i])
-            elif capacity[i] != math.inf:
-                temperatures[i] += part * gain[i] / capacity[i]
+    short = step * fastest(capacity, links, films, numbers, now, gain) <= LONGEST
+    carried, given = write_rates(capacity, links, films, numbers, now, temperatures, gain)
+    if not short:
+        _follow_implicitly(capacity, links, films, numbers, now, step, temperatures, gain)
+        carried, given = _write_gains(capacity, links, films, numbers[MIXING], now, temperatures, gain)
+    books[CARRIED] += step * carried
+    books[GIVEN] += step * given
+    for i in range(temperatures.shape[0]):
+        if i < count:
+            books[DISSIPATED] += step * now[POWER, i]
+            if not balanced:
+                books[IN_FILMS] += step * gain[i]
+        if short and capacity[i] != math.inf and not (balanced and i < count):
+            share = held_share(films, now, i) if i < count else 1.0
+            temperatures[i] += step * gain[i] / (share * capacity[i])

@@ -13,6 +13,8 @@ from frbcli.film.cells.plain.clipped import clipped_means
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
+ABOVE_KINK = 1e-300  # of an unknown: no pressure worth the name, but a full cell
+
 __all__ = [
     "Flows",
     "Motion",
@@ -76,8 +78,12 @@ class VolumeFilm:
         )
 
     def full(self) -> Array:
-        """(m, k) unknown of a full film at the ambient pressure."""
-        return np.full(self.grid.shape, max(0.0, -self.scales.cavitation / self.scales.reference))
+        """(m, k) unknown of a full film at the ambient pressure.
+
+        Where that is p_cav, it stands on the kink of the law, and on its full side: from there one step of Newton's
+        method finds the pressures of the whole film, from the other side those of one more column of cells.
+        """
+        return np.full(self.grid.shape, max(ABOVE_KINK, -self.scales.cavitation / self.scales.reference))
 
     def gap(self, d: tuple[float, float], phi: Array) -> Array:
         """H (4.4) at the angles phi (n,)."""

@@ -1,4 +1,4 @@
-"""Small dense systems inside the time loop.
+"""Small dense systems inside of kernels.
 
 LAPACK would do it, but its bindings alone take a third of the time in which the whole loop is compiled, and systems
 here have two to some sixty unknowns.
