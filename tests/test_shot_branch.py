@@ -51,6 +51,7 @@ def test_flips_and_torus_points_are_named_and_located(twisted: bool, kind: str, 
 
     hopf, shots = branch(round_cycles(decay, 0.3, twisted), 0.9, 1.5, (0.9, 1.1))
     assert hopf.rest.omega == pytest.approx(1.0 + 4.0 * AT_REST_DIFFERENCE**2, abs=2e-4)  # of differences of a cubic
+    assert abs(hopf.rest.omega - 1.0) < 1.1 * hopf.uncertainty < 2e-3
     (special,) = [shot for shot in shots if shot.kind]
     assert special.kind == kind
     assert 1.5 * math.exp(special.p[1]) == pytest.approx(1.3005, abs=2e-3)

@@ -17,6 +17,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Mesh
+from frbcli.film.parabola import share_within
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.section_faults import no_inflow
@@ -161,8 +162,5 @@ def _differences(missing: Callable[[Array], Array], position: Array, residual: A
 
 def _limited(position: Array, step: NDArray[np.floating]) -> Array:
     """A step that leaves the narrowest gap a share of what it was."""
-    limit = 1.0 - GAP_KEPT * (1.0 - np.linalg.norm(position))
-    a, b, c = step @ step, position @ step, position @ position - limit**2
-    share = min(1.0, float((math.sqrt(b * b - a * c) - b) / a)) if a > 0.0 else 1.0
-    limited: Array = np.asarray(share * step, dtype=np.float64)
-    return limited
+    limit = 1.0 - GAP_KEPT * (1.0 - float(np.linalg.norm(position)))
+    return np.asarray(share_within(position, np.asarray(step), limit) * step, dtype=np.float64)

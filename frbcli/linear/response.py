@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.film.parabola import summit
 from frbcli.html import Tabular
 from frbcli.linear.stability import StabilityPoint, default_speeds, stability_points
 from frbcli.rotor.linear import LinearRotor
@@ -33,6 +34,7 @@ Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
 
 SPEEDS = 120  # of the default sweep
+ROUND_OFF = 1e-9  # relative: what stands out by less, as where a stiff rotor turns about its centre of mass, is no peak
 
 
 @dataclass(frozen=True)
@@ -129,7 +131,7 @@ def response(
         films=system.names,
         forces=np.array(forces),
         growth=np.array([point.growth for point in resting]),
-        critical_speeds_Hz=_peaks(speeds, motion),
+        critical_speeds_Hz=peak_speeds(speeds, motion),
         resting=tuple(resting),
     )
 
@@ -162,22 +164,19 @@ def _at(rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitud
     return np.array([place @ q for _, place in rotor.points]), forces
 
 
-def _peaks(speeds: Array, motion: Amplitudes) -> tuple[float, ...]:
+def peak_speeds(speeds: Array, motion: Amplitudes) -> tuple[float, ...]:
     """Speeds at which the larger semi-axis of a point has a peak, each by a parabola through three speeds; peaks of
     several points within a step of the speed are one."""
     found: list[float] = []
     for own in larger_semi_axis(motion).T:
         for i in range(1, len(speeds) - 1):
-            if own[i] > own[i - 1] and own[i] >= own[i + 1]:
-                found.append(float(_vertex(speeds[i - 1 : i + 2], own[i - 1 : i + 2])))
+            low, here, high = own[i - 1 : i + 2].tolist()
+            if here > low and here >= high and here - min(low, high) > ROUND_OFF * here:
+                before, behind = np.diff(speeds[i - 1 : i + 2]).tolist()
+                found.append(float(speeds[i]) + summit(low, here, high, before, behind)[0])
     step = float(np.max(np.diff(speeds), initial=0.0))
     kept: list[float] = []
     for peak in sorted(found):
         if not kept or peak - kept[-1] > step:
             kept.append(peak)
     return tuple(kept)
-
-
-def _vertex(x: Array, y: Array) -> float:
-    bend, slope, _ = np.polyfit(x - x[1], y, 2)
-    return float(x[1] - 0.5 * slope / bend)

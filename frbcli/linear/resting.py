@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.parabola import share_within
 from frbcli.rotor.held import HeldRotor, held_rotor
 from frbcli.scene.system import System
 
@@ -116,10 +117,8 @@ def _largest_share(position: Array, step: Array) -> float:
     """Largest share of a step, at most 1, after which each journal keeps some of its gap; both over the clearance."""
     share = 1.0
     for d, change in zip(position, step, strict=True):
-        limit = 1.0 - SMALLEST_GAP_CHANGE * (1.0 - np.linalg.norm(d))
-        a, b, c = change @ change, d @ change, d @ d - limit**2
-        if a > 0.0:
-            share = min(share, float((np.sqrt(b * b - a * c) - b) / a))  # where |d + share * change| = limit
+        limit = 1.0 - SMALLEST_GAP_CHANGE * (1.0 - float(np.linalg.norm(d)))
+        share = min(share, share_within(d, change, limit))
     return share
 
 

@@ -2,7 +2,8 @@
 
 How fast a small motion grows is known from differences of the time loop, across the kinks that fronts of the oil leave
 when they cross cells: it scatters by some 0.07 1/s between neighbouring speeds. A Hopf point is therefore where the
-parabola through the rates of several speeds is zero, and how far they lie off it gives its uncertainty.
+parabola through the rates of several speeds is zero. Its uncertainty has two parts: how far the rates lie off the
+parabola, and how much they change with the size of the disturbance, whose error goes with its square.
 """
 
 from __future__ import annotations
@@ -15,20 +16,22 @@ import numpy as np
 
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.shooting.period_map import wet_at
-from frbcli.cycles.shooting.shots import PLACES, Rest, Shooting
+from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, PLACES, Rest, Shooting
 from frbcli.errors import NotConverged
+from frbcli.film.parabola import parabola_roots
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 
 RESTS = 15  # resting positions of a diagram
 HALVES, NEAR = 8, 0.02  # evaluations that bring a Hopf point between two speeds so far apart, relative
 FITTED, AROUND = 12, 0.04  # rates that a parabola goes through, within this of its zero, relative
+WIDER = 2.0  # times the disturbance of the differences, once more: how much its size changes the rates
 
 
 @dataclass(frozen=True)
 class Threshold:
     """A Hopf point. rest: the resting position there; number: of the rate that crosses zero; uncertainty: of its
-    speed in rad/s, the standard error."""
+    speed in rad/s, NaN where it is not known."""
 
     rest: Rest
     number: int
@@ -82,14 +85,33 @@ def located(shooting: Shooting, low: Rest, high: Rest, mode: int = 0) -> Thresho
             high = rest
     share = low.growth_of(mode) / (low.growth_of(mode) - high.growth_of(mode))
     middle = low.omega + share * (high.omega - low.omega)
-    zero, uncertainty = _fitted(shooting, low, middle, mode)
-    rest = shooting.rest(low.wet, zero)
-    rest = min(low, high, key=lambda one: abs(one.growth_of(mode))) if rest is None else rest
+    fit = _fitted(shooting, low, middle, mode)
+    rest = shooting.rest(low.wet, fit.zero)
+    if rest is None:
+        return _threshold(min(low, high, key=lambda one: abs(one.growth_of(mode))), math.nan)
+    wider = shooting.rest(rest.wet, fit.zero, WIDER * AT_REST_DIFFERENCE)
+    if wider is None:
+        return _threshold(rest, math.nan)
+    bent = abs(wider.growth_of(mode) - rest.growth_of(mode)) / (WIDER**2 - 1.0) / abs(fit.slope)
+    return _threshold(rest, math.hypot(fit.uncertainty, bent))
+
+
+def _threshold(rest: Rest, uncertainty: float) -> Threshold:
     return Threshold(rest, rest.nearest_to_neutral, uncertainty)
 
 
-def _fitted(shooting: Shooting, near: Rest, middle: float, mode: int) -> tuple[float, float]:
-    """Where the parabola through the rates of a whirl about a speed is zero, and its standard error, in rad/s.
+@dataclass(frozen=True)
+class _Fit:
+    """Where the parabola through rates is zero in rad/s, its slope there in 1/s over rad/s, and by how much the scatter
+    of the rates makes the zero uncertain, in rad/s: NaN both where no parabola was found."""
+
+    zero: float
+    slope: float = math.nan
+    uncertainty: float = math.nan
+
+
+def _fitted(shooting: Shooting, near: Rest, middle: float, mode: int) -> _Fit:
+    """The parabola through the rates of a whirl about a speed.
 
     The cells lie in different places from one speed to the next: else what they leave changes little between them."""
     places = [Shooting(shooting.flow.lying(place), shooting.unit) for place in PLACES]
@@ -101,10 +123,11 @@ def _fitted(shooting: Shooting, near: Rest, middle: float, mode: int) -> tuple[f
             rates.append(rest.growth_of(mode))
     if len(off) > FITTED // 2:
         curve = np.polynomial.Polynomial.fit(off, rates, 2, domain=[-1.0, 1.0])
-        zeros = [float(root.real) for root in curve.roots() if root.imag == 0.0 and abs(root.real) < 1.0]
-        if zeros:
-            zero = min(zeros, key=abs)
+        c, b, a = curve.coef.tolist()
+        zero = min(parabola_roots(a, b, c), key=abs)  # a is round-off where the rates lie on a straight line
+        if abs(zero) < 1.0:
             scatter = math.sqrt(np.square(curve(np.array(off)) - rates).sum() / (len(off) - 3))
-            blur = 1.5 * scatter / abs(float(curve.deriv()(zero))) / math.sqrt(len(off))  # of its value in the middle
-            return middle * (1.0 + AROUND * zero), middle * AROUND * blur
-    return middle, math.nan
+            slope = (b + 2.0 * a * zero) / (middle * AROUND)
+            blur = 1.5 * scatter / abs(slope) / math.sqrt(len(off))  # of its value in the middle
+            return _Fit(middle * (1.0 + AROUND * zero), slope, blur)
+    return _Fit(middle)

@@ -137,9 +137,10 @@ class Shooting:
         """The rotor speed of a cycle."""
         return math.exp(float(shot.mean_p[1])) * hertz(self.unit)
 
-    def rest(self, near: Wet, omega: float) -> Rest | None:
+    def rest(self, near: Wet, omega: float, difference: float = AT_REST_DIFFERENCE) -> Rest | None:
         """The resting position at a speed, as a fixed point of the map over half a revolution: whirls of up to the
-        speed of the rotor have frequencies of their own in it. None if it does not converge."""
+        speed of the rotor have frequencies of their own in it. None if it does not converge. difference: by which
+        states are disturbed."""
         time, none = math.pi / omega, np.zeros(0)
         asked = _Asked(self, near, STEPS_PER_REVOLUTION // 2)
 
@@ -148,14 +149,14 @@ class Shooting:
 
         try:
             x = self.flow.packed(near, self.unit)
-            space = slow_space(mapped, x, none, self._first(x), AT_REST_DIFFERENCE)
+            space = slow_space(mapped, x, none, self._first(x), difference)
             free = Conditions(np.zeros((0, len(x))), np.zeros((0, 0)))
             found = fixed_point(mapped, x, none, space, free)
             if found is None:
                 return None
             x, passage = found.x, asked.passage
             asked.settle(x)
-            space = slow_space(mapped, x, none, self._first(x, found.space), AT_REST_DIFFERENCE)
+            space = slow_space(mapped, x, none, self._first(x, found.space), difference)
         except Unreachable:
             return None
         values, states = ritz(space)

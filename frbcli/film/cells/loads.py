@@ -13,6 +13,7 @@ from frbcli.film.cells.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
+from frbcli.film.parabola import summit
 
 CavitationFactor = Literal["none", "global", "local"]
 
@@ -138,7 +139,7 @@ def peak(film: VolumeFilm, pressure: Array) -> float:
     m, k = grid.shape
     step = np.diff(grid.phi)
     before, behind = 0.5 * (step[i - 1] + step[i]), 0.5 * (step[i] + step[(i + 1) % m])
-    around = _vertex(float(pressure[i - 1, j]), highest, float(pressure[(i + 1) % m, j]), before, behind)
+    _, around = summit(float(pressure[i - 1, j]), highest, float(pressure[(i + 1) % m, j]), before, behind)
     if j == 0 or k == 1:
         return around
     z = grid.height
@@ -147,16 +148,8 @@ def peak(film: VolumeFilm, pressure: Array) -> float:
     gap = 2.0 * (1.0 - z[j]) if mirrored else z[j + 1] - z[j]
     if mirrored and film.section.far != "symmetry":
         return around
-    along = _vertex(float(pressure[i, j - 1]), highest, above, z[j] - z[j - 1], gap)
+    _, along = summit(float(pressure[i, j - 1]), highest, above, z[j] - z[j - 1], gap)
     return around + along - highest
-
-
-def _vertex(low: float, middle: float, high: float, before: float, behind: float) -> float:
-    """Largest value of the parabola through three points at -before, 0, behind, the middle one being the highest."""
-    slope_low, slope_high = (middle - low) / before, (high - middle) / behind
-    bend = (slope_high - slope_low) / (before + behind)
-    slope = slope_low + bend * before
-    return middle if bend >= 0.0 else middle - 0.25 * slope**2 / bend
 
 
 def estimate(fine: tuple[float, float], coarse: tuple[float, float], order: float = FRONTS) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 
 from frbcli.compiled import compiled
 from frbcli.film.grid import Array
+from frbcli.film.parabola import parabola_roots
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, element_lengths, gauss_angles
 
 
@@ -26,18 +27,7 @@ def force_weights(vertices: Array) -> Array:
 def _roots(p0: float, p1: float, p2: float) -> tuple[float, float]:
     """The two crossing points of the quadratic through p0, p1, p2 at 0, 1/2, 1, ascending; 2.0 where there is none."""
     a, b = 2.0 * (p0 - 2.0 * p1 + p2), -3.0 * p0 + 4.0 * p1 - p2
-    first = second = 2.0
-    scale = abs(p0) + abs(p1) + abs(p2)
-    if abs(a) < 1e-12 * scale:
-        if b != 0.0:
-            first = -p0 / b
-    else:
-        discriminant = b * b - 4.0 * a * p0
-        if discriminant > 0.0:
-            q = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
-            first = q / a
-            if q != 0.0:
-                second = p0 / q
+    first, second = parabola_roots(a, b, p0)
     if not 0.0 < first < 1.0:
         first = 2.0
     if not 0.0 < second < 1.0:

@@ -10,6 +10,7 @@ import numpy as np
 
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.parabola import summit
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
@@ -110,18 +111,18 @@ def largest_pressure(
     angles[1::2] = field.vertices + 0.5 * element_lengths(field.vertices)
     i, j = np.unravel_index(np.argmax(field.values), field.values.shape)
     ring = np.array([i - 1, i, i + 1]) % (2 * n)
-    gain = _summit(np.unwrap(angles[ring]), field.values[ring, j]) - field.values[i, j]
+    gain = _highest(np.unwrap(angles[ring]), field.values[ring, j]) - field.values[i, j]
     if 0 < j < LINES - 1:
-        gain += _summit(field.z[j - 1 : j + 2], field.values[i, j - 1 : j + 2]) - field.values[i, j]
+        gain += _highest(field.z[j - 1 : j + 2], field.values[i, j - 1 : j + 2]) - field.values[i, j]
     highest = float((field.values[i, j] + gain) * bearing.pressure_scale + bearing.ambient_pressure)
     edge = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
     return max(highest, edge)
 
 
-def _summit(x: Array, y: Array) -> float:
+def _highest(x: Array, y: Array) -> float:
     """Largest value of the parabola through three points with the largest in the middle."""
-    a, b, c = np.polyfit(x - x[1], y, 2)
-    return float(c - b * b / (4.0 * a)) if a < 0.0 else float(y[1])
+    low, middle, high = y.tolist()
+    return summit(low, middle, high, float(x[1] - x[0]), float(x[2] - x[1]))[1]
 
 
 def _scaled(bearing: RectangularBearing, pressure: float) -> float:
