@@ -36,7 +36,7 @@ COST = {"cpu_s", "error_cpu_s", "predicted_cpu_s", "wall_s", "steps", "rejected_
 ERROR = ["time_integration", "film_force_relative", "oil_balance_relative", "model_relative", "mesh_relative",
          "coupling", "modal_reduction", "cells", "eccentricity", "displacement", "ring_speed",
          "oil_fraction", "quiet_until_s"]  # fmt: skip
-EVENT = ["kind", "film", "t_s", "speed_Hz", "frequency_Hz", "frequency_ratio"]
+EVENT = ["kind", "film", "t_s", "speed_Hz", "frequency_Hz", "frequency_ratio", "point"]
 
 
 @pytest.fixture(autouse=True)

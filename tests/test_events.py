@@ -14,6 +14,7 @@ from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 from frbcli.analysis import signals as signals_of_a_run
 from frbcli.analysis import subsynchronous
 from frbcli.analysis.events import WHIRL_BEGINS, Event, find_events
+from frbcli.analysis.order_tracking import order_track
 from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.case.load import load_case
 from frbcli.linear.critical_speeds import linear_critical_speeds
@@ -100,6 +101,56 @@ def test_critical_speed_is_found_from_the_journal_alone() -> None:
     run = as_run({name: values for name, values in columns.items() if not name.startswith("disk")})
     critical = next(event for event in find_events(run) if event.kind == "critical-speed")
     assert critical.speed_Hz == pytest.approx(145.4, abs=1.0)
+
+
+def _ramp(folder: Path, rate: float, unbalance: float) -> Run:
+    """A run of the Jeffcott rotor through its critical speed into its whirl."""
+    settings = ("speed.from=100 Hz", "speed.to=185 Hz", f"speed.duration={85.0 / rate} s", "output.step=0.2 ms")
+    return runup(load_case("jeffcott", [*settings, f"rotor.unbalance={unbalance} g*mm"]), folder / "run.h5")
+
+
+SHORT = {(24.0, 10), (24.0, 50), (5.0, 15), (5.0, 40)}  # ramp in Hz/s, unbalance in g mm
+
+
+@pytest.mark.parametrize(
+    ("rate", "unbalance"),
+    [
+        pytest.param(rate, size, marks=() if (rate, size) in SHORT else pytest.mark.nightly)
+        for rate in (24.0, 5.0, 1.4, 0.35)
+        for size in (10, 15, 25, 40, 50)
+    ],
+)
+def test_the_critical_speed_is_the_largest_synchronous_motion_whatever_comes_after(
+    rate: float, unbalance: float, tmp_path: Path
+) -> None:
+    """A whirl that begins at 167 to 181 Hz cuts off the far side of the peak, the sooner the slower the ramp."""
+    run = _ramp(tmp_path, rate, unbalance)
+    (critical,) = (event for event in run.events if event["kind"] == "critical-speed")
+    track = order_track(run, 1.0, "disk")
+    before = track.speed_Hz < 165.0
+    largest = int(np.argmax(track.amplitude("forward")[before]))
+    assert critical["speed_Hz"] == pytest.approx(track.speed_Hz[before][largest], abs=1.0)
+    assert critical["point"] == "disk"
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize("whirl_s", [6.0, 6.5, 8.0])
+def test_a_whirl_soon_after_a_damped_resonance_leaves_its_critical_speed(damping: float, whirl_s: float) -> None:
+    """145 Hz are passed after 4.8 s, the peak is at 145 Hz / sqrt(1 - 2 damping^2)."""
+    event = found(Rotor(damping=damping, whirl_s=whirl_s))["critical-speed"]
+    assert event.speed_Hz == pytest.approx(145.0 / np.sqrt(1.0 - 2.0 * damping**2), abs=1.5)
+
+
+@pytest.mark.parametrize("whirl_s", [3.0, 4.0])
+def test_a_whirl_before_the_peak_leaves_no_critical_speed(whirl_s: float) -> None:
+    assert "critical-speed" not in found(Rotor(damping=0.1, whirl_s=whirl_s))
+
+
+@pytest.mark.parametrize(("kinds", "point"), [(("disk", "journal"), "disk"), (("journal",), "journal")])
+def test_an_event_names_the_point_that_shows_it(kinds: tuple[str, ...], point: str) -> None:
+    columns = {name: values for name, values in signals(Rotor()).items() if name.startswith((*kinds, "time", "speed"))}
+    critical, onset = find_events(as_run(columns))
+    assert (critical.point, onset.point) == (point, "journal")
 
 
 def test_resonance_after_the_onset_of_whirl_is_not_told_as_critical_speed() -> None:

@@ -9,7 +9,7 @@ speed and self-excited vibration are in resonance.py.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -44,7 +44,8 @@ class Event:
     """Something that happened at t_s, at rotor speed speed_Hz. film: the name of the film, None where there is but one;
     of a whirl in floating rings the film that drives it.
 
-    frequency_Hz, frequency_ratio (to the rotor speed): of the motion, where it has one.
+    frequency_Hz, frequency_ratio (to the rotor speed): of the motion, where it has one. point: whose motion it was
+    found in, "disk" or "journal", "disk_NAME" or "journal_NAME" where there are several; None where no motion shows it.
     """
 
     kind: Kind
@@ -53,6 +54,7 @@ class Event:
     speed_Hz: float
     frequency_Hz: float | None
     frequency_ratio: float | None
+    point: str | None = None
 
 
 def find_events(run: RunLike) -> tuple[Event, ...]:
@@ -82,7 +84,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
         elif room is not None:
             events += _whirl(run, whirls[plain.index(name)][0] / room, turns, name)
     before = min((event.t_s for event in events), default=np.inf)
-    events += _near_the_speed(run, turns, resonances, besides, before)
+    seen = [joined(*node) for node in nodes]
+    events += _near_the_speed(run, turns, dict(zip(seen, resonances, strict=True)), besides, before)
     named = list(signals.films(run.signals))
     last = {film: signals.piece(run, joined("eccentricity", film), len(run) - 1, len(run))[0] for film in named}
     touching = max(named, key=lambda film: float(last[film]), default="")
@@ -95,22 +98,30 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
 def _near_the_speed(
     run: RunLike,
     turns: Revolutions,
-    resonances: Sequence[Sequence[Motion]],
+    resonances: Mapping[str, Sequence[Motion]],
     besides: Sequence[Sequence[Motion]],
     before_s: float,
 ) -> Iterator[Event]:
-    """The critical speed and the first self-excited vibration before the first whirl, of all disks or else journals."""
+    """The critical speed and the first self-excited vibration before the first whirl, of all disks or else journals.
+    resonances: by point; besides: of the same points, or empty."""
     room = min((length for name, length in run.references.items() if name.startswith("clearance_m")), default=0.0)
     modes = signals.critical_speeds(run)
-    found = (vibrations_beside(motions, turns, room, before_s, modes) for motions in besides if room > 0.0)
-    vibrations = sorted((each for one in found for each in one), key=lambda vibration: vibration.time_s)
-    critical = critical_step(resonances, turns, FLOOR * room, before_s, modes, vibrations)
+    found = [
+        (vibration, name)
+        for name, motions in zip(resonances, besides, strict=False)
+        if room > 0.0
+        for vibration in vibrations_beside(motions, turns, room, before_s, modes)
+    ]
+    vibrations = sorted(found, key=lambda each: each[0].time_s)
+    own_frequencies = [vibration for vibration, _ in vibrations]
+    critical = critical_step(resonances.values(), turns, FLOOR * room, before_s, modes, own_frequencies)
     if critical is not None:
-        its_speed = float(turns.speed_Hz[critical])
-        yield Event("critical-speed", None, float(turns.time_s[critical]), its_speed, its_speed, 1.0)
-    for own in vibrations[:1]:
+        point, step = list(resonances)[critical[0]], critical[1]
+        its_speed = float(turns.speed_Hz[step])
+        yield Event("critical-speed", None, float(turns.time_s[step]), its_speed, its_speed, 1.0, point)
+    for own, point in vibrations[:1]:
         ratio = own.frequency_Hz / abs(own.speed_Hz)
-        yield Event("self-excited", None, own.time_s, own.speed_Hz, ratio * own.speed_Hz, ratio)
+        yield Event("self-excited", None, own.time_s, own.speed_Hz, ratio * own.speed_Hz, ratio, point)
 
 
 def _clearance_steps(run: RunLike) -> Iterator[Event]:
@@ -133,7 +144,8 @@ def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> It
         for kind, at in moments:
             t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
             speed = signals.speed_at(run, t)
-            yield Event(kind, joined(name, whirl.side), t, speed, frequency, frequency / speed)
+            film, point = joined(name, whirl.side), joined("journal", name)
+            yield Event(kind, film, t, speed, frequency, frequency / speed, point)
 
 
 def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Iterator[Event]:
@@ -165,7 +177,8 @@ def _whirl_event(kind: Kind, run: RunLike, name: str, turns: Revolutions, step: 
     band = (orders >= WHIRL_BAND[0]) & (orders <= WHIRL_BAND[1])
     ratio = float(orders[band][np.argmax(lines[band])])
     speed = float(turns.speed_Hz[step])
-    return Event(kind, name or None, float(turns.time_s[step]), speed, ratio * speed, ratio)
+    point = joined("journal", name)
+    return Event(kind, name or None, float(turns.time_s[step]), speed, ratio * speed, ratio, point)
 
 
 def _at_even_angles(run: RunLike, name: str, times_s: Values) -> Motion:

@@ -14,11 +14,13 @@ Values = NDArray[np.float64]
 @dataclass(frozen=True)
 class Peak:
     """A local maximum. place: its sample; prominence: how far it stands out of the higher of its two sides, each of
-    which reaches to the next higher sample or to the end of the curve; before, after: the last and the first sample on
-    its flanks that are at most half of the prominence below it, so to say half-way up."""
+    which reaches to the next higher sample or to the end of the curve; rise: how far it stands out of the side before
+    it; before, after: the last and the first sample on its flanks that are at most half of the prominence below it, so
+    to say half-way up."""
 
     place: int
     prominence: float
+    rise: float
     before: int
     after: int
 
@@ -42,7 +44,7 @@ def prominent_peaks(values: Values, least: float) -> list[Peak]:
             half = height - 0.5 * prominence
             before = place - 1 - int(np.argmax(values[:place][::-1] <= half))
             after = place + 1 + int(np.argmax(values[place + 1 :] <= half))
-            found.append(Peak(int(place), prominence, before, after))
+            found.append(Peak(int(place), prominence, float(height - left), before, after))
     return found
 
 

@@ -8,11 +8,11 @@ stays constant while the rotor speed changes: this is not a critical speed, thou
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frbcli.analysis.peaks import intervals_above, prominent_peaks
+from frbcli.analysis.peaks import Peak, intervals_above, prominent_peaks
 from frbcli.analysis.revolutions import STEPS, Revolutions, Tracked
 from frbcli.analysis.signals import Motion, Values
 
@@ -67,8 +67,8 @@ def critical_step(
     before_s: float,
     modes: Sequence[float] | None,
     vibrations: Sequence[Vibration],
-) -> int | None:
-    """The step of `turns` with the clearest critical speed; None if there is none.
+) -> tuple[int, int] | None:
+    """Which of the points shows the clearest critical speed, and at which step of `turns`; None if there is none.
 
     motions: of each disk, or else journal, those of `resonant`, in m; floor: m, less is round-off; before_s: the time
     of the first whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
@@ -76,8 +76,8 @@ def critical_step(
     """
     half = REVOLUTIONS * STEPS // 2
     settled, whirls = turns.settled, int(np.searchsorted(turns.time_s, before_s))
-    best: tuple[float, int] | None = None
-    for tracked in motions:
+    best: tuple[float, int, int] | None = None
+    for point, tracked in enumerate(motions):
         # A whirl may break out in the resonance, whose peak is over a window later.
         motion = [each[settled : whirls + half] for each in tracked]
         for place, prominence in _resonances(motion, floor, whirls - half - settled):
@@ -89,8 +89,8 @@ def critical_step(
             own = modes is None and near(speed, (vibration.frequency_Hz for vibration in vibrations), late)
             known = modes is None or near(speed, modes, late)
             if known and not own and (best is None or prominence > best[0]):
-                best = prominence, step
-    return None if best is None else best[1]
+                best = prominence, point, step
+    return None if best is None else best[1:]
 
 
 def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tuple[int, float]]:
@@ -100,13 +100,32 @@ def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tup
     if len(amplitude) == 0:
         return []
     phase = np.unwrap(np.angle(synchronous))
+    least = max(floor, OVER_BACKGROUND * float(np.median(np.abs(background))))
+    peaks = prominent_peaks(amplitude, least)
+    whole = [peak for peak in peaks if peak.prominence >= PROMINENCE * amplitude[peak.place]]
+    known = {peak.place for peak in whole}
+    more = [peak for peak in _cut_off(amplitude[: max(0, until + 1)], least) if peak.place not in known]
     return [
         (peak.place, peak.prominence)
-        for peak in prominent_peaks(amplitude, max(floor, OVER_BACKGROUND * float(np.median(np.abs(background)))))
+        for peak in whole + more
         if peak.place < until
-        and peak.prominence >= PROMINENCE * amplitude[peak.place]
         and abs(whirl[peak.place]) <= amplitude[peak.place]  # whirl that is about to break out spills over
         and abs(phase[min(peak.after, until)] - phase[peak.before]) >= LAG
+    ]
+
+
+def _cut_off(amplitude: Values, least: float) -> list[Peak]:
+    """The highest peak of a curve (n,) that ends with the run or the first whirl, which cuts off the far side of the
+    peak: its prominence is then how far it rises.
+
+    How far it would fall is not known, so its phase decides: where one mode moves, the amplitude goes with the cosine
+    of the phase, and LAG between the middles of the flanks is a fall by 7 %.
+    """
+    highest = int(np.argmax(amplitude)) if len(amplitude) else 0
+    return [
+        replace(peak, prominence=peak.rise)
+        for peak in prominent_peaks(amplitude, least)
+        if peak.place == highest and peak.rise >= PROMINENCE * amplitude[highest]
     ]
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from frbcli.results.records import event_place
+
 EVENT_COLUMNS = ("event", "time in s", "speed in Hz", "frequency in Hz", "ratio")
 
 
@@ -13,9 +15,8 @@ def event_row(event: dict[str, Any]) -> tuple[str, ...]:
     def number(value: float | None, form: str) -> str:
         return "-" if value is None else format(value, form)
 
-    name = event["kind"] if event["film"] is None else f"{event['kind']} {event['film']}"
     return (
-        name,
+        f"{event['kind']} {event_place(event)}".rstrip(),
         number(event["t_s"], ".3f"),
         number(event["speed_Hz"], ".1f"),
         number(event["frequency_Hz"], ".1f"),

@@ -30,7 +30,7 @@ from frbcli.plot.waterfall import level_label, reading, run_spectra
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.place import wrong_place
-from frbcli.results.records import SPEED
+from frbcli.results.records import SPEED, event_place
 from frbcli.results.store import Run
 from frbcli.runs.account import account
 from frbcli.runs.header import FILM_SIGNALS
@@ -169,7 +169,8 @@ def _event(number: int, event: dict[str, Any]) -> tuple[str, ...]:
     def told(key: str, form: str) -> str:
         return "-" if event[key] is None else format(event[key], form)
 
-    name = event["kind"].replace("-", " ") + (f", {event['film']}" if event["film"] else "")
+    place = event_place(event)
+    name = event["kind"].replace("-", " ") + (f", {place}" if place else "")
     return (str(number), name.replace("_", " "), told("t_s", ".3f"), told("speed_Hz", ".1f"),
             told("frequency_Hz", ".1f"), told("frequency_ratio", ".3f"))  # fmt: skip
 

@@ -86,6 +86,12 @@ def wrong_record(records: Mapping[str, Any]) -> str:
     return next((name for name, holds in forms.items() if not holds(records[name])), "")
 
 
+def event_place(event: Mapping[str, Any]) -> str:
+    """Where an event was found: its film, or else the point whose motion shows it; "" of one that has neither, as in
+    files of earlier versions."""
+    return str(event["film"] or event.get("point") or "")
+
+
 def untold(cost: Mapping[str, Any], error: Mapping[str, Any]) -> str:
     """The missing record of cost or error of a run that has ended, "" if it has all."""
     numbers = [(cost, name) for name in COST_OF_ALL] + [(error, name) for name in ERROR_OF_ALL]

@@ -25,6 +25,7 @@ from frbcli.results.records import (
     MOST_EVENTS,
     MOST_SAMPLES,
     TIME,
+    event_place,
     wrong_event,
     wrong_record,
     wrong_text,
@@ -114,9 +115,12 @@ class Run:
 
     def _repr_html_(self) -> str:
         """In a notebook: how it ended, its events."""
-        columns = ("event", "film", "time in s", "rotor speed in Hz", "frequency in Hz", "ratio")
-        keys = ("kind", "film", "t_s", "speed_Hz", "frequency_Hz", "frequency_ratio")
-        rows = [["-" if event[key] is None else event[key] for key in keys] for event in self.events]
+        columns = ("event", "film or point", "time in s", "rotor speed in Hz", "frequency in Hz", "ratio")
+        keys = ("t_s", "speed_Hz", "frequency_Hz", "frequency_ratio")
+        rows = [
+            [event["kind"], event_place(event) or "-", *("-" if event[key] is None else event[key] for key in keys)]
+            for event in self.events
+        ]
         ended = f"{self.status} at {self.t_end_s:.4g} s"
         title = f"{self.title}: {ended}, {len(self)} samples of {len(self.signals)} signals"
         return html_table(title, columns, rows, len(rows))
