@@ -18,6 +18,7 @@ from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
 
 BACKENDS = ("loky", "dask")
 CONNECT_WITHIN_s = 10.0
+MOST_PER_CORE = 16
 QUEUE = 2  # tasks given out per worker: the next one waits where the last one ends
 DIED = "its process ended: it was killed, or there was too little memory."
 
@@ -45,6 +46,10 @@ def check_workers(workers: Workers) -> None:
         raise _refuse("--scheduler", workers.scheduler, "is for a cluster.", "Add --backend dask.")
     if workers.jobs != -1 and workers.jobs < 1:
         raise _refuse("--jobs", str(workers.jobs), "is not a number of processes.", "Write 1 or more.")
+    cores = joblib.cpu_count()
+    if workers.backend == "loky" and workers.jobs > MOST_PER_CORE * cores:
+        problem = f"are more processes than this machine can run: it has {cores} cores."
+        raise _refuse("--jobs", str(workers.jobs), problem, f"Write {cores}, or leave --jobs out.")
 
 
 def solved(tasks: Iterable[Task], workers: Workers) -> Generator[SweepPoint, None, None]:
