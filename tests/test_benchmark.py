@@ -134,7 +134,7 @@ def eccentricity_error(run: Run, reference: Run, until_s: float) -> float:
 
 def test_jeffcott_run_up_against_the_naive_way(tmp_path: Path) -> None:
     case = load_case("jeffcott")
-    run = best(lambda: runup(case, tmp_path / "run.h5"))
+    run = best(lambda: runup(case, tmp_path / "run.h5", force=True))
     fine = ("accuracy.tolerance=1e-9", "accuracy.steps_per_revolution=160", "accuracy.mesh=[12, 256]")
     reference = runup(load_case("jeffcott", fine), tmp_path / "reference.h5")
     error = eccentricity_error(run, reference, 5.9)  # the linear threshold is passed at 5.9 s
@@ -148,7 +148,7 @@ def test_jeffcott_run_up_against_the_naive_way(tmp_path: Path) -> None:
 
 
 def test_short_bearing_run_up(tmp_path: Path) -> None:
-    run = best(lambda: runup(load_case("jeffcott", ("film.theory=short",)), tmp_path / "run.h5"))
+    run = best(lambda: runup(load_case("jeffcott", ("film.theory=short",)), tmp_path / "run.h5", force=True))
     pace = run.t_end_s / run.cost["cpu_s"]
     report(f"\nshort bearing: {pace:.0f} simulated s per CPU s")
     assert pace >= 20
@@ -158,7 +158,7 @@ def test_short_bearing_run_up(tmp_path: Path) -> None:
 def test_penalty_run_up(reading: str, tmp_path: Path) -> None:
     """With the time that its table takes."""
     case = load_case("jeffcott", ("film.cavitation=penalty", f"film.penalty.pressure={reading}"))
-    run = best(lambda: runup(case, tmp_path / "run.h5"))
+    run = best(lambda: runup(case, tmp_path / "run.h5", force=True))
     plan, tables = make_plan(case), []
     for _ in range(REPEATS):
         began = time.process_time()

@@ -239,7 +239,7 @@ def test_a_changed_case_records_its_own_text_with_its_run(tmp_path: Path) -> Non
     changed = case.with_settings({"oil.viscosity": 0.013})
     with pytest.raises(InputError, match="another case"):
         runup(changed, path, resume=True)
-    runup(changed, path)
+    runup(changed, path, force=True)
     assert load_case_text(read_run(path).case_text) == changed
 
 

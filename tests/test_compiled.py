@@ -159,7 +159,7 @@ def test_a_run_leaves_no_array_behind(name: str, tmp_path: Path) -> None:
     _nrt_python.memsys_enable_stats()
     left = []
     for duration in ("2 ms", "2 ms", "10 ms"):
-        runup(load_case(name, [f"speed.duration={duration}"]), tmp_path / "run.h5")
+        runup(load_case(name, [f"speed.duration={duration}"]), tmp_path / "run.h5", force=True)
         gc.collect()
         stats = rtsys.get_allocation_stats()
         left.append(stats.mi_alloc - stats.mi_free)

@@ -138,13 +138,6 @@ def test_an_ended_run_cannot_be_resumed(run_path: Path) -> None:
         RunWriter.resume(run_path)
 
 
-def test_stale_part_file_is_removed(tmp_path: Path) -> None:
-    part = tmp_path / "run.h5.part"
-    part.write_bytes(b"half a file")
-    RunWriter(tmp_path / "run.h5", HEADER)
-    assert not part.exists()
-
-
 def test_a_file_cut_short_is_refused(run_path: Path) -> None:
     whole = run_path.read_bytes()
     for length in [0, 1, 9, 10, 100, USER_BLOCK - 1, *range(USER_BLOCK, len(whole), 97), len(whole) - 1]:

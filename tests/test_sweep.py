@@ -124,7 +124,7 @@ def test_each_point_is_the_run_it_would_be_alone(case: Case, tmp_path: Path) -> 
         assert point.settings == {"oil.viscosity": viscosity}
         assert point.run is not None
         kept = read_run(point.run)
-        alone = runup(load_case("jeffcott", [*SHORT, f"oil.viscosity={viscosity}"]), tmp_path / "alone.h5")
+        alone = runup(load_case("jeffcott", [*SHORT, f"oil.viscosity={viscosity}"]), tmp_path / f"{point.number}.h5")
         for name in alone.signals:
             np.testing.assert_array_equal(kept[name], alone[name], strict=True)
         assert (point.status, list(point.events)) == (alone.status, alone.events)

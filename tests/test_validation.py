@@ -121,7 +121,7 @@ def test_critical_speed_and_rise(tmp_path: Path) -> None:
     until_7s = ("speed.to=210 Hz", "speed.duration=7 s")
     run = runup(load_case("jeffcott", until_7s), tmp_path / "run.h5")
     assert agrees("critical-speed", measures.first_event(run, "critical-speed", "t_s"))
-    found = measures.rise(runup(load_case("jeffcott-table-4-1", until_7s), tmp_path / "run.h5"))
+    found = measures.rise(runup(load_case("jeffcott-table-4-1", until_7s), tmp_path / "table.h5"))
     assert agrees("rise-table-4-1", found.passage_s)
     assert found.onset_s == pytest.approx(found.passage_s, abs=0.2)
 

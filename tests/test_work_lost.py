@@ -355,7 +355,7 @@ def test_a_disk_that_becomes_full_leaves_the_last_checkpoint() -> None:
     hurry += "; import frbcli.runs.march as u; u.BUDGET = 100"
     runup(load_case("jeffcott", SETTINGS), "run.h5")  # has its kernels compiled, whose files may not be written then
     size = Path("run.h5").stat().st_size
-    with process(hurry, "runup", *QUICK, "-o", "run.h5", preexec_fn=full_at(int(0.9 * size))) as one:
+    with process(hurry, "runup", *QUICK, "-o", "run.h5", "--force", preexec_fn=full_at(int(0.9 * size))) as one:
         out, err = one.communicate(timeout=120.0)
     assert (one.returncode, out) == (2, "")
     assert "cannot be written: File too large. Free some space and continue" in err
@@ -466,13 +466,16 @@ def test_what_is_put_behind_the_name_of_a_run_counts(length: int, capsys: pytest
 
 
 @pytest.mark.usefixtures("nothing_runs")
-def test_a_directory_where_a_run_is_written_first_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    Path("run.h5.part").mkdir()
+@pytest.mark.parametrize("content", [None, "of the user"])
+def test_what_is_in_place_of_the_lock_of_a_run_is_named(
+    content: str | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lock = Path("run.h5.lock")
+    lock.mkdir() if content is None else lock.write_text(content)
     for words in (["runup", *QUICK, "-o", "run.h5"], ["rundown", *QUICK, "-o", "run.h5", "--no-picture"]):
         assert frb(words) == 2
-        assert "run.h5.part" in capsys.readouterr().err
-    Path("kept/half-sommerfeld-short.h5.part").mkdir(parents=True)
-    assert frb(["compare", *QUICK, *MODELS, "--keep", "kept"]) == 2
+        assert "run.h5.lock" in capsys.readouterr().err
+    assert lock.is_dir() if content is None else lock.read_text() == content
 
 
 # --- pictures ---

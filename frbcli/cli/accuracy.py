@@ -10,11 +10,11 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import OUTPUT, check_outputs, here
 from frbcli.cli.live import live_lines, of_runs
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.pictures import draw
 from frbcli.cli.quantities import TIME_OPTION
-from frbcli.cli.runs import OUTPUT, here
 from frbcli.errors import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def command(
     from frbcli.studies.accuracy import accuracy
 
     target = output or here(case.name, "-accuracy.png")
-    check_place(target if picture else None)
+    check_outputs(picture=target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         tell = of_runs(terminal, show)
         found = accuracy(case, until, theory, coupling, lambda rung, *rest: tell(rung.name, *rest))

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from frbcli.cli.common import Terminal
+from frbcli.cli.files import beside, check_outputs
 from frbcli.cli.measured import run_of
-from frbcli.cli.pictures import check_place, draw
-from frbcli.cli.runs import beside
+from frbcli.cli.pictures import draw
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -27,7 +27,7 @@ def beside_measured(
     from frbcli.studies.against import against_measured
 
     target = (output or beside(run_file, "-measured.png")) if picture else None
-    check_place(target)
+    check_outputs(picture=target)
     found = against_measured(read_run(run_file), run_of(file, measurement), signal)
     _tell(terminal, found)
     if target is not None:

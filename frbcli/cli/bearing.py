@@ -11,11 +11,11 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import OUTPUT, check_outputs, here
 from frbcli.cli.live import counting, live_lines
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.pictures import draw
 from frbcli.cli.quantities import LOAD_OPTION, SPEED_OPTION
-from frbcli.cli.runs import OUTPUT, here
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -47,7 +47,8 @@ SETTLED = "Coefficients of mass-conserving films are of oil that has settled; th
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-bearing.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
 @click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all numbers as a table, too.")
-@click.option("--ross", metavar="FILE", type=OUTPUT, help="Write stiffness and damping over speed as ROSS reads them.")
+@click.option("--ross", metavar="FILE", type=OUTPUT,
+              help="Write stiffness and damping over speed as ROSS reads them: a file per film.")  # fmt: skip
 @picture_options
 @output_options
 def command(
@@ -65,12 +66,12 @@ def command(
     from frbcli.errors import NotConverged
     from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
     from frbcli.linear.film_state import heat_capacity
-    from frbcli.results.place import require_place
+    from frbcli.results.kinds import ROSS, TABLES
 
     _check_options(over, speeds, load, output, no_picture, ross)
     picture = None if no_picture else output or here(case.name, "-bearing.png")
-    check_place(picture)
-    require_place(csv, ross)
+    elements = _ross_files(case, ross)
+    check_outputs((csv, TABLES["csv"]), *((file, ROSS) for file in elements.values()), picture=picture)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         if over == "speed":
             found = bearing_sheet(case, speeds or None, load, counting(terminal, show))
@@ -78,13 +79,11 @@ def command(
             found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=counting(terminal, show))
     _tell(terminal, found)
     if csv is not None:
-        found.to_pandas().to_csv(csv, index=False)
-        terminal.result(f"table: {csv}")
-    if ross is not None:
-        from frbcli.results.ross import write_ross
+        from frbcli.results.tables import write_table
 
-        write_ross(found.to_pandas(), ross)
-        terminal.result(f"ROSS: {ross}")
+        write_table(found.to_pandas(), csv)
+        terminal.result(f"table: {csv}")
+    _write_ross(terminal, found, elements)
     if picture is not None:
         from frbcli.plot.bearing import bearing_figure
 
@@ -99,7 +98,7 @@ def command(
             "points": [_point(point) for point in found.points],
             "picture": picture,
             "csv": csv,
-            "ross": ross,
+            "ross": list(elements.values()) or None,
         }
     )
     return None if any(not point.problem for point in found.points) else NotConverged.exit_code
@@ -114,6 +113,25 @@ def _check_options(
         raise click.UsageError("Over eccentricity there is one --speed and no --load: the films tell it.")
     if over == "eccentricity" and ross is not None:
         raise click.UsageError("--ross is a table over speed.")
+
+
+def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
+    """The file for ROSS of each film, if they are asked for."""
+    if ross is None:
+        return {}
+    from frbcli.results.ross import ross_files
+    from frbcli.scene.films import film_places
+
+    return ross_files(ross, [place.name for place in film_places(case)])
+
+
+def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Path]) -> None:
+    from frbcli.results.ross import write_ross
+
+    table = found.to_pandas()
+    for film, path in elements.items():
+        write_ross(table[table["film"] == film], path)
+        terminal.result(f"ROSS: {path}")
 
 
 def _tell(terminal: Terminal, found: BearingSheet) -> None:

@@ -7,12 +7,12 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.errors import Fault, InputError
+from frbcli.cli.files import OUTPUT, check_outputs
 
 
 @click.command()
 @click.argument("names", nargs=-1, metavar="[NAME]...")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Copy the case to this file.")
+@click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="The hard cases in place of the others.")
 @click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and report how each ended.")
 @output_options
@@ -63,13 +63,9 @@ def _list(terminal: Terminal) -> None:
 
 
 def _write(text: str, output: Path) -> None:
-    try:
-        with output.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        problem, remedy = "is there already.", "Name a new file: existing cases are not overwritten."
-    except (OSError, ValueError) as error:
-        problem, remedy = f"cannot be written: {getattr(error, 'strerror', None) or error}.", "Check the directory."
-    else:
-        return
-    raise InputError(str(output), (Fault("--output", str(output), None, problem, remedy),))
+    """Write a case to a new file."""
+    from frbcli.results.kinds import NEW
+    from frbcli.results.write import write
+
+    check_outputs((output, NEW))
+    write(output, NEW, text)

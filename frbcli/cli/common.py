@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
+from frbcli.cli.files import INPUT, note_read
 from frbcli.cli.picture_options import Look, look_of
 from frbcli.cli.streams import OutputLost
 from frbcli.errors import printable
@@ -237,11 +238,12 @@ def _terminal(context: click.Context, _: click.Parameter, quiet: bool) -> Termin
 def _load(context: click.Context, _: click.Parameter, source: str) -> Case:
     from frbcli.case.load import load_case
 
+    note_read(Path(source), context)
     return load_case(source, context.meta.get(_SETTINGS, ()))
 
 
 def _load_or_path(context: click.Context, option: click.Parameter, source: str) -> Case | Path:
-    return Path(source) if source.endswith(RUN_SUFFIX) else _load(context, option, source)
+    return INPUT.convert(source, option, context) if source.endswith(RUN_SUFFIX) else _load(context, option, source)
 
 
 def _as_json(letter: str) -> str:

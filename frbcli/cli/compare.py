@@ -12,12 +12,12 @@ import click
 from frbcli.cli.against import beside_measured
 from frbcli.cli.common import Names, Terminal, case_or_run_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import INPUT, OUTPUT, OUTPUT_FOLDER, check_outputs, here
 from frbcli.cli.gathered import gathered
 from frbcli.cli.live import live_lines, of_runs
 from frbcli.cli.measured import measured_options
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
-from frbcli.cli.runs import OUTPUT, RUN, here
+from frbcli.cli.pictures import draw
 from frbcli.cli.transient import exit_code
 from frbcli.errors import Fault, InputError
 
@@ -62,8 +62,8 @@ class Models:
               help="The scene: runup, rotation, squeeze, whirl.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
 @click.option("--picture/--no-picture", default=True, help="A picture of all.")
-@click.option("--keep", metavar="DIR", type=OUTPUT, help="Keep the run files in this directory.")
-@click.option("--measured", "file", metavar="FILE", type=RUN,
+@click.option("--keep", metavar="DIR", type=OUTPUT_FOLDER, help="Keep the run files in this directory.")
+@click.option("--measured", "file", metavar="FILE", type=INPUT,
               help="Of a run: a measured run-up to set beside it, CSV, WAV or MAT, see --x.")  # fmt: skip
 @click.option("--signal", default="journal", show_default=True, help="Of the run beside it: journal or journal_NAME.")
 @measured_options
@@ -98,7 +98,7 @@ def command(
     target = output or here(case.name, "-compare.png")
     if test in TESTS:
         return _kinematic(case, test, models, target, picture, terminal)
-    check_place(target if picture else None)
+    check_outputs(picture=target if picture else None)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         tell = of_runs(terminal, show)
         found = compare(

@@ -8,11 +8,11 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.runs import OUTPUT, RUN, beside
+from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
 
 
 @click.command()
-@click.argument("run_file", metavar="RUN.h5", type=RUN)
+@click.argument("run_file", metavar="RUN.h5", type=INPUT)
 @click.option(
     "--format",
     "table_format",
@@ -26,17 +26,21 @@ from frbcli.cli.runs import OUTPUT, RUN, beside
 def command(run_file: Path, table_format: str, output: Path | None, terminal: Terminal) -> None:
     """Write the signals of RUN.h5, one column each."""
     from frbcli.results.export import export_run, write_csv
+    from frbcli.results.kinds import TABLES
     from frbcli.results.store import read_run
 
     to_stdout = output == Path("-")
     if to_stdout and (table_format != "csv" or terminal.json):
         raise click.UsageError("Only CSV goes to stdout, and not together with --json.")
+    target = output or beside(run_file, f".{table_format}")
+    if not to_stdout:
+        check_outputs((target, TABLES[table_format]))
     run = read_run(run_file)
     if to_stdout:
         write_csv(run, sys.stdout)  # ends where its reader does, as `head`
         sys.stdout.flush()
         return
-    target = export_run(run, output or beside(run_file, f".{table_format}"), table_format)
+    export_run(run, target, table_format)
     terminal.result(f"{len(run)} samples of {len(run.signals)} signals: {target}")
     terminal.emit(
         {

@@ -10,11 +10,11 @@ import click
 
 from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import INPUT, OUTPUT, check_outputs, here
 from frbcli.cli.live import live_lines
 from frbcli.cli.measured import measured_options, run_of
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
-from frbcli.cli.runs import OUTPUT, RUN, here
+from frbcli.cli.pictures import draw
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -30,7 +30,7 @@ POOR = 2.0  # times the scatter of the measurement: the case does not describe i
 
 @click.command()
 @case_argument
-@click.option("--measured", "file", required=True, metavar="FILE", type=RUN,
+@click.option("--measured", "file", required=True, metavar="FILE", type=INPUT,
               help="A measured run-up: CSV, WAV or MAT, see --x; or a run.")  # fmt: skip
 @click.option("--vary", type=Names(), required=True, metavar="KEY,KEY", help="The numbers of CASE that are sought.")
 @click.option("--bounds", multiple=True, metavar="KEY=LOW,HIGH", help="In the units of the case. Repeatable. [a third, "
@@ -56,12 +56,11 @@ def command(
 ) -> None:
     """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
     amplitude of the whirl, its onset."""
-    from frbcli.results.place import require_place
+    from frbcli.results.kinds import NEW
     from frbcli.studies.fit import fit
 
     picture = None if no_picture else output or here(case.name, "-fit.png")
-    check_place(picture)
-    require_place(save)
+    check_outputs((save, NEW), picture=picture)
     limits = _bounds(case, bounds)
     measured = run_of(file, measurement)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
@@ -73,7 +72,9 @@ def command(
         found = fit(case, measured, vary, limits, signal, watch)
     _tell(terminal, found)
     if save is not None:
-        save.write_text(found.case.source_text, encoding="utf-8")
+        from frbcli.results.write import write
+
+        write(save, NEW, found.case.source_text)
         terminal.result(f"case: {save}")
     if picture is not None:
         from frbcli.plot.ridges import fit_figure

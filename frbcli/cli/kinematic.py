@@ -11,10 +11,10 @@ import click
 
 from frbcli.cli.common import Names, Terminal
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import OUTPUT, check_outputs, here
 from frbcli.cli.heat import film_document, tell_film
 from frbcli.cli.live import counting, live_lines
-from frbcli.cli.pictures import check_place, draw
-from frbcli.cli.runs import OUTPUT, here
+from frbcli.cli.pictures import draw
 from frbcli.errors import INTERRUPTED, NotConverged
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def run_test(
     from frbcli.bearing_tests import kinematic
 
     target = output or here(case.name, f"-{test}.png")
-    check_place(target if picture else None)
+    check_outputs(picture=target if picture else None)
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         found = tests[test](case, cavitation, counting(terminal, show))

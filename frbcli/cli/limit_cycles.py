@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import INPUTS, OUTPUT, check_outputs, here
 from frbcli.cli.gathered import gathered
 from frbcli.cli.live import counting, live_lines
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.pictures import draw
 from frbcli.cli.quantities import SPEED_OPTION
-from frbcli.cli.runs import OUTPUT, here
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -64,7 +64,7 @@ class Range:
               help="Number of values of --and whose diagrams tell where curves begin. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
               help="What stable cycles become with unbalance: whirls of two frequencies or locked in.")  # fmt: skip
-@click.option("--runs", type=Names(), default=(), metavar="UP.h5,DOWN.h5",
+@click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
 @click.option("--no-picture", is_flag=True, help="No picture.")
@@ -77,7 +77,7 @@ def command(
     speeds: tuple[float, ...],
     varied: Range,
     with_unbalance: bool,
-    runs: tuple[str, ...],
+    runs: tuple[Path, ...],
     output: Path | None,
     no_picture: bool,
     csv: Path | None,
@@ -90,7 +90,7 @@ def command(
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
-    from frbcli.results.place import require_place
+    from frbcli.results.kinds import TABLES
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
@@ -103,14 +103,13 @@ def command(
         raise click.UsageError("--with-unbalance is of the diagram of one case over its speed.")
     drawn = "limit-cycles" if key is None else "stability-map"
     picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
-    check_place(picture)
-    require_place(csv)
+    check_outputs((csv, TABLES["csv"]), picture=picture)
     at = speeds[0] if speeds else case.speed.end
     if varied.second is not None:
         across = None if along_speed or low is None or high is None else (over, low, high, at)
         _map(terminal, case, (*varied.second, varied.points), across, (picture, csv))
         return
-    tracks = [track for name in runs for track in _tracks(Path(name))]
+    tracks = [track for name in runs for track in _tracks(name)]
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         if not along_speed and low is not None and high is not None:
             found = limit_cycles_over(case, over, low, high, at, _showing(show))
@@ -118,7 +117,9 @@ def command(
             found = limit_cycles(case, speeds, _showing(show), with_unbalance)
     _tell(terminal, found)
     if csv is not None:
-        found.to_pandas().to_csv(csv, index=False)
+        from frbcli.results.tables import write_table
+
+        write_table(found.to_pandas(), csv)
         terminal.result(f"table: {csv}")
     if picture is not None:
         from frbcli.plot.limit_cycles import limit_cycles_figure
@@ -155,7 +156,9 @@ def _map(
         found = stability_map(case, *second, counting(terminal, show), across)
     _tell_map(terminal, found)
     if csv is not None:
-        found.to_pandas().to_csv(csv, index=False)
+        from frbcli.results.tables import write_table
+
+        write_table(found.to_pandas(), csv)
         terminal.result(f"table: {csv}")
     if picture is not None:
         from frbcli.plot.stability_map import stability_map_figure

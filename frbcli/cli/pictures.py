@@ -17,14 +17,6 @@ if TYPE_CHECKING:
 MISSING = re.compile(r"Glyph (\d+) .*missing from")  # how matplotlib begins its warning of a letter
 
 
-def check_place(picture: Path | None) -> None:
-    """Raises InputError if a picture that is wanted, None if there is none, cannot be drawn or written there."""
-    if picture is not None:  # whoever wants none does not wait for the library that draws
-        from frbcli.plot.style import check_picture
-
-        check_picture(picture)
-
-
 def draw(terminal: Terminal, picture: Callable[[], Picture], target: Path, what: str = "picture") -> Path | None:
     """Draw a picture of printed results. None if that fails, with the reason as a remark."""
     try:

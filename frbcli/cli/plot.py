@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs, here
 from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.quantities import TIME_OPTION
-from frbcli.cli.runs import OUTPUT, RUN, beside, here
 
 if TYPE_CHECKING:
     from frbcli.plot.curves import Over
@@ -27,7 +27,7 @@ PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
 
 
 @click.command()
-@click.argument("run_files", metavar="RUN.h5...|CASE", type=RUN, nargs=-1, required=True)
+@click.argument("run_files", metavar="RUN.h5...|CASE", type=INPUT, nargs=-1, required=True)
 @click.option("--what", type=click.Choice(PICTURES), default="eccentricity", show_default=True, help="The picture.")
 @click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Begin, e.g. "6.4 s".')
 @click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End.")
@@ -51,7 +51,6 @@ def command(
     terminal: Terminal,
 ) -> None:
     """Draw one or several runs in one picture; with --what law, the oil fraction of a case over pressure."""
-    from frbcli.plot.style import check_picture
     from frbcli.results.store import read_run
 
     if animate and (what != "orbit" or len(run_files) > 1):
@@ -77,7 +76,7 @@ def command(
     if animate:
         _animate(run_files[0], target, (from_time, to_time), terminal)
         return
-    check_picture(target)
+    check_outputs(picture=target)
     runs = [read_run(path) for path in run_files]
     draw_wanted(terminal, lambda: _figure(what, runs, (from_time, to_time), over, signal), target, what)
     first = run_files[0] if len(run_files) == 1 else list(run_files)
@@ -88,9 +87,11 @@ def _animate(
     run_file: Path, target: Path, span: tuple[float | None, float | None], terminal: Terminal
 ) -> None:
     from frbcli.plot.animation import animate_orbits, check_animation
+    from frbcli.results.kinds import PICTURES
     from frbcli.results.store import read_run
 
     check_animation(target)
+    check_outputs((target, PICTURES[target.suffix.lower()]))
     animate_orbits(read_run(run_file), target, *span)
     terminal.result(f"orbit: {target}")
     terminal.emit({"command": "plot", "run": run_file, "output": target, "what": "orbit"})
@@ -99,11 +100,10 @@ def _animate(
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
     from frbcli.case.load import load_case
     from frbcli.plot.law import law_figure
-    from frbcli.plot.style import check_picture
 
     case = load_case(source, settings)
     target = output or here(case.name, f"-{LAW}.png")
-    check_picture(target)
+    check_outputs(picture=target)
     draw_wanted(terminal, lambda: law_figure(case), target, LAW)
     terminal.emit({"command": "plot", "case": case.name, "output": target, "what": LAW})
 

@@ -7,12 +7,12 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
 from frbcli.cli.quantities import SPEED_OPTION
-from frbcli.cli.runs import OUTPUT, RUN, beside
 
 
 @click.command()
-@click.argument("run_file", metavar="RUN.h5", type=RUN)
+@click.argument("run_file", metavar="RUN.h5", type=INPUT)
 @click.option("-o", "--output", metavar="PAGE.html", type=OUTPUT, help="The page. [RUN-report.html]")
 @click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help="Orbit and spectrum at this speed. Repeatable. [those of the events, and the last]")  # fmt: skip
@@ -24,8 +24,11 @@ def command(
     """Write RUN.h5 as one page: machine, plan, events, waterfall that reads out under the pointer, orbits, spectra,
     errors, balances, cost and how to repeat it."""
     from frbcli.report.page import write_report
+    from frbcli.results.kinds import PAGE
     from frbcli.results.store import read_run
 
-    target = write_report(read_run(run_file), output or beside(run_file, "-report.html"), speeds, signal)
+    target = output or beside(run_file, "-report.html")
+    check_outputs((target, PAGE))
+    write_report(read_run(run_file), target, speeds, signal)
     terminal.result(f"report: {target}")
     terminal.emit({"command": "report", "run": run_file, "output": target})

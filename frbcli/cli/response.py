@@ -10,11 +10,11 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import INPUT, OUTPUT, check_outputs, here
 from frbcli.cli.live import counting, live_lines
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.pictures import draw
 from frbcli.cli.quantities import SPEED_OPTION
-from frbcli.cli.runs import OUTPUT, RUN, here
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ EXPLANATION = (
 @case_argument
 @click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [120 over the range of the case]')  # fmt: skip
-@click.option("--run", "run_file", type=RUN, metavar="RUN.h5",
+@click.option("--run", "run_file", type=INPUT, metavar="RUN.h5",
               help="Draw the synchronous motion of a run of the case over the response.")  # fmt: skip
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-response.png, here]")
 @click.option("--map", "as_map", is_flag=True,
@@ -57,21 +57,22 @@ def command(
 ) -> None:
     """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping."""
     from frbcli.linear.response import response
-    from frbcli.results.place import require_place
+    from frbcli.results.kinds import TABLES
     from frbcli.results.store import read_run
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
     picture = None if no_picture else output or here(case.name, "-critical-map.png" if as_map else "-response.png")
-    check_place(picture)
-    require_place(csv)
+    check_outputs((csv, TABLES["csv"]), picture=picture)
     run = None if run_file is None else read_run(run_file)
     with live_lines(terminal) as show, compilation_shown(terminal, case, show):
         found = response(case, speeds or None, counting(terminal, show))
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     _tell(terminal, found, bool(speeds))
     if csv is not None:
-        found.to_pandas().to_csv(csv, index=False)
+        from frbcli.results.tables import write_table
+
+        write_table(found.to_pandas(), csv)
         terminal.result(f"table: {csv}")
     if picture is not None:
         picture = draw(terminal, lambda: _figure(found, tracks, as_map), picture)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -12,13 +11,13 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.files import OUTPUT, check_outputs, here
 from frbcli.cli.heat import heat_document, tell_heat
 from frbcli.cli.live import counting, live_lines
 from frbcli.cli.modes import emit_modes, modes_document, tell_modes
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
+from frbcli.cli.pictures import draw
 from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
-from frbcli.cli.runs import OUTPUT
 from frbcli.cli.shapes import emit_shapes
 from frbcli.cli.stability_table import tell_points
 
@@ -63,8 +62,8 @@ def command(
     if shapes is not None and (stiffness is not None or speeds):
         raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")
     drawn = "shapes" if shapes is not None else "campbell" if stiffness is None else "modes"
-    picture = None if no_picture else output or Path(f"{_file_name(case.name)}-{drawn}.png")
-    check_place(picture)
+    picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
+    check_outputs(picture=picture)
     if shapes is not None:
         with compilation_shown(terminal, case):
             emit_shapes(terminal, case, shapes, picture)
@@ -192,8 +191,3 @@ def _threshold(found: Stability) -> dict[str, float] | None:
         "frequency_Hz": threshold.frequency_Hz,
         "whirl_ratio": threshold.whirl_ratio,
     }
-
-
-def _file_name(name: str) -> str:
-    """The name of a case without characters that file names cannot have."""
-    return re.sub(r"[^\w.-]+", "-", name) or "case"

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, here
 from frbcli.cli.gathered import gathered
 from frbcli.cli.live import live_lines
 from frbcli.cli.picture_options import picture_options
-from frbcli.cli.pictures import check_place, draw
-from frbcli.cli.runs import OUTPUT, here
+from frbcli.cli.pictures import draw
 from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import Fault, InputError
 
@@ -36,12 +36,12 @@ class Pool:
 
 
 @click.command()
-@click.argument("source", metavar="CASE")
+@click.argument("source", metavar="CASE", type=INPUT)
 @click.option("--set", "settings", multiple=True, metavar="KEY=V1,V2",
               help="Values of a key; several keys make a grid. One value holds for all. Repeatable.")  # fmt: skip
-@click.option("--list", "list_file", type=OUTPUT, metavar="POINTS.csv",
+@click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
               help="Points one by one: keys in the first line, values below.")  # fmt: skip
-@click.option("-o", "--output", type=OUTPUT, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
+@click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
 @click.option("--stability", is_flag=True, help="The threshold speed alone, in place of a run-up.")
 @click.option("--no-runs", is_flag=True, help="Keep no run files.")
 @click.option("--format", "table_format", default="csv", show_default=True, metavar="FORMAT", help="csv or parquet.")
@@ -53,7 +53,7 @@ class Pool:
 @output_options
 @gathered("pool", Pool)
 def command(
-    source: str,
+    source: Path,
     settings: tuple[str, ...],
     list_file: Path | None,
     output: Path | None,
@@ -94,13 +94,10 @@ def command(
 
 def _check_places(table: Path, picture: Path | None) -> None:
     """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
-    from frbcli.results.place import wrong_place
+    if table.parent.is_dir():  # else it is made, or that is refused
+        from frbcli.results.kinds import TABLES
 
-    if not table.parent.is_dir():
-        return  # it is made, or that is refused
-    if wrong := wrong_place(table):
-        raise _fault("--output", str(table), *wrong)
-    check_place(picture)
+        check_outputs((table, TABLES[table.suffix[1:]]), picture=picture)
 
 
 def _axes(settings: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, ...]]]:

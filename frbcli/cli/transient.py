@@ -14,11 +14,11 @@ import click
 from frbcli.cli.common import Terminal
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.events import EVENT_COLUMNS, event_row
+from frbcli.cli.files import OUTPUT, beside, check_outputs, here
 from frbcli.cli.gathered import gathered
 from frbcli.cli.live import COLUMNS, LONGEST_LEFT_s, TOLD_EVERY_s, live_lines, progress_line
 from frbcli.cli.onset_spread import spread_shown
 from frbcli.cli.pictures import draw
-from frbcli.cli.runs import OUTPUT, beside, here
 from frbcli.errors import FrbError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def run_options(function: Function) -> Function:
         "--output", "-o", type=OUTPUT, default=None, metavar="RUN.h5", help="Run file. Default: CASE.h5 here."
     )
     resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
-    force = click.option("--force", is_flag=True, help="Replace an interrupted run in the run file.")
+    force = click.option("--force", is_flag=True, help="Replace the run in the run file.")
     picture = click.option("--picture/--no-picture", default=True, help="A summary picture beside the run.")
     verify = click.option(
         "--verify", is_flag=True, help="Run again with half the tolerance and step size, and report the change."
@@ -77,11 +77,17 @@ def transient(
     spread: bool = False,
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
+    from frbcli.results.store import check_output
     from frbcli.runs.run import run_cost
+    from frbcli.runs.standing import INTERRUPTED, standing_run
 
     path = options.output or here(case.name, ".h5")
+    check_output(path)
     if options.picture:
-        _check_summary(path)
+        check_outputs(picture=beside(path, SUMMARY))
+    standing = standing_run(command, case, path, options.resume, options.force)
+    if standing is not None and standing.status != INTERRUPTED:
+        terminal.remark(f"{path} holds this run already; --force computes it again.")
     cost = run_cost(command, case)
     if cost.total_s > TOLD_s:
         terminal.remark(cost_line(cost))
@@ -111,15 +117,6 @@ def transient(
         draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))
     interrupted = any(again is not None and again["status"] == "interrupted" for again in (verified, onset))
     return exit_code("interrupted" if interrupted else run.status)
-
-
-def _check_summary(path: Path) -> None:
-    """Raises InputError if the summary of a run cannot have its place; a run that cannot have its own says that."""
-    from frbcli.plot.style import check_picture
-    from frbcli.results.store import check_output
-
-    check_output(path)
-    check_picture(beside(path, SUMMARY))
 
 
 def cost_line(cost: ExpectedCost) -> str:

@@ -10,12 +10,12 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.events import EVENT_COLUMNS, event_row
+from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
 from frbcli.cli.gathered import gathered
 from frbcli.cli.measured import measured_options, run_of
 from frbcli.cli.picture_options import Span, picture_options
 from frbcli.cli.pictures import draw_wanted
 from frbcli.cli.quantities import TIME_OPTION
-from frbcli.cli.runs import OUTPUT, RUN, beside
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -55,7 +55,7 @@ class View:
 
 
 @click.command()
-@click.argument("run_file", metavar="RUN", type=RUN)
+@click.argument("run_file", metavar="RUN", type=INPUT)
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-waterfall.png]")
 @click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME, disk_NAME.")
 @click.option(
@@ -97,14 +97,12 @@ def command(
 
     RUN is a run file, or a measurement as CSV, WAV or MAT, whose columns --x, --speed and so on name.
     """
-    from frbcli.plot.style import check_picture
-
     if orders is not None and (view.cascade or view.window is not None):
         raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
     if orders is not None and (view.levels is not None or view.linear or view.lines is not None):
         raise click.UsageError("--levels, --linear and --lines belong to spectra, not to --order.")
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
-    check_picture(target)
+    check_outputs(picture=target)
     run = run_of(run_file, measurement)
     told: dict[str, Any]
     if orders is None:

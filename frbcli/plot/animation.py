@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -17,8 +19,10 @@ from frbcli.plot.envelope import at_times
 from frbcli.plot.orbit import LAST_s
 from frbcli.plot.signals import MICRO, clearance, cut, ends, heading, motion
 from frbcli.plot.style import BLUE, GREY, new_figure, styled
-from frbcli.results.place import remove_part, wrong_place
+from frbcli.results.kinds import PICTURES
+from frbcli.results.place import require_places
 from frbcli.results.store import Run
+from frbcli.results.write import written
 
 FORMATS = (".gif", ".mp4")
 FRAMES, PER_SECOND = 80, 20
@@ -33,8 +37,7 @@ def check_animation(path: Path) -> None:
         raise _refuse(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
     if path.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
         raise _refuse(path, "needs the program ffmpeg, which is not here.", "Install it, or end the name with .gif.")
-    if wrong := wrong_place(path):
-        raise _refuse(path, *wrong)
+    require_places([(path, PICTURES[path.suffix.lower()])])
 
 
 def animate_orbits(
@@ -54,11 +57,10 @@ def animate_orbits(
         film, draw = _scene(run, begin, end, frames)
         moving = FuncAnimation(film, draw, frames=frames, blit=False)
         writer: Any = FFMpegWriter(PER_SECOND) if path.suffix.lower() == ".mp4" else PillowWriter(PER_SECOND)
-        try:
-            moving.save(str(path), writer=writer, dpi=dpi)
-        except OSError as error:
-            remove_part(path)
-            raise _refuse(path, f"cannot be written: {error}.", "Choose another place with -o.") from error
+        with written(path, PICTURES[path.suffix.lower()]) as part, TemporaryDirectory(prefix="frb-") as folder:
+            drawn = Path(folder) / f"orbits{path.suffix.lower()}"  # by which its writers know the format
+            moving.save(str(drawn), writer=writer, dpi=dpi)
+            shutil.copyfile(drawn, part)
     return path
 
 

@@ -57,7 +57,8 @@ def levels(run: Run, signal: str, found: Spectrogram, levels_dB: tuple[float, fl
 def ticks(low: float, high: float, most: int = 8) -> tuple[float, ...]:
     """Round numbers from `low` to `high`."""
     found = MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(low, high)
-    return tuple(float(value) for value in found if low - 1e-9 <= value <= high + 1e-9)
+    slack = 1e-9 * (high - low)
+    return tuple(float(value) for value in found if low - slack <= value <= high + slack)
 
 
 def scale_colours(count: int = 24) -> Sequence[str]:

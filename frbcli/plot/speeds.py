@@ -70,7 +70,8 @@ def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, si
     highest = min(float(found.frequency_Hz[-1]), max(AHEAD * speed, 8.0 / found.window_s))
     kept = found.frequency_Hz <= highest
     axes.plot(found.frequency_Hz[kept], MICRO * found.amplitude[kept, column], color=BLUE)
-    axes.set_xlim(0.0, highest)
+    if highest > 0.0:
+        axes.set_xlim(0.0, highest)
     axes.set_ylim(bottom=0.0)
     lines = sorted((float(abs(frequencies[column])), name) for name, frequencies in orders(run, signal, found))
     last, lower = -np.inf, 0.0

@@ -17,7 +17,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.errors import Fault, InputError, printable
-from frbcli.results.place import remove_part, wrong_place
+from frbcli.results.kinds import PICTURES
+from frbcli.results.place import require_places
+from frbcli.results.write import write
 
 # Okabe and Ito: distinguishable also for the colour-blind
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -122,14 +124,13 @@ def check_picture(path: Path) -> None:
     """Raises InputError if a picture cannot have this name or this place; called before the work."""
     if path.suffix.lower() not in FORMATS:
         raise _refuse(path, "is not a picture format of frb.", f"End it with {', '.join(FORMATS)}.")
-    if wrong := wrong_place(path):
-        raise _refuse(path, *wrong)
+    require_places([(path, PICTURES[path.suffix.lower()])])
 
 
 def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
     """Write a figure as PNG, PDF or SVG, as the suffix of `path` says. Raises InputError if that does not work.
 
-    It is drawn before the file is touched; what is written of it in part is removed.
+    It is drawn before the file is touched.
     """
     path = Path(path)
     check_picture(path)
@@ -137,11 +138,7 @@ def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
         content = picture(figure, path.suffix.lower(), dpi)
     except (OSError, ValueError) as error:
         raise _refuse(path, f"cannot be drawn: {error}.", "") from error
-    try:
-        path.write_bytes(content)
-    except OSError as error:
-        remove_part(path)
-        raise _refuse(path, f"cannot be written: {error.strerror}.", "Choose another place with -o.") from error
+    write(path, PICTURES[path.suffix.lower()], content)
     return path
 
 

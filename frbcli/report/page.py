@@ -29,9 +29,11 @@ from frbcli.plot.summary import FEWEST_SAMPLES
 from frbcli.plot.waterfall import level_label, reading, run_spectra
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
-from frbcli.results.place import wrong_place
+from frbcli.results.kinds import PAGE
+from frbcli.results.place import require_places
 from frbcli.results.records import SPEED, event_place
 from frbcli.results.store import Run
+from frbcli.results.write import write
 from frbcli.runs.account import account
 from frbcli.runs.header import FILM_SIGNALS
 from frbcli.scene.findings import Findings, findings
@@ -57,13 +59,8 @@ def write_report(
 ) -> Path:
     """Write the report of a run to `path`. Raises as report, and InputError if the file cannot be written."""
     path = Path(path)
-    if wrong := wrong_place(path):
-        raise _refuse(f"{path} {wrong[0]}", wrong[1])
-    page = report(run, speeds_Hz, signal)
-    try:
-        path.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise _refuse(f"{path} cannot be written: {error.strerror}.", "Choose another place with -o.") from error
+    require_places([(path, PAGE)])
+    write(path, PAGE, report(run, speeds_Hz, signal))
     return path
 
 
@@ -77,7 +74,7 @@ def report(run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal") -
     found = events(run)[:MOST_EVENTS]
     spectra = run_spectra(run, signal, None, "x") if len(run) >= FEWEST_SAMPLES else None
     waterfall: Waterfall | None = None
-    if spectra is not None:
+    if spectra is not None and min(spectra.level_dB.shape) > 1:  # else it has no area
         waterfall = page_waterfall(levels(run, signal, spectra), clearance(run, bearing_of(run, signal)), found)
     times = _moments(run, speeds_Hz, found, end)
     title, words = heading([run])

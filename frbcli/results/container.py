@@ -7,7 +7,6 @@ the HDF5 library, which trusts its input, looks at it; every other HDF5 program 
 
 from __future__ import annotations
 
-import contextlib
 import os
 import re
 import zlib
@@ -16,9 +15,12 @@ from pathlib import Path
 
 from frbcli.errors import Fault, RunFileError
 from frbcli.results import heaps
+from frbcli.results.kinds import RUN, RUN_BEGINS
 from frbcli.results.place import wrong_place
+from frbcli.results.write import written
 
-MAGIC = b"frb-run 1 "
+MAGIC = RUN_BEGINS + b"1 "
+REMEDY = "Free some space and continue with --resume, or choose another place with -o."
 USER_BLOCK = 512  # bytes; the smallest that HDF5 allows
 SIGNATURE = b"\x89HDF\r\n\x1a\n"  # that every HDF5 file begins with
 LARGEST = 8 * 1024**3  # bytes; the longest run that a case may ask for has about half of it
@@ -39,21 +41,13 @@ def seal(content: memoryview) -> bytes:
 def write_whole(path: Path, content: memoryview) -> None:
     """Put `content` in place of `path` in one step: a reader of `path` finds either the complete old or new file.
 
-    Raises RunFileError if the disk or the directory does not take it.
+    Raises InputError if the disk or the directory does not take it.
     """
     if len(content) > LARGEST:
         raise refuse(path, f"would be larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step.")
-    part = part_file(path)
-    try:
-        with part.open("wb") as file:
-            file.write(seal(content))
-            file.write(content[USER_BLOCK:])
-        os.replace(part, path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
-        remedy = "Free some space and continue with --resume, or choose another place with -o."
-        raise refuse(path, f"cannot be written: {error.strerror}.", remedy) from error
+    with written(path, RUN, REMEDY) as part, part.open("wb") as file:
+        file.write(seal(content))
+        file.write(content[USER_BLOCK:])
 
 
 def open_whole(path: Path) -> BufferedReader:
@@ -118,29 +112,10 @@ def _user_block(length: int, checksum: int) -> bytes:
 def check_output(path: Path) -> None:
     """See that a run can be written to `path`: a new file, or in place of an older run of frb.
 
-    Raises RunFileError for a file that is something else, a missing directory or one without permission to write, a
-    name that is too long, or a directory where the next state of the run is to be written.
+    Raises RunFileError for a file that is something else, a missing directory or one without permission to write, or a
+    name that is too long.
     """
-    if wrong := wrong_place(path):
+    if wrong := wrong_place(path, RUN):
         raise refuse(path, *wrong)
-    part = part_file(path)
-    if wrong := wrong_place(part):
-        raise refuse(path, f"{part.name}, where it is written first, {wrong[0]}", "Choose another name with -o.")
-    try:
-        if path.exists() and not path.is_file():
-            raise refuse(path, "is not a file.", "Give -o the name of a file.")
-        if path.exists() and not is_run(path):
-            raise refuse(path, "exists and is not a run of frb; it is not replaced.", "Choose another name.")
-    except OSError as error:
-        raise refuse(path, f"cannot be used: {error.strerror}.", "Choose another name with -o.") from error
-
-
-def is_run(path: Path) -> bool:
-    """Whether a file begins as the runs of frb do. Raises OSError if it cannot be read."""
-    with path.open("rb") as file:
-        return file.read(len(MAGIC)) == MAGIC
-
-
-def part_file(path: Path) -> Path:
-    """Where the next state of `path` is written before it takes its place."""
-    return path.with_name(path.name + ".part")
+    if path.exists() and not path.is_file():  # runs are written again and again
+        raise refuse(path, "is not a file.", "Give -o the name of a file.")

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import IO, Any
 
 from frbcli.errors import Fault, InputError
-from frbcli.results.container import is_run
-from frbcli.results.place import remove_part, wrong_place
+from frbcli.results.kinds import TABLES
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
+from frbcli.results.tables import harmless_text
+from frbcli.results.write import written
 
 LINES = 50_000  # of CSV that are made at a time
 MOST_COMPRESSED = 4_000_000  # samples of a column of MAT
@@ -28,18 +29,11 @@ def export_run(run: Run, path: str | Path, table_format: str) -> Path:
     path = Path(path)
     if table_format not in FORMATS:
         raise _refuse("format", f'there is no format "{table_format}".', f"Use one of {', '.join(FORMATS)}.")
-    if wrong := wrong_place(path):
-        raise _refuse("output", f"{path} {wrong[0]}", wrong[1])
     try:
-        if path.is_file() and is_run(path):
-            raise _refuse("output", f"{path} is a run of frb; it is not replaced.", "Choose another name with -o.")
-    except OSError as error:
-        raise _refuse("output", f"{path} cannot be used: {error}.", "Choose another place with -o.") from error
-    try:
-        FORMATS[table_format](run, path)
-    except (OSError, ValueError) as error:
-        remove_part(path)
-        raise _refuse("output", f"{path} cannot be written: {error}.", "Choose another place with -o.") from error
+        with written(path, TABLES[table_format]) as part:
+            FORMATS[table_format](run, part)
+    except ValueError as error:  # of the libraries, for names or lengths that a format does not have
+        raise _refuse("output", f"{path} cannot be written: {error}.", "Choose another format.") from error
     return path
 
 
@@ -47,7 +41,7 @@ def write_csv(run: Run, target: IO[str]) -> None:
     """Comma-separated, one line of names, all digits of each number; a piece of the run at a time. Raises OSError."""
     import pandas as pd
 
-    target.write(",".join(run.signals) + "\n")
+    target.write(",".join(map(harmless_text, run.signals)) + "\n")
     for first, last in pieces(0, len(run), LINES):
         table = pd.DataFrame({name: signal[first:last] for name, signal in run.signals.items()})
         table.to_csv(target, index=False, header=False, lineterminator="\n")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from frbcli.html import html_table
 from frbcli.results import parts
-from frbcli.results.container import USER_BLOCK, check_output, open_whole, part_file, refuse, write_whole
+from frbcli.results.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
 from frbcli.results.records import (
     LARGEST,
     MOST_EVENTS,
@@ -142,7 +142,6 @@ class RunWriter:
         """Raises RunFileError if `path` cannot be written or is a file that frb did not write."""
         self.path = Path(path)
         check_output(self.path)
-        part_file(self.path).unlink(missing_ok=True)  # left by a run that was killed while writing
         self._header = header
         self._chunks: dict[str, list[Values]] = {name: [] for name in header.units}
         self._state: dict[str, NDArray[Any]] | None = None
@@ -170,7 +169,6 @@ class RunWriter:
         writer._state_samples = run.checkpoint_samples
         writer._chunks = {name: [run.read(name, 0, run.checkpoint_samples)] for name in run.signals}
         writer._cost, writer._error, writer._t_end_s = run.cost, run.error, run.t_end_s
-        part_file(run.path).unlink(missing_ok=True)
         return writer
 
     @property

@@ -68,8 +68,8 @@ def header(
         case_name=case.name,
         case_text=case.source_text,
         units=units,
-        versions={PROGRAM: _version(PROGRAM), "python": platform.python_version()}
-        | {package: _version(package) for package in PACKAGES}
+        versions={PROGRAM: version_of(PROGRAM), "python": platform.python_version()}
+        | {package: version_of(package) for package in PACKAGES}
         | model_record(case),
         references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
@@ -79,7 +79,8 @@ def header(
     )
 
 
-def _version(package: str) -> str:
+def version_of(package: str) -> str:
+    """The version of an installed package, as it is written into runs."""
     try:
         return version(package)
     except PackageNotFoundError:  # run from a checkout that is not installed

@@ -25,16 +25,19 @@ class Interrupt:
 
 @contextmanager
 def deaf() -> Iterator[None]:
-    """Within it Ctrl-C is ignored, also by processes that start within it; the caller ends these."""
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
+    """Within it Ctrl-C and its like are ignored, also by processes that start within it: a terminal and a batch system
+    send them to all at once, and the caller ends these."""
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    if threading.current_thread() is not threading.main_thread() or not callable(before[signal.SIGINT]):
         yield
         return
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in before:
+        signal.signal(number, signal.SIG_IGN)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @contextmanager

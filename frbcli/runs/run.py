@@ -7,13 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from frbcli.case.load import describes
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError, RunFileError
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.container import refuse
-from frbcli.results.records import untold
-from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
+from frbcli.results.lock import locked
+from frbcli.results.store import Header, Run, RunWriter, check_output
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.error_budget import quiet_until
 from frbcli.runs.fewer_cells import on_fewer_cells
@@ -21,7 +19,7 @@ from frbcli.runs.header import header
 from frbcli.runs.interrupt import held_back
 from frbcli.runs.march import March, Progress
 from frbcli.runs.restored import WrongCheckpoint
-from frbcli.scene.bearing_model_films import RECORD, model_record
+from frbcli.runs.standing import standing_run
 from frbcli.scene.cost import ExpectedCost, expected_cost
 from frbcli.scene.limits import require_affordable
 from frbcli.scene.plan import make_plan
@@ -45,11 +43,11 @@ def runup(
 ) -> Run:
     """Run the rotor of a case up as its [speed] says and write the run to `output` (HDF5) as it goes.
 
-    A run that has ended there before is replaced. resume: go on with an interrupted run of the same case in `output`;
-    force: replace also an interrupted run, which is refused else. observe: called some times a second.
-    Raises InputError for a case that cannot be modelled or afforded, an output that cannot be written, or an
-    interrupted run in its place. Any end for a physical or numerical reason is the status of the run: "finished",
-    "contact", "starved", "overheated", "not-converged"; Ctrl-C ends it as "interrupted".
+    A run of the same case that has ended there before is returned as it is. resume: go on with an interrupted run of
+    the same case in `output`; force: replace any run there. observe: called some times a second.
+    Raises InputError for a case that cannot be modelled or afforded, an output that cannot be written, to which another
+    process writes, or which holds a run that would be lost. Any end for a physical or numerical reason is the status of
+    the run: "finished", "contact", "starved", "overheated", "not-converged"; Ctrl-C ends it as "interrupted".
     """
     return _run("runup", case, output, resume, observe, force)
 
@@ -76,25 +74,22 @@ def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost
 
 def _run(command: str, case: Case, output: str | Path, resume: bool, observe: Observer | None, force: bool) -> Run:
     plan, profile, _ = _planned(command, case)
-    check_output(Path(output))
-    if resume and force:
-        raise _refuse(Path(output), "--force", "replaces the run, and --resume continues it.", "Give one of them.")
-    if not resume and not force and is_interrupted(Path(output)):
-        problem = "holds an interrupted run, which would be lost."
-        raise _refuse(Path(output), "--output", problem, "Continue it with --resume, or replace it with --force.")
-    earlier = earlier_run(command, case, Path(output)) if resume else None
-    if earlier is not None and earlier.status != "interrupted":
-        return earlier
-    segments = make_segments(case, plan)
-    march = March(case, plan, segments, profile)
-    head = header(command, case, segments)
-    if earlier is not None and earlier.checkpoint is not None:
-        _restore(march, earlier, head)
-        writer = RunWriter.resume(output)
-    else:
-        writer = RunWriter(output, header(command, case, segments, _critical_speeds(segments)))
-    march.compile()
-    return _go(march, writer, observe)
+    path = Path(output)
+    check_output(path)
+    with locked(path):
+        earlier = standing_run(command, case, path, resume, force)
+        if earlier is not None and earlier.status != "interrupted":
+            return earlier
+        segments = make_segments(case, plan)
+        march = March(case, plan, segments, profile)
+        head = header(command, case, segments)
+        if earlier is not None and earlier.checkpoint is not None:
+            _restore(march, earlier, head)
+            writer = RunWriter.resume(output)
+        else:
+            writer = RunWriter(output, header(command, case, segments, _critical_speeds(segments)))
+        march.compile()
+        return _go(march, writer, observe)
 
 
 def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
@@ -133,17 +128,6 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
     return writer.finish(ended, cost, error, events, march.time)
 
 
-def is_interrupted(path: Path) -> bool:
-    """Whether a file is an interrupted run with samples. A damaged file is not one, since it cannot be resumed."""
-    if not path.exists():
-        return False
-    try:
-        run = read_run(path)
-    except RunFileError:
-        return False
-    return run.status == "interrupted" and len(run) > 0
-
-
 def _restore(march: March, earlier: Run, head: Header) -> None:
     """Take up the checkpoint of an interrupted run. Raises RunFileError if the march cannot go on from it."""
     problem = ""
@@ -176,25 +160,3 @@ def _critical_speeds(segments: Sequence[Segment]) -> tuple[float, ...] | None:
     found = [linear_critical_speeds(segment.case) for segment in segments]
     known = [speeds for speeds in found if speeds is not None]
     return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(found) else None
-
-
-def earlier_run(command: str, case: Case, path: Path) -> Run | None:
-    """The run in `path` if it is one of this case; None if there is no file yet. Raises InputError for another one."""
-    if not path.exists():
-        return None
-    run = read_run(path)
-    if run.command != command or not describes(run.case_text, case):
-        name = run.case_name or "unnamed"
-        problem = f"holds a {run.command} of another case ({name}) or of this one with other keys."
-        remedy = "Give the case and the --set of that run, or another --output."
-        raise _refuse(path, "--resume", problem, remedy)
-    if run.versions.get(RECORD) != model_record(case).get(RECORD):
-        problem = f"was made with another bearing model of the name {case.film.theory} than this process has."
-        raise _refuse(path, "--resume", problem, "Add the model of that run, or give another --output.")
-    if run.status != "interrupted" and (missing := untold(run.cost, run.error)):
-        raise refuse(path, f"has no {missing}.", "Remove it, or give another --output.")
-    return run
-
-
-def _refuse(path: Path, option: str, problem: str, remedy: str) -> InputError:
-    return InputError(str(path), (Fault(option, str(path), None, problem, remedy),))

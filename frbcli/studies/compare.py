@@ -23,7 +23,8 @@ from frbcli.html import Tabular
 from frbcli.results.store import Run, check_output
 from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
-from frbcli.runs.run import earlier_run, is_interrupted, runup
+from frbcli.runs.run import runup
+from frbcli.runs.standing import earlier_run, is_interrupted, standing_run
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.plan import THEORIES, make_plan
@@ -182,9 +183,12 @@ def compare(
 
 def _is_begun(case: Case, path: Path) -> bool:
     """Whether the run of a variant was interrupted before and goes on. Raises InputError if its file cannot be written,
-    or holds an interrupted run of another case."""
+    or holds a run of another case."""
     check_output(path)
-    return is_interrupted(path) and earlier_run("runup", case, path) is not None
+    if is_interrupted(path):
+        return earlier_run("runup", case, path) is not None
+    standing_run("runup", case, path)
+    return False
 
 
 def _status(end: BaseException) -> str:

@@ -7,7 +7,6 @@ line is left out, and so are points that are to be computed again.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -16,6 +15,8 @@ from typing import Any
 from frbcli.case.load import describes
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.results.kinds import SWEEP_LOG
+from frbcli.results.write import write
 from frbcli.studies.sweep.task import UNDECIDED, SweepPoint
 
 Header = Mapping[str, Any]
@@ -33,13 +34,11 @@ def open_log(path: Path, header: Header, case: Case) -> tuple[SweepPoint, ...]:
             remedy = "Choose another directory with -o, or remove this one."
             raise _refuse(path, "belongs to another sweep, case or version.", remedy)
         done = {point.number: point for point in map(_point, known[1:]) if point and point.status not in UNDECIDED}
-        part = path.with_name(path.name + ".part")
-        lines = [json.dumps(header), *map(_line, done.values())]
-        part.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
-        os.replace(part, path)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise _refuse(path, f"cannot be used: {reason}.", "Choose another directory with -o.") from error
+    lines = [json.dumps(header), *map(_line, done.values())]
+    write(path, SWEEP_LOG, "".join(f"{line}\n" for line in lines))
     return tuple(done.values())
 
 

@@ -17,7 +17,10 @@ from typing import TYPE_CHECKING, Any
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
-from frbcli.results.place import remove_part
+from frbcli.results import tables
+from frbcli.results.kinds import TABLES
+from frbcli.results.lock import locked
+from frbcli.results.write import written
 from frbcli.scene.plan import make_plan
 from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid
@@ -79,7 +82,8 @@ def sweep(
     after each point. Ctrl-C returns what there is; points without a result are "interrupted". A point that fails has a
     status and a message, and the others go on.
 
-    Raises InputError if no point is a case, or for a directory that cannot be written or holds another sweep.
+    Raises InputError if no point is a case, or for a directory that cannot be written, holds another sweep, or is
+    written by another process.
     """
     workers = workers or Workers()
     settings = grid(points) if isinstance(points, Mapping) else checked(points)
@@ -93,23 +97,31 @@ def sweep(
     folder = Path(directory).absolute()
     _make(folder / RUNS if keep_runs and method == "runup" else folder)
     log = folder / LOG
-    found = {point.number: point for point in open_log(log, _header(case, settings, method), case)}
+    with locked(log):
+        found = {point.number: point for point in open_log(log, _header(case, settings, method), case)}
 
-    def take(point: SweepPoint) -> None:
-        found[point.number] = point
-        append(log, [point])
-        if observe is not None:
-            observe(point, len(found), len(settings))
+        def take(point: SweepPoint) -> None:
+            found[point.number] = point
+            append(log, [point])
+            if observe is not None:
+                observe(point, len(found), len(settings))
 
-    tasks: list[Task] = []
-    for number, (chosen, its_case) in enumerate(zip(settings, cases, strict=True), 1):
-        if number in found:
-            continue
-        if isinstance(its_case, InputError):
-            take(SweepPoint(number, chosen, INPUT_ERROR, one_line(its_case)))
-            continue
-        run = folder / RUNS / f"{number:0{max(3, len(str(len(settings))))}d}.h5"
-        tasks.append(Task(number, chosen, its_case, method, run if keep_runs and method == "runup" else None))
+        tasks: list[Task] = []
+        for number, (chosen, its_case) in enumerate(zip(settings, cases, strict=True), 1):
+            if number in found:
+                continue
+            if isinstance(its_case, InputError):
+                take(SweepPoint(number, chosen, INPUT_ERROR, one_line(its_case)))
+                continue
+            run = folder / RUNS / f"{number:0{max(3, len(str(len(settings))))}d}.h5"
+            tasks.append(Task(number, chosen, its_case, method, run if keep_runs and method == "runup" else None))
+        _compute(tasks, workers, take)
+    missing = {n: SweepPoint(n, chosen, INTERRUPTED) for n, chosen in enumerate(settings, 1) if n not in found}
+    return Sweep(case, method, tuple(point for _, point in sorted((missing | found).items())))
+
+
+def _compute(tasks: Sequence[Task], workers: Workers, take: Callable[[SweepPoint], None]) -> None:
+    """Give every point to `take` as soon as it is computed, until all are or Ctrl-C ends it."""
     try:
         if tasks and workers.backend == "loky":
             _compile(tasks)
@@ -120,23 +132,17 @@ def sweep(
                     break
     except KeyboardInterrupt:
         pass
-    missing = {n: SweepPoint(n, chosen, INTERRUPTED) for n, chosen in enumerate(settings, 1) if n not in found}
-    return Sweep(case, method, tuple(point for _, point in sorted((missing | found).items())))
 
 
 def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Path:
     """Write the table of a sweep as "csv" or "parquet". Raises InputError if that does not work."""
     path = Path(path)
     check_table_format(table_format)
-    try:
-        if table_format == "csv":
-            found.to_pandas().to_csv(path, index=False, lineterminator="\n")
-        else:
-            found.to_pandas().to_parquet(path, index=False)
-    except (OSError, ValueError) as error:
-        remove_part(path)
-        remedy = "Free some space or choose another directory; the same command then resumes the sweep."
-        raise _refuse("--output", str(path), f"cannot be written: {error}.", remedy) from error
+    if table_format == "csv":
+        tables.write_table(found.to_pandas(), path)
+    else:
+        with written(path, TABLES[table_format]) as part:
+            found.to_pandas().to_parquet(part, index=False)
     return path
 
 

@@ -18,6 +18,7 @@ from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
 
 BACKENDS = ("loky", "dask")
 CONNECT_WITHIN_s = 10.0
+MOST_PER_CORE = 16
 QUEUE = 2  # tasks given out per worker: the next one waits where the last one ends
 DIED = "its process ended: it was killed, or there was too little memory."
 
@@ -45,6 +46,10 @@ def check_workers(workers: Workers) -> None:
         raise _refuse("--scheduler", workers.scheduler, "is for a cluster.", "Add --backend dask.")
     if workers.jobs != -1 and workers.jobs < 1:
         raise _refuse("--jobs", str(workers.jobs), "is not a number of processes.", "Write 1 or more.")
+    cores = joblib.cpu_count()
+    if workers.backend == "loky" and workers.jobs > MOST_PER_CORE * cores:
+        problem = f"are more processes than this machine can run: it has {cores} cores."
+        raise _refuse("--jobs", str(workers.jobs), problem, f"Write {cores}, or leave --jobs out.")
 
 
 def solved(tasks: Iterable[Task], workers: Workers) -> Generator[SweepPoint, None, None]:
@@ -72,7 +77,8 @@ def _together(tasks: Iterable[Task], jobs: int) -> Generator[SweepPoint, None, N
     parallel = joblib.Parallel(
         n_jobs=jobs, batch_size=1, pre_dispatch=f"{QUEUE} * n_jobs", return_as="generator_unordered"
     )
-    found: Generator[SweepPoint, None, None] = parallel(joblib.delayed(solve)(task) for task in list(tasks))
+    with deaf():  # the processes start in it, and ignore what a terminal sends to all
+        found: Generator[SweepPoint, None, None] = parallel(joblib.delayed(solve)(task) for task in list(tasks))
     return found
 
 
@@ -100,7 +106,6 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
     """Within it joblib uses these workers; what is raised when one of them dies."""
     if workers.backend == "loky":
         with joblib.parallel_config("loky", inner_max_num_threads=1):  # one core for each point
-            _start(workers.jobs)
             yield (BrokenExecutor,)
         return
     from distributed import Client, KilledWorker
@@ -113,12 +118,6 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
         raise _refuse("--scheduler", workers.scheduler, f"cannot be reached: {error}.", remedy) from error
     with client, joblib.parallel_config("dask", client=client):
         yield (KilledWorker,)
-
-
-def _start(jobs: int) -> None:
-    """Start processes that ignore Ctrl-C, which the terminal sends to them as well."""
-    with deaf():
-        joblib.Parallel(n_jobs=jobs)(joblib.delayed(abs)(0) for _ in range(joblib.effective_n_jobs(jobs)))
 
 
 def _refuse(option: str, value: str, problem: str, remedy: str) -> InputError:

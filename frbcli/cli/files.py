@@ -1,0 +1,87 @@
+"""The files of a command: those that it reads, where its results go, and that these do not replace those."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from frbcli.results.kinds import Kind
+
+_READS = "frbcli.reads"  # in the context of a command
+
+
+class InputFile(click.Path):
+    """A file that the command reads, as a Path; no result of the command replaces it."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        note_read(path, ctx)
+        return path
+
+
+class InputFiles(click.ParamType[tuple[Path, ...]]):
+    """Several such files, separated by commas."""
+
+    name = "files"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[Path, ...]:
+        if isinstance(value, tuple):
+            return value
+        return tuple(INPUT.convert(name.strip(), param, ctx) for name in str(value).split(",") if name.strip())
+
+
+class OutputFile(click.Path):
+    """A file that the command writes, as a Path."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+
+class OutputFolder(OutputFile):
+    """A directory for files that the command writes, as a Path."""
+
+
+INPUT, INPUTS, OUTPUT, OUTPUT_FOLDER = InputFile(), InputFiles(), OutputFile(), OutputFolder()
+
+
+def note_read(path: Path, context: click.Context | None) -> None:
+    """Remember that a command reads a file."""
+    if context is not None:
+        context.meta.setdefault(_READS, []).append(path)
+
+
+def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None) -> None:
+    """Raises InputError, before the work, if results of the command cannot have these places.
+
+    files: with their kinds, None is no result; picture: one more that is drawn; whoever wants none does not wait for
+    the library that draws.
+    """
+    from frbcli.results.kinds import PICTURES
+    from frbcli.results.place import require_places
+
+    wanted = [(file, kind) for file, kind in files if file is not None]
+    if picture is not None:
+        from frbcli.plot.style import check_picture
+
+        check_picture(picture)
+        wanted.append((picture, PICTURES[picture.suffix.lower()]))
+    context = click.get_current_context(silent=True)
+    require_places(wanted, reads=() if context is None else context.meta.get(_READS, ()))
+
+
+def beside(run: Path, what: str) -> Path:
+    """The default place of a result: beside its run."""
+    return run.parent / (run.stem + what)
+
+
+def here(case_name: str, what: str) -> Path:
+    """The default place of the result of a case: this directory, under the name of the case, not hidden."""
+    return Path((re.sub(r"[^\w.-]+", "-", case_name).lstrip(".-") or "run") + what)
