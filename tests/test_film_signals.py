@@ -117,12 +117,19 @@ def test_oil_that_leaves_short_films_in_motion(tmp_path: Path) -> None:
 
 
 def test_films_on_cells_settle_to_the_sheet(tmp_path: Path) -> None:
-    run = run_of("jeffcott-supply-2bar", tmp_path, [*STEADY, *ELROD], [*PLAIN, "oil-flow"])
+    """In the mean over a turn of the cells, at half the speed of the rotor: 24 of them leave a ripple of 1e-3 of the
+    force, whose phase follows the steps, and with them round-off. 100 steps per revolution resolve it."""
+    fine = [*STEADY, *ELROD, "accuracy.steps_per_revolution=100"]
+    run = run_of("jeffcott-supply-2bar", tmp_path, fine, [*PLAIN, "oil-flow"])
     sheet = bearing_sheet(frbcli.load_case("jeffcott-supply-2bar", [*STEADY, *ELROD]), [60.0]).points[0]
-    assert run["film_force_y_N"][-1] == pytest.approx(-sheet.load[1], rel=3e-4)  # cells that turn leave a ripple
-    assert run["torque_N_m"][-1] == pytest.approx(sheet.torque, rel=2e-3)
-    assert run["power_W"][-1] == pytest.approx(sheet.power, rel=2e-3)
-    assert np.mean(run["oil_flow_m3_s"][-200:]) == pytest.approx(sheet.side_flow, rel=2e-2)  # it ripples, too
+    turn = run["time_s"] > run["time_s"][-1] - 2.0 / 60.0
+    force, torque, power, flow = (
+        np.mean(run[name][turn]) for name in ("film_force_y_N", "torque_N_m", "power_W", "oil_flow_m3_s")
+    )
+    assert force == pytest.approx(-sheet.load[1], rel=1e-4)
+    assert torque == pytest.approx(sheet.torque, rel=1e-3)
+    assert power == pytest.approx(sheet.power, rel=1e-3)
+    assert flow == pytest.approx(sheet.side_flow, rel=2e-2)
 
 
 def test_over_whole_turns_films_carry_the_weight(tmp_path: Path) -> None:
