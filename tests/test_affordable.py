@@ -14,7 +14,7 @@ from frbcli.case import load
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.runs.run import runup
-from frbcli.scene.cost import MOST_SAMPLES, longest_step
+from frbcli.scene.course import MOST_SAMPLES, longest_step
 from frbcli.scene.plan import make_plan
 
 

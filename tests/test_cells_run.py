@@ -21,7 +21,7 @@ from frbcli.results.store import read_run
 from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.cost import STAGES
+from frbcli.scene.course import STAGES
 from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.profiles import run_up_profile

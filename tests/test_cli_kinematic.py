@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +53,20 @@ def test_histories(test: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
         assert min(result["gap_ratio"]) == pytest.approx(0.4, abs=0.005)
         assert 0.0 < result["error"]["force_relative"] < 0.1
     assert picture.stat().st_size > 10_000
+
+
+def test_errors_in_the_table_refer_to_its_largest_force(capsys: pytest.CaptureFixture[str]) -> None:
+    """A force that nearly vanishes beside the others has a large error of its own, which says nothing beside them."""
+    motion = 'motion={eccentricity=0.6, speed="50 Hz"}'
+    words = ("rotation", "bearing", "--cavitation", "half-sommerfeld,two-phase", "--set", motion, *COARSE)
+    assert run([*words, "--no-picture", "--json"]) == 0
+    said = capsys.readouterr()
+    results = json.loads(said.out)["results"]
+    sizes = [math.hypot(*result["force_N"]) for result in results]
+    assert sizes[1] < 0.5 * sizes[0]
+    expected = [one["error"]["force_relative"] * size / max(sizes) for one, size in zip(results, sizes, strict=True)]
+    rows = [line.split() for line in said.err.splitlines() if "°" in line]
+    assert [float(row[-1]) for row in rows] == [float(f"{error:.0e}") for error in expected]
 
 
 def test_starving_film_is_named(capsys: pytest.CaptureFixture[str]) -> None:

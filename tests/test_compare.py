@@ -61,6 +61,8 @@ def test_the_table_has_a_row_for_each(compared: Comparison) -> None:
     assert table["deviation_largest"].tolist() == [result.deviation.largest for result in compared.results]
     assert (table["cpu_s"] > 0.0).all()
     assert table["film_force_relative"][0] < table["film_force_relative"][1]
+    stated = [result.run.error["eccentricity"] for result in compared.results]
+    assert table["eccentricity_error"].tolist() == stated
 
 
 def whirling(at: float | None, eccentricity_off: float = 0.0, lasts: float = 1.0) -> Run:
@@ -215,6 +217,19 @@ def test_command_says_one_json_document_one_table_one_picture(
     assert all(f"{result['cavitation']} {result['theory']}" in said.err for result in found["results"])
     assert os.listdir() == ["jeffcott-compare.png"]
     assert Path("jeffcott-compare.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_error_in_the_table_is_that_of_what_the_table_compares(capsys: pytest.CaptureFixture[str]) -> None:
+    """The column beside the deviations of the eccentricities was the relative error of forces, up to 1 where they
+    nearly vanish."""
+    words = ["--theory", "finite,short", "--no-picture", "--json"]
+    assert frb(["compare", "jeffcott", *SETTINGS, *words]) == 0
+    said = capsys.readouterr()
+    results = json.loads(said.out)["results"]
+    rows = [line.split() for line in said.err.splitlines() if line.split()[:1] == [HALF]]
+    assert [float(row[-2]) for row in rows] == [float(f"{result['error']['eccentricity']:.0e}") for result in results]
+    assert results[1]["error"]["film_force_relative"] is not None
+    assert "stated error of the eccentricity" in said.err
 
 
 def test_command_says_nothing_if_asked_to(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,17 +11,21 @@ import pytest
 
 from frbcli.case.load import load_case
 from frbcli.film.grid import Mesh
+from frbcli.runs.header import header
 from frbcli.runs.run import runup
 from frbcli.scene.cell_choice import ALONG, AROUND, cell_error, cells_time, fewest_cells
-from frbcli.scene.cost import STAGES, expected_cost, solve_us
+from frbcli.scene.cost import expected_cost, solve_us
+from frbcli.scene.course import STAGES, whirl_speed
 from frbcli.scene.expected_error import expected_error
 from frbcli.scene.film_choice import CELLS, CHAINS, CLOSED_FORM, FIELDS, TABLE, choose_films, short_error
 from frbcli.scene.plan import CELL_SHARE, TIGHT_SHARE, make_plan
 from frbcli.scene.planned import Plan
+from frbcli.scene.preparation import signal_count
 from frbcli.scene.profiles import run_down_profile, run_up_profile
+from frbcli.scene.segments import make_segments
 from frbcli.solve.tableau import METHODS
 
-WITHIN = 3.0  # of the real cost
+WITHIN = 2.0  # of the real cost
 NARROW = ("bearing.width=1 mm", "accuracy.target=1e-2")
 
 
@@ -76,6 +82,31 @@ def test_predicted_is_near_real_cost(name: str, tmp_path: Path) -> None:
     assert 1 / WITHIN < run.cost["steps"] / cost.steps < WITHIN
 
 
+@pytest.mark.parametrize(
+    ("law", "pressure"), [("two-phase", 1), ("elrod", 1), ("two-phase", 2), ("elrod", 2), ("reynolds", 1)]
+)
+def test_predicted_is_near_real_cost_of_cells(law: str, pressure: int, tmp_path: Path) -> None:
+    """Without inflow films run nearly dry, their fronts cross cells, and take four to eight times as many steps as fed
+    ones; 19 a revolution were expected of all."""
+    settings = [f"film.cavitation={law}", f"bearing.supply.pressure={pressure} bar", "accuracy.mesh=[6, 48]"]
+    settings += ["speed.from=100 Hz", "speed.to=103 Hz", "speed.duration=0.3 s", "accuracy.tolerance=1e-4"]
+    case = load_case("jeffcott", settings)
+    run = runup(case, tmp_path / "run.h5")
+    cost = expected_cost(case, make_plan(case), run_up_profile(case))
+    assert 1 / WITHIN < run.cost["film_solves"] / cost.film_solves < WITHIN
+    assert 1 / WITHIN < run.cost["steps"] / cost.steps < WITHIN
+
+
+def test_a_whirl_is_expected_where_nothing_keeps_the_journal_from_it() -> None:
+    """A whirl of the jeffcott begins at 204 Hz in a run, of the rigid rotor at 260 Hz, on the soft shaft at 150 Hz."""
+    found = {name: whirl_speed(load_case(name)) / (2.0 * np.pi) for name in ("jeffcott", "rigid", "soft-shaft")}
+    assert found == pytest.approx({"jeffcott": 204.0, "rigid": 260.0, "soft-shaft": 150.0}, rel=0.2)
+    assert whirl_speed(load_case("jeffcott", ["rotor.gravity=0 m/s^2"])) == 0.0
+    assert whirl_speed(load_case("jeffcott", ["film.cavitation=sommerfeld"])) == 0.0
+    assert whirl_speed(load_case("jeffcott-two-phase")) == 0.0
+    assert whirl_speed(load_case("floating-ring")) == 0.0
+
+
 def test_steps_are_as_exact_as_the_cells_deserve() -> None:
     """The local error is a share of the target, or of the error of the cells where that is larger."""
 
@@ -127,6 +158,51 @@ def test_expected_error_follows_tolerance_and_films() -> None:
     assert np.isfinite(expected_error(make_plan(load_case("floating-ring"))).eccentricity)
 
 
+# --- memory ---
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("jeffcott", ()),
+        ("jeffcott", ('output.signals=["force", "power"]', "film.cavitation=elrod")),
+        ("rigid", ()),
+        ("floating-ring", ()),
+        ("turbocharger-car", ()),
+        ("floating-ring-heat", ()),
+    ],
+)
+def test_the_signals_of_a_run_are_counted(name: str, settings: tuple[str, ...]) -> None:
+    case = load_case(name, (*settings, "accuracy.mesh=[4, 24]"))
+    recorded = len(header("runup", case, make_segments(case, make_plan(case))).units)
+    assert 0 <= signal_count(case) - recorded <= (0 if case.heat is None else 2)  # of walls, at most
+
+
+MEASURED = """
+import sys
+from pathlib import Path
+from frbcli.case.load import load_case
+from frbcli.runs.run import run_cost, runup
+settings = ["film.theory=short", "speed.duration=1 s", "speed.to=60 Hz", f"output.step={sys.argv[1]}"]
+case = load_case("jeffcott", settings)
+runup(case, sys.argv[2])
+line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("VmHWM"))
+print(run_cost("runup", case).memory_B, 1024 * int(line.split()[1]))
+"""
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs the figures of Linux")
+@pytest.mark.parametrize("step", ["1 ms", "1e-6 s"])
+def test_a_process_takes_no_more_memory_than_announced(step: str, tmp_path: Path) -> None:
+    """All samples are in memory twice: a run of a million of seven signals took 370 MB where 298 were announced."""
+    runup(load_case("jeffcott", ["film.theory=short", "speed.duration=2 ms"]), tmp_path / "compiled.h5")
+    command = [sys.executable, "-c", MEASURED, step, str(tmp_path / "run.h5")]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    announced, taken = map(float, said.split())
+    assert 0.7 * announced < taken <= announced
+
+
 # --- target and budget ---
 
 
@@ -145,6 +221,29 @@ def test_cells_hold_the_target_with_the_least_cost() -> None:
         assert expected_error(plan).eccentricity <= 1.2 * target
         cheaper = [(m, k) for m in AROUND for k in ALONG if cells_time(m, k) < 0.99 * cells_time(*plan.cells)]
         assert all(cell_error(case, cells) > 0.8 * target for cells in cheaper)
+
+
+def test_a_target_out_of_reach_takes_the_knee() -> None:
+    """Elrod's film without inflow: no cells hold 1e-3. Those with 1.5 times the least error cost half of the finest."""
+    case = load_case("jeffcott", ["film.cavitation=elrod"])
+    plan, told = about_target("jeffcott", "film.cavitation=elrod")
+    assert "out of reach" in told
+    assert "within 1.5 times the least error" in told
+    assert plan.cells is not None
+    errors = {(m, k): cell_error(case, (m, k)) for m in AROUND for k in ALONG}
+    assert errors[plan.cells] <= 1.5 * min(errors.values())
+    assert cells_time(*plan.cells) < 0.6 * cells_time(*min(errors, key=lambda cells: errors[cells]))
+    cheaper = [cells for cells in errors if cells_time(*cells) < cells_time(*plan.cells)]
+    assert all(errors[cells] > 1.5 * min(errors.values()) for cells in cheaper)
+
+
+def test_a_target_just_within_reach_takes_the_cells_that_reach_it() -> None:
+    reached, told = about_target("jeffcott", "film.cavitation=elrod", "accuracy.target=1.7e-3")
+    assert reached.cells == (192, 10)
+    assert "out of reach" not in told
+    coarser, told = about_target("jeffcott", "film.cavitation=elrod", "accuracy.target=1.5e-3")
+    assert coarser.cells == make_plan(load_case("jeffcott", ["film.cavitation=elrod"])).cells
+    assert "out of reach" in told
 
 
 def test_a_budget_takes_the_most_exact_that_it_pays() -> None:
@@ -173,7 +272,7 @@ def test_a_film_that_empties_needs_more_cells() -> None:
     """Elrod's film in an oil bath without supply: 48 x 5 cells hold 1e-2, no cells hold 1e-3, and the plan says so."""
     case = load_case("jeffcott", ["film.cavitation=elrod", "bearing.ends=oil-bath", "bearing.supply={kind='none'}"])
     fed = load_case("jeffcott", ["film.cavitation=elrod", "bearing.supply.pressure=2 bar"])
-    assert fewest_cells(case, 0.8e-2) == (48, 5)
+    assert fewest_cells(case, 0.8e-2, 0.95e-2) == (48, 5)
     assert cell_error(case, (192, 10)) > 1e-3
     assert cell_error(fed, (48, 5)) < 0.5 * cell_error(case, (48, 5))
 

@@ -109,11 +109,20 @@ def test_a_line_is_one_that_frb_takes(line: str, folder: Path, monkeypatch: pyte
         kinematic_plan(case, None, name)
 
 
+@pytest.fixture(scope="module")
+def heated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run with heat: its kernels take a minute to compile, which the lines of the gate do not need."""
+    case = frbcli.load_case("floating-ring-heat", ["speed.duration=20 ms", "speed.to=100 Hz"])
+    path = frbcli.runup(case, tmp_path_factory.mktemp("heat") / "heat.h5").path
+    return Path(path)
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize("line", [line for line in shown() if "dask" not in line])
-def test_a_line_runs(line: str, folder: Path, tmp_path: Path) -> None:
+def test_a_line_runs(line: str, folder: Path, heated: Path, tmp_path: Path) -> None:
     """Each in a process; what takes longer than a minute is interrupted, and says so."""
     place = shutil.copytree(folder, tmp_path / "here")
+    shutil.copy(heated, place / heated.name)
     words = words_of(line)
     if words[0] in ("runup", "rundown"):
         words.append("--force")

@@ -16,6 +16,7 @@ from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.scene.bearing_models import chosen_model, model_decisions
+from frbcli.scene.cell_choice import FEWEST, given_cells
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import make_law
 from frbcli.scene.planned import Decision
@@ -30,7 +31,6 @@ STEADY_CELLS, FINE_CELLS = (128, 32), (240, 60)
 MOVING_CELLS = (64, 16)
 FINE_TARGET = 2e-4
 STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its force, hangs on the step
-FEWEST_CELLS = (12, 3)
 TWO_PI = 2.0 * math.pi
 
 PUBLISHED_FILM = Decision(
@@ -161,8 +161,7 @@ def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
 
 def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
     if case.accuracy.mesh is not None:
-        along, around = case.accuracy.mesh
-        return (max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])), "set in the case"
+        return given_cells(case.accuracy.mesh, FEWEST)
     if test != "rotation":
         return MOVING_CELLS, "equal ones around, for the narrowest gap moves"
     fine = case.accuracy.target <= FINE_TARGET
@@ -171,8 +170,8 @@ def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
 
 def _elements(case: Case) -> tuple[tuple[int, int], str]:
     if case.accuracy.mesh is not None:
-        along, around = case.accuracy.mesh
-        return (max(around, FEWEST_CELLS[0]), max(along, FEWEST_CELLS[1])), "of a section, set in the case"
+        elements, why = given_cells(case.accuracy.mesh, FEWEST)
+        return elements, f"of a section; {why}"
     return ELEMENTS, "of a section, as published"
 
 

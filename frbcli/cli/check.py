@@ -41,6 +41,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     from frbcli.scene.limits import require_affordable
     from frbcli.scene.operating import operating_points
     from frbcli.scene.plan import make_plan
+    from frbcli.scene.preparation import compile_B
     from frbcli.scene.profiles import run_up_profile
 
     listed = values(case)
@@ -64,7 +65,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     else:
         plan = make_plan(case)
         cost, error = expected_cost(case, plan, run_up_profile(case)), expected_error(plan)
-        decisions, lines = plan.decisions, _expectations(cost, error)
+        decisions, lines = plan.decisions, _expectations(cost, error, compile_B(case))
         expected = {
             "eccentricity_error": error.eccentricity,
             "film_force_error_relative": error.film_force,
@@ -140,20 +141,23 @@ def _told_film(film: FilmOperation) -> dict[str, object]:
     }
 
 
-def _expectations(cost: ExpectedCost, error: ExpectedError) -> tuple[Decision, ...]:
-    """Expected error and cost, the last lines of the plan."""
-    from frbcli.scene.limits import clock, memory
+def _expectations(cost: ExpectedCost, error: ExpectedError, compile_B: float) -> tuple[Decision, ...]:
+    """Expected error and cost, the last lines of the plan; compile_B: memory of the first start, which compiles."""
+    from frbcli.scene.cost import clock
+    from frbcli.scene.limits import memory
     from frbcli.scene.planned import Decision
 
     solves = f"{cost.steps} steps, {cost.film_solves} film solves, on the machine of docs/accuracy.md"
     beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
-    forces = "of the bearing model, not known" if error.film_force is None else f"{error.film_force:.1g}, relative"
-    parts = f"of the eccentricities before a whirl grows; film forces {forces}"
+    first = memory(max(cost.memory_B, compile_B))
+    parts = "of the eccentricities before a whirl grows"
+    if error.film_force is not None:
+        parts += f"; film forces {error.film_force:.1g}, relative"
     return (
         Decision("expected error", f"{error.eccentricity:.1g}", parts),
         Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),
         Decision("before, after", clock(cost.before_s + cost.after_s), beside),
-        Decision("memory", memory(cost.memory_B), "of the whole process, at most"),
+        Decision("memory", memory(cost.memory_B), f"of the whole process; {first} where it compiles the kernels"),
     )
 
 

@@ -37,8 +37,8 @@ COUPLING_EXPLANATION = (
 EXPLANATION = (
     "crit., onset: rotor speed in Hz at resonance and at the onset of whirl; ratio:\n"
     "whirl ratio; max, rms: deviation of the eccentricity from the first row before\n"
-    "a whirl; err.: relative error of the film forces against a finite bearing on a\n"
-    "finer mesh; CPU: time in s."
+    "a whirl; err.: stated error of the eccentricity before a whirl, as a share of\n"
+    "the clearance like max and rms; CPU: time in s."
 )
 
 
@@ -87,7 +87,7 @@ def command(
 
     Without --cavitation, --theory and --coupling it is compared with all models whose films have no state and low cost.
     """
-    from frbcli.bearing_tests.plan import TESTS
+    from frbcli.bearing_tests.plan import TESTS, with_model
     from frbcli.studies.compare import compare
 
     if isinstance(case, Path) or file is not None:
@@ -99,7 +99,8 @@ def command(
     if test in TESTS:
         return _kinematic(case, test, models, target, picture, terminal)
     check_outputs(picture=target if picture else None)
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+    others = (with_model(case, law) for law in models.cavitation)  # asked for after their names are checked
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show, others):
         tell = of_runs(terminal, show)
         found = compare(
             case, models.cavitation, models.theory, test, keep, lambda variant, *rest: tell(variant.name, *rest),
@@ -187,7 +188,7 @@ def _hottest(result: VariantResult) -> list[float]:
 
 def _cells(result: VariantResult) -> tuple[str, ...]:
     critical, onset = result.first("critical-speed"), result.first("onset")
-    error = result.run.error["film_force_relative"]
+    error = result.run.error.get("eccentricity")
     return (
         result.variant.name,
         "-" if critical is None else f"{critical['speed_Hz']:.1f}",

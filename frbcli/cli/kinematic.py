@@ -26,10 +26,10 @@ FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.")
 OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance", "CPU")
 EXPLANATION = (
     "Forces of the whole bearing on the journal in N; angle: of the force from the\n"
-    "x-axis; So: Sommerfeld number (3.14); p: absolute, in bar; err.: relative error\n"
-    "of the force, from half the cells; torque: on the journal, N m; oil: mean oil\n"
-    "fraction; in, out: flow in mm^3/s; balance: oil that is lost, or created\n"
-    "(negative), over the flow; CPU: time in s."
+    "x-axis; So: Sommerfeld number (3.14); p: absolute, in bar; err.: error of the\n"
+    "force, from half the cells, over the largest |F| of the table; torque: on the\n"
+    "journal, N m; oil: mean oil fraction; in, out: flow in mm^3/s; balance: oil\n"
+    "that is lost, or created (negative), over the flow; CPU: time in s."
 )
 LARGEST = "Values are those of the moment of the largest force."
 
@@ -95,7 +95,8 @@ def draw_test(found: KinematicTest, target: Path, terminal: Terminal) -> None:
 def report(found: KinematicTest, terminal: Terminal) -> None:
     """Two tables: forces and oil."""
     title = found.case.title or found.case.name
-    terminal.table(f"{title}: {found.test}", FORCES, map(_forces, found.results))
+    largest = max((_size(result) for result in found.results), default=0.0)
+    terminal.table(f"{title}: {found.test}", FORCES, [_forces(result, largest) for result in found.results])
     terminal.table("", OIL, map(_oil, found.results))
     terminal.result(EXPLANATION)
     for result in found.results:
@@ -110,13 +111,19 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
         terminal.result("Interrupted: the other models were not computed.")
 
 
-def _forces(result: KinematicResult) -> tuple[str, ...]:
+def _size(result: KinematicResult) -> float:
+    """The force in N, 0 without a solution."""
+    return 0.0 if result.loads is None else math.hypot(*result.loads.force)
+
+
+def _forces(result: KinematicResult, largest: float) -> tuple[str, ...]:
+    """largest: force in N of all results, which their errors refer to: one that nearly vanishes has a large error of
+    its own, which is of no meaning beside the others."""
     loads = result.loads
     if loads is None:
         return (result.name, "none", *[""] * (len(FORCES) - 2))
-    x, y = loads.force
-    size = math.hypot(x, y)
-    error = result.force_error
+    (x, y), size = loads.force, _size(result)
+    error = result.force_error * size / largest if largest > 0.0 else math.nan
     return (
         result.name,
         f"{math.hypot(*result.displacement):.3f}",

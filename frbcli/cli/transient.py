@@ -121,7 +121,8 @@ def transient(
 
 def cost_line(cost: ExpectedCost) -> str:
     """Expected cost of a run."""
-    from frbcli.scene.limits import clock, memory
+    from frbcli.scene.cost import clock
+    from frbcli.scene.limits import memory
 
     before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > TOLD_BEFORE_s else ""
     return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
@@ -130,7 +131,7 @@ def cost_line(cost: ExpectedCost) -> str:
 def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
     """Shows the progress on a terminal, elsewhere as a line every now and then, and warns once if a run takes much
     longer than its plan expected."""
-    from frbcli.scene.limits import clock
+    from frbcli.scene.cost import clock
 
     said, told_s = False, 0.0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frbcli.case.schema import Case
-from frbcli.scene.cost import longest_step
+from frbcli.scene.course import longest_step
 from frbcli.scene.planned import Plan
 from frbcli.solve.state import Control
 

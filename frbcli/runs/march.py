@@ -26,7 +26,8 @@ from frbcli.runs.heat import RunHeat
 from frbcli.runs.oil import no_oil_comes_in, oil_passed
 from frbcli.runs.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.cost import expected_cost, expected_course
+from frbcli.scene.cost import expected_cost
+from frbcli.scene.course import expected_course
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import film_error_s
 from frbcli.scene.remedies import advised
@@ -310,5 +311,5 @@ class March:
             left_s=(end - t) / rate if rate > 0 else math.inf,
             for_error=until is not None,
             cpu_s=self._cpu_s,
-            over_plan=self._cpu_s / max(self._expected.step_s * float(np.interp(t, *self._course)), 1e-9),
+            over_plan=self._cpu_s / max(self._expected.cpu_s * self._course.share(t), 1e-9),
         )

@@ -26,6 +26,7 @@ COARSER, FEWER = 1.5, (0.5, 0.85)  # by how much at least; share of the cells in
 FAST, SLOW = (3, *ALONG), 3.0  # what others cost more
 CELLS_DOUBLE = 16.0  # cells along that double the time of a cell
 MOST_STATES, FEWEST_STATES = 8, 2
+KNEE = 1.5  # error over the least one that can be had, where the target is out of reach: less costs twice as much
 BEYOND = 2.0  # order of the cells along outside of what was measured
 
 
@@ -69,12 +70,25 @@ def cell_error(case: Case, cells: tuple[int, int]) -> float:
     return max(_kind(case, place).of(cells) for place in film_places(case))
 
 
-def fewest_cells(case: Case, allowed: float) -> tuple[int, int]:
-    """The cheapest cells (around, along) with no more than the allowed error, or if there are none the most exact."""
+def fewest_cells(case: Case, allowed: float, most: float) -> tuple[int, int]:
+    """The cheapest cells (around, along) with no more than the allowed error. If there are none: the most exact, or
+    where their error is above `most`, so that the target is out of reach, the cheapest with little more than it."""
     least = max(_kind(case, place).least for place in film_places(case))
     choices = sorted(((m, k) for m in AROUND if m >= least for k in ALONG), key=lambda cells: cells_time(*cells))
     errors = {cells: cell_error(case, cells) for cells in choices}
-    return next((cells for cells in choices if errors[cells] <= allowed), min(choices, key=lambda cells: errors[cells]))
+    best = min(errors.values())
+    if best > allowed:
+        allowed = best if best <= most else KNEE * best
+    return next(cells for cells in choices if errors[cells] <= allowed)
+
+
+def given_cells(mesh: tuple[int, int], fewest: tuple[int, int]) -> tuple[tuple[int, int], str]:
+    """Cells or elements (around, along) for a mesh (along, around) that a case sets, and why."""
+    along, around = mesh
+    found = max(around, fewest[0]), max(along, fewest[1])
+    if found == (around, along):
+        return found, "set in the case"
+    return found, f"{along} x {around} are set in the case, fewer than a film needs"
 
 
 def cells_time(around: int, along: int) -> float:

@@ -13,7 +13,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
 from frbcli.scene.bearing_models import GIVEN, WHY
-from frbcli.scene.cell_choice import FEWEST, cell_error, fewest_cells
+from frbcli.scene.cell_choice import FEWEST, cell_error, fewest_cells, given_cells
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
 from frbcli.scene.tabulated import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
@@ -40,6 +40,7 @@ TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
 CHAIN_ERROR = {Mesh(3, 48): 8.5e-4, Mesh(6, 48): 5e-4, Mesh(9, 72): 4e-4, Mesh(10, 192): 2e-4}
 CHAIN_FLOOR = 8.5e-4
 CELL_SHARE, RING_SHARE = 0.8, 0.85  # of the target, by cells; the steps of a rotor on rings have little error
+REACHED = 0.95  # error of the cells over the target up to which it counts as met: with the steps that is 1.2 of it
 LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4  # of methods of third and of fourth order
 
 
@@ -71,10 +72,10 @@ def choose_films(case: Case, target: float) -> FilmChoice:
         theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
         return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
     if needs_cells(case):
-        cells = _cells(case, target)
+        cells, cells_why = _cells(case, target)
         error = cell_error(case, cells)
         theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
-        mesh_why = f"{'set in the case; ' if given is not None else ''}error of the eccentricities {error:.1g}"
+        mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
         if case.film.solution == "cells":
             mesh_why += "; film.solution is set in the case"
         elif all(law_named(model).tabulated for model in case.cavitations):
@@ -93,6 +94,8 @@ def choose_films(case: Case, target: float) -> FilmChoice:
         fits = short <= FILM_SHARE * target and all(film.supply.kind != "axial-grooves" for film in films)
         theory = "short" if fits else "finite"
         theory_why = f"error of the short bearing with b/D = {slenderness:.2g}: {short:.1g} at {SOLVED_HOLDS_TO:g}"
+        if any(film.supply.kind == "axial-grooves" for film in films):
+            theory_why = "axial grooves, which the short bearing does not have"
     forms = [film_form(case, film, theory) for film in films]
     form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
     meshes = [_mesh(form, _slenderness(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]
@@ -182,8 +185,9 @@ def _mesh_error(form: str, mesh: Mesh, slenderness: float) -> float:
     return float(max(factor * slenderness**2, FIELDS_FLOOR if form == FIELDS else TABLE_FLOOR))
 
 
-def _cells(case: Case, target: float) -> tuple[int, int]:
+def _cells(case: Case, target: float) -> tuple[tuple[int, int], str]:
+    """Cells (around, along), and what comes before their error in their reason."""
     if case.accuracy.mesh is not None:
-        along, around = case.accuracy.mesh
-        return max(around, FEWEST[0]), max(along, FEWEST[1])
-    return fewest_cells(case, (RING_SHARE if turning_rings(case) else CELL_SHARE) * target)
+        cells, why = given_cells(case.accuracy.mesh, FEWEST)
+        return cells, f"{why}; "
+    return fewest_cells(case, (RING_SHARE if turning_rings(case) else CELL_SHARE) * target, REACHED * target), ""

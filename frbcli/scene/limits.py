@@ -9,12 +9,11 @@ from frbcli.case.model import altered
 from frbcli.case.schema import MACRO_STEP, STEPS_PER_REVOLUTION, Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.cost import ExpectedCost, solve_us
+from frbcli.scene.cost import DAY_s, ExpectedCost, clock, solve_us
 from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import before_s, rotor_size
 
-DAY_s = 86_400.0
 LONGEST_RUN_s = 30.0 * DAY_s  # CPU time
 LONGEST_PREPARATION_s = 3_600.0
 LONGEST_WAIT_s = 2.0  # of one step, during which there is no progress and Ctrl-C has no effect
@@ -48,14 +47,6 @@ def cost_faults(case: Case, plan: Plan, cost: ExpectedCost) -> Iterator[Fault]:
             problem = f"{words.format(told(amount))}; {told(most)} is the limit."
             yield Fault(asked.key, asked.value, None, problem, asked.remedy)
             return
-
-
-def clock(seconds: float) -> str:
-    """A duration in words, to two digits."""
-    for unit, size in (("days", DAY_s), ("h", 3_600.0), ("min", 60.0)):
-        if seconds >= 2.0 * size:
-            return f"{seconds / size:.2g} {unit}"
-    return f"{seconds:.2g} s"
 
 
 def memory(number: float) -> str:

@@ -14,14 +14,17 @@ from frbcli.case.model import altered
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.bearing_models import chosen_model, model_decisions
+from frbcli.scene.cell_choice import KNEE
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
-from frbcli.scene.cost import expected_cost
+from frbcli.scene.cost import clock, expected_cost
 from frbcli.scene.coupling import plan_coupling
 from frbcli.scene.expected_error import expected_error
 from frbcli.scene.film_choice import (
+    CELLS,
     CHAINS,
     FIELDS,
     FINE_TARGET,
@@ -76,18 +79,24 @@ def _about_target(case: Case, plan: Plan) -> Decision:
     by_itself = altered(accuracy, {"mesh": None, "tolerance": None})
     asked = _plan(altered(case, {"accuracy": by_itself}), accuracy.target)
     error, needed = expected_error(plan).eccentricity, expected_error(asked).eccentricity
-    own = f"expected error {error:.1g}, {_total_s(case, plan):.2g} s"
-    told = f"{accuracy.target:g}"
+    own = f"expected error {error:.1g}, {clock(_total_s(case, plan))}"
+    by_hand = accuracy.mesh is not None or accuracy.tolerance is not None
+    told, needs, knee = f"{accuracy.target:g}", "needs", ""
     if needed > REACHED * accuracy.target:
-        told += " is out of reach"
+        told, needs = f"{told} is out of reach", "nearest to it"
+        if asked.form == CELLS:
+            knee = f"; the cheapest cells within {KNEE:g} times the least error that can be had"
     if (plan.cells, plan.mesh, plan.tolerance) == (asked.cells, asked.mesh, asked.tolerance):
-        return Decision("target", told, own)
+        return Decision("target", told, own + knee)
     mesh = f"{asked.mesh.axial} x {asked.mesh.circumferential} elements"
     if asked.cells is not None:
         mesh = f"{asked.cells[0]} x {asked.cells[1]} cells"
-    why = "set in the case" if accuracy.budget is None else f"budget of {accuracy.budget:g} s"
-    needs = f"{mesh} and tolerance {asked.tolerance:.2g}: {needed:.1g}, {_total_s(case, asked):.2g} s"
-    return Decision("target", told, f"needs {needs}; chosen: {own}; {why}")
+    reasons = ["set in the case"] if by_hand else []
+    if accuracy.budget is not None and _total_s(case, asked) > accuracy.budget:
+        reasons.append(f"budget of {accuracy.budget:g} s")
+    why = ", ".join(reasons)
+    needs += f" {mesh} and tolerance {asked.tolerance:.2g}: {needed:.1g}, {clock(_total_s(case, asked))}{knee}"
+    return Decision("target", told, f"{needs}; chosen: {own}; {why}")
 
 
 def _total_s(case: Case, plan: Plan) -> float:
@@ -142,13 +151,20 @@ def _plan(case: Case, target: float) -> Plan:
 def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Theory and cavitation."""
     decide("theory", films.theory, films.theory_why)
-    for told, cavitation in _cavitations(case):
-        if films.form == PUBLISHED:
-            decide("cavitation", told, "set in the case; the oil is part of the state, and some is created")
-        elif law_named(cavitation).keeps_oil:
-            decide("cavitation", told, "set in the case; mass-conserving: the oil is part of the state")
-        else:
-            decide("cavitation", told, "set in the case; the film has no state, and oil is not balanced")
+    for told, cavitation, is_set in _cavitations(case):
+        reason = _about_oil(law_named(cavitation), films.form == PUBLISHED)
+        decide("cavitation", told, f"{'set in the case' if is_set else 'the default'}; {reason}")
+
+
+def _about_oil(law: type[Law], published: bool) -> str:
+    """What a law makes of the oil."""
+    if published:
+        return "the oil is part of the state, and some is created"
+    if law.keeps_oil:
+        return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
+    if not law.cavitates:
+        return "the film has no state and does not cavitate"
+    return "the film has no state, and oil is not balanced"
 
 
 def _decide_scene(case: Case, decide: Decide) -> None:
@@ -174,12 +190,19 @@ def _decide_scene(case: Case, decide: Decide) -> None:
         decide("heat", "lumped", f"set in the case; viscosity follows the temperature of each film, the gap {gap}")
 
 
-def _cavitations(case: Case) -> tuple[tuple[str, str], ...]:
-    """Texts for the cavitation models of the films, and the models: one for all films, or one each."""
-    if len(set(case.cavitations)) == 1:
-        return ((case.cavitations[0], case.cavitations[0]),)
-    names = (place.name for place in film_places(case))
-    return tuple((f"{name}: {model}", model) for name, model in zip(names, case.cavitations, strict=True))
+def _cavitations(case: Case) -> tuple[tuple[str, str, bool], ...]:
+    """Texts for the cavitation models of the films, the models, and whether the case sets them: one for all films, or
+    one each."""
+    common = "cavitation" in case.film.model_fields_set
+    places = film_places(case)
+    are_set = [common or getattr(place.geometry, "cavitation", None) is not None for place in places]
+    if len(set(case.cavitations)) == len(set(are_set)) == 1:
+        return ((case.cavitations[0], case.cavitations[0], are_set[0]),)
+    names = (place.name for place in places)
+    return tuple(
+        (f"{name}: {model}", model, is_set)
+        for name, model, is_set in zip(names, case.cavitations, are_set, strict=True)
+    )
 
 
 def _coupling_of_films(case: Case, bearing: FloatingRingBearing) -> str:
@@ -227,9 +250,10 @@ def _time_integration(case: Case, films: FilmChoice, target: float, decide: Deci
     else:
         method, share, reason = "esdirk4", TIGHT_SHARE, "fourth order, L-stable: its error is far below the target"
     decide("integrator", method, reason)
-    tolerance, reason = share * target, f"{share:g} of the target, for each step"
+    whole = "the target" if target == case.accuracy.target else f"{target:.2g}, the target that the budget pays for"
+    tolerance, reason = share * target, f"{share:g} of {whole}, for each step"
     if cells and films.form != PUBLISHED:
-        tolerance, reason = CELL_SHARE * target, f"{CELL_SHARE:g} of the target, for each step"
+        tolerance, reason = CELL_SHARE * target, f"{CELL_SHARE:g} of {whole}, for each step"
         if films.error > target:
             tolerance = CELL_SHARE * films.error
             reason = f"{CELL_SHARE:g} of the error of the cells, for each step: less would cost more and gain nothing"
@@ -251,12 +275,15 @@ def _time_integration(case: Case, films: FilmChoice, target: float, decide: Deci
 
 def _gap(film: FilmGeometry) -> tuple[str, str]:
     supply = film.supply
+    if film.lobes is not None:
+        return "developed gap", f"with {film.lobes.count} lobes, supply {supply.kind}"
     if supply.kind == "axial-grooves":
-        return f"{supply.count} rectangles", "axial grooves divide the circumference; odd axial modes vanish"
+        reason = "axial grooves divide the circumference; the film is symmetric about its middle"
+        return f"{supply.count} rectangles", reason
     if isinstance(supply, CircumferentialGroove):
         if supply.axial_position == MIDDLE:
             return "2 equal rectangles", "a central circumferential groove splits the width; one section is solved"
         return "1 rectangle", "a circumferential groove at one end: one section of the whole width"
     if supply.kind == "none":
-        return "1 rectangle", "plain bearing: the pressure is symmetric about the middle, its odd modes vanish"
+        return "1 rectangle", "plain bearing: the film is symmetric about its middle"
     return "developed gap", f"with openings: {supply.kind}"

@@ -8,9 +8,11 @@ numbers are CPU seconds of the reference machine of cost.py.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
-from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Mesh
 from frbcli.rotor.beam import ELEMENTS
@@ -18,8 +20,8 @@ from frbcli.rotor.reduction import DENSE, MOST, RIGID
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.cell_choice import compared_states
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE, needs_cells
-from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE, all_clipped, needs_cells
+from frbcli.scene.films import film_places, rings, turning_rings
 from frbcli.scene.planned import Plan
 from frbcli.scene.published import PUBLISHED
 from frbcli.scene.tabulated import SOLUTION_MESH, SOLUTIONS
@@ -33,22 +35,38 @@ TABLE_s, TABLE_MODES = (
 MODES_s = 3e-9  # of the axial modes, per cube of the elements along
 DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
 SOLUTIONS_s = 0.65  # of a table of solutions on cells, on SOLUTION_MESH
-STEADY_s, STEADY_CELLS, STEADY_POWER = 0.27, 1152, 1.62  # of a steady film, a state of its own; its cells
+STEADY_s, STEADY_CELLS, STEADY_POWER = 0.012, 1152, 1.1  # of a steady film, a state of its own; its cells
 RESTING = 3.0  # factor for a resting position, found by Newton's method
 PUBLISHED_STATE_s = 3.0  # to settle
 AGAIN = 0.5  # of the loop: the run on fewer cells
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
-COMPILE_s, COMPILE_CELLS_s = 20.0, 40.0
-PROGRAM_B = 2.7e8  # bytes of the program, its libraries and its compiled kernels
+# To compile, at the first start: CPU time in s and memory in bytes, for finite-volume films, for tables of solutions on
+# cells, and for other films.
+COMPILE_CELLS, COMPILE_SOLUTIONS, COMPILE_TABLES = (62.0, 5e8), (42.0, 4.2e8), (26.0, 3.6e8)
+PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernels
 BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held at a time, bytes of a cell
 MATRICES = 6  # of the axial elements of the finer mesh, of a rotor, of the modes of a shaft
-SAMPLE_s, SAMPLE_B = 3.3e-7, 25.0  # to write an output time and to look at it again
+SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
 SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how many forms
+KEPT = 2.1  # how often all samples are in memory: in the run, and in the file that it is about to write
+HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
 
 
-def compile_s(case: Case) -> float:
-    """CPU time of the compilation at the first start: of finite-volume films, or of any other."""
-    return COMPILE_CELLS_s if needs_cells(case) else COMPILE_s
+def compile_s(cases: Iterable[Case]) -> float:
+    """CPU time of the compilation at the first start, for each kind of films that the cases have."""
+    return sum(spent for spent, _ in {_compilation(case) for case in cases})
+
+
+def compile_B(case: Case) -> float:
+    """Memory in bytes of a process that compiles the kernels for a case: that of the first start."""
+    return _compilation(case)[1]
+
+
+def _compilation(case: Case) -> tuple[float, float]:
+    """CPU time in s and memory in bytes."""
+    if needs_cells(case):
+        return COMPILE_CELLS
+    return COMPILE_TABLES if case.film.bearing_model or all_clipped(case) else COMPILE_SOLUTIONS
 
 
 def before_s(case: Case, plan: Plan) -> float:
@@ -92,9 +110,8 @@ def memory_B(case: Case, plan: Plan, samples: float) -> float:
     """Largest memory of the process in bytes. samples: number that the run writes."""
     films, n = len(film_places(case)), rotor_size(case)
     found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_freedoms(case)
-    found += SAMPLE_B * samples
-    signals = 2.0 * n + 2.0 * len(case.disks) + 4.0 * films
-    found += 8.0 * COPIES * SAMPLES_HELD * signals
+    signals = signal_count(case)
+    found += 8.0 * signals * (COPIES * SAMPLES_HELD + KEPT * samples)
     if plan.cells is not None:
         around, along = plan.cells
         return found + films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
@@ -103,6 +120,18 @@ def memory_B(case: Case, plan: Plan, samples: float) -> float:
     found += 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
     rows = -math.log(1.0 - LARGEST_ECCENTRICITY) / 0.1
     return found + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
+
+
+def signal_count(case: Case) -> int:
+    """Signals that a run records; with heat at most."""
+    places, floating = film_places(case), rings(case)
+    disks = len(case.disks) + isinstance(case.rotor, JeffcottRotor)
+    found = 2 + 2 * (len(case.bearings) + len(floating) + disks) + len(turning_rings(case))
+    found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
+    found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
+    if case.heat is not None:
+        found += HEAT_SIGNALS * len(places) + WALL_SIGNALS * (1 + len(floating))
+    return found
 
 
 def along_factor(along: int) -> float:

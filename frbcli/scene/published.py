@@ -7,6 +7,7 @@ from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.scene.cell_choice import given_cells
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
 
 PUBLISHED = "quadratic elements, two-phase model as published"  # the form of such a film
@@ -51,8 +52,7 @@ def published_elements(case: Case) -> tuple[tuple[int, int], str]:
     """Elements (around, along) of a section, and why."""
     if case.accuracy.mesh is None:
         return ELEMENTS, "as published"
-    along, around = case.accuracy.mesh
-    return (max(around, FEWEST[0]), max(along, FEWEST[1])), "set in the case"
+    return given_cells(case.accuracy.mesh, FEWEST)
 
 
 def published_decisions(case: Case, elements: tuple[int, int], why: str) -> tuple[tuple[str, str, str], ...]:

@@ -332,4 +332,5 @@ def _row(result: VariantResult) -> dict[str, Any]:
         "micro_steps_per_macro_step": result.run.cost.get("micro_steps_per_macro_step", np.nan),
         "simulated_ms_per_hour": result.run.cost["simulated_ms_per_hour"],
         "film_force_relative": result.run.error["film_force_relative"],
+        "eccentricity_error": result.run.error.get("eccentricity", np.nan),
     }

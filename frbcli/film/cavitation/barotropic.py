@@ -50,7 +50,7 @@ class Barotropic(Law):
         Key("liquid_sound_speed", 1400.0, "c_l, in the oil", "1400 m/s", unit="m/s", above=0.0),
         Key("vapour_sound_speed", 350.0, "c_v, in its vapour or gas", "350 m/s", unit="m/s", above=0.0),
     )
-    cost = 1.5
+    cost = 2.0
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:

@@ -29,6 +29,7 @@ class Elrod(Law):
     )
     starves = True
     empties = True
+    fronts = 2.3
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:

@@ -81,7 +81,8 @@ class Law:
     empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
     whether a source keeps the pressure from falling below p_cav; published_form: whether it has a published form, on
     quadratic elements.
-    order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law.
+    order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law;
+    fronts: steps that the fronts of oil in a film without inflow need over those of the two-phase law.
     compared: values of keys that the picture of theta(p) shows beside those of the case.
     """
 
@@ -103,6 +104,7 @@ class Law:
     published_form: ClassVar[bool] = False
     order: ClassVar[float] = FRONTS
     cost: ClassVar[float] = 1.0
+    fronts: ClassVar[float] = 1.0
     compared: ClassVar[tuple[tuple[str, tuple[float, ...]], ...]] = ()
 
     @classmethod

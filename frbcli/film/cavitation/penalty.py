@@ -45,6 +45,7 @@ class Penalty(Law):
     conserves = False
     keeps_oil = False
     tabulated = True
+    cost = 1.2
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:

@@ -23,7 +23,7 @@ class Reynolds(Law):
     conserves = False
     keeps_oil = False
     holds_cavity = True
-    cost = 0.8
+    cost = 1.0
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         full = w > 0.0

@@ -19,7 +19,7 @@ class Sommerfeld(Law):
     keeps_oil = False
     cavitates = False
     closed = True
-    cost = 0.7
+    cost = 1.0
 
     def cells(self, w: Array, scales: Scales) -> CellState:
         zero, one = np.zeros_like(w), np.ones_like(w)

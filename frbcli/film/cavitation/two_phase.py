@@ -52,7 +52,7 @@ class TwoPhase(Law):
     )  # fmt: skip
     starves = True
     published_form = True
-    cost = 0.85
+    cost = 1.1
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
