@@ -48,12 +48,19 @@ _COMMON: dict[str, dict[str, float]] = {
 }
 _CELSIUS = {"degC": 273.15, "°C": 273.15}  # K
 
-_TEXT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+_TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
+LONGEST_UNIT = 100  # characters; longer ones are not searched
+LONGEST_SHOWN = 40  # characters of a unit in a fault
 # A product of names with one-digit powers, perhaps over one in brackets: all that a case needs, and nothing that pint
-# could be kept busy with.
-_FACTOR = r"(?:1|[A-Za-zµμ°]{1,20})(?:(?:\^|\*\*)[+-]?\d)?"
+# could be kept busy with. It fails on a power of 0.
+_FACTOR = r"(?:1|[A-Za-zµμ°]{1,20})(?:(?:\^|\*\*)[+-]?[1-9])?"
 _PRODUCT = rf"{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,7}}"
 _UNIT = re.compile(rf"{_PRODUCT}(?:\s*/\s*\({_PRODUCT}\))?")
+_NAME = re.compile(r"[A-Za-zµ°]+")
+# To pint some of them are units of their own, such as the atomic mass unit u and Boltzmann's constant k.
+_PREFIXES = frozenset(("y", "z", "f", "p", "n", "u", "µ", "c", "da", "k", "M", "G", "E", "Z", "Y"))
+_BEFORE_BLANK = re.compile(rf"(?<![A-Za-zµ°])({'|'.join(sorted(_PREFIXES))}|[mdhTP])\s+(?=[A-Za-z])")
+_ABBREVIATION = 4  # characters at most: an s behind it is no plural, but may be a second
 _SPELLING = str.maketrans({"²": "^2", "³": "^3", "·": "*", "⋅": "*", "μ": "µ"})
 
 # What people read, by SI unit: (name, SI value of one, SI value from which it is used), smallest first.
@@ -94,18 +101,22 @@ def quantity(given: object, unit: str, example: str = "") -> float:
         return _finite(given, remedy)
     if not isinstance(given, str):
         raise ValueFault("is not a quantity.", remedy)
-    parts = _TEXT.fullmatch(given)
+    parts = _TEXT.fullmatch(given.strip())
     if parts is None:
         raise ValueFault("is not a number with a unit.", remedy)
-    number, unit_text = parts.groups()
-    return _finite(_to_si(_finite(number, remedy), unit_text.translate(_SPELLING), unit, remedy), remedy)
+    number, unit_text = parts[1], " ".join(parts[2].translate(_SPELLING).split())
+    value = _finite(number, remedy)
+    si = _finite(_to_si(value, unit_text, unit, remedy), remedy)
+    if si == 0.0 and re.search("[1-9]", re.split("[eE]", number)[0]):
+        raise ValueFault("is too small a number.", remedy)
+    return si
 
 
 def display(value: float, unit: str) -> str:
     """An SI value as engineers write it: display(35e-6, "m") is "35 um"."""
     choices = _DISPLAY.get(unit, ((unit, 1.0, 0.0),))
     fitting = [(name, one) for name, one, from_ in choices if abs(value) * (1 + 1e-9) >= from_]
-    name, one = fitting[-1] if value else choices[-1][:2]
+    name, one = fitting[-1] if value else next((each for each in choices if each[1] == 1.0), choices[-1])[:2]
     return f"{value / one:.6g} {name}".rstrip()
 
 
@@ -128,7 +139,7 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         if key == "":
             raise ValueFault("has no unit.", remedy)
         known = ", ".join(name for name in factors if name) if unit != NUMBER else "no unit, or %"
-        raise ValueFault(f'has the unit "{unit_text}", which does not fit here.', f"{remedy} Known: {known}.")
+        raise ValueFault(f'has the unit "{_shown(unit_text)}", which does not fit here.', f"{remedy} Known: {known}.")
     if unit_text == "":
         raise ValueFault("has no unit.", remedy)
     if unit_text == readable(unit):
@@ -136,16 +147,43 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
     if unit == "K" and unit_text in _CELSIUS:
         return _round(number + _CELSIUS[unit_text])
     factor = _COMMON.get(unit, {}).get(unit_text)
-    return _round(_by_pint(number, unit_text, unit, remedy) if factor is None else number * factor)
+    if factor is not None:
+        return _round(number * factor)
+    if len(unit_text) > LONGEST_UNIT:
+        raise ValueFault(f'has a unit that cannot be read: "{_shown(unit_text)}".', remedy)
+    try:
+        return _round(_by_pint(number, unit_text, unit, remedy))
+    except ValueFault as fault:
+        joined = _BEFORE_BLANK.sub(r"\1", unit_text, count=1)
+        if joined == unit_text or not _reads(number, joined, unit):
+            raise
+        raise ValueFault(fault.problem, f'Write "{number:.15g} {joined}": no blank after a prefix.') from None
+
+
+def _reads(number: float, unit_text: str, unit: str) -> bool:
+    try:
+        _to_si(number, unit_text, unit, "")
+    except ValueFault:
+        return False
+    return True
+
+
+def _shown(unit_text: str) -> str:
+    return unit_text if len(unit_text) <= LONGEST_SHOWN else f"{unit_text[:LONGEST_SHOWN]}..."
 
 
 def _by_pint(number: float, unit_text: str, unit: str, remedy: str) -> float:
     if not _UNIT.fullmatch(unit_text):
-        raise ValueFault(f'has a unit that cannot be read: "{unit_text[:40]}".', remedy)
+        raise ValueFault(f'has a unit that cannot be read: "{_shown(unit_text)}".', remedy)
+    names = _NAME.findall(unit_text)
+    if prefix := next((name for name in names if name in _PREFIXES), None):
+        raise ValueFault(f'has the unit "{unit_text}", in which "{prefix}" is a prefix without a unit.', remedy)
     import pint
 
     registry = _registry()
     try:
+        for name in names:
+            _require_unit(registry, name.replace("°C", "degC"), remedy)
         return float(registry.Quantity(number, unit_text.replace("°C", "degC")).to(unit).magnitude)
     except pint.DimensionalityError:
         raise ValueFault(
@@ -153,8 +191,22 @@ def _by_pint(number: float, unit_text: str, unit: str, remedy: str) -> float:
         ) from None
     except pint.UndefinedUnitError:
         raise ValueFault(f'has the unit "{unit_text}", which is not known.', remedy) from None
-    except (pint.PintError, ArithmeticError, ValueError, TypeError, AttributeError):
+    except ValueFault:
+        raise
+    except (pint.PintError, ArithmeticError, ValueError, TypeError, AttributeError, LookupError):
         raise ValueFault(f'has the unit "{unit_text}", which does not fit here.', remedy) from None
+
+
+def _require_unit(registry: pint.UnitRegistry[float], name: str, remedy: str) -> None:
+    """Raises ValueFault for names that pint knows and that change nothing, or something else than they say: angles
+    and shares, which it counts as numbers, so that 1 rpm would be 2 pi / 60 1/s; the plural of an abbreviation."""
+    known = registry.parse_unit_name(name)
+    if not known:
+        return
+    if not registry.get_dimensionality(name) or "radian" in dict(registry.get_root_units(name)[1]._units):
+        raise ValueFault(f'has "{name}" in its unit, which is an angle or a plain number.', remedy)
+    if name.endswith("s") and len(name) <= _ABBREVIATION + 1 and registry.parse_unit_name(name[:-1]) == known:
+        raise ValueFault(f'has "{name}" in its unit, which is no unit.', f'{remedy} "{name[:-1]}" has no plural.')
 
 
 def _round(value: float) -> float:

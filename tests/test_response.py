@@ -13,7 +13,8 @@ import pytest
 from frbcli.analysis.order_tracking import order_track
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
-from frbcli.linear.response import Response, response, unbalance_motion
+from frbcli.cycles.limit_cycles import limit_cycles
+from frbcli.linear.response import DOUBTFUL, Response, larger_semi_axis, response, unbalance_motion
 from frbcli.plot.response import response_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.rigid import rigid_rotor
@@ -124,6 +125,68 @@ def test_the_picture_has_the_orbits_at_the_largest_amplitude_and_the_highest_spe
         for number, curve in enumerate(panel.lines[::2]):
             reach = np.hypot(*curve.get_data()).max()
             assert reach == pytest.approx(1e6 * jeffcott.amplitude[speed, number], rel=1e-3)
+
+
+# --- motions that linear coefficients do not describe ---
+
+
+@pytest.mark.parametrize(("unbalance", "kinds"), [
+    ("3 g*mm", {"linear"}), ("60 g*mm", {"linear", "doubtful"}), ("400 g*mm", {"linear", "doubtful", "beyond-gap"}),
+])  # fmt: skip
+def test_motions_beyond_the_gap_are_told(
+    unbalance: str, kinds: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In table, JSON, CSV and picture, by the eccentricity on the orbit about the resting position."""
+    monkeypatch.chdir(tmp_path)
+    words = ["response", "jeffcott", "--set", "film.theory=short", "--set", f"rotor.unbalance={unbalance}"]
+    assert frb([*words, "--json", "--csv", "t.csv", "--no-picture"]) == 0
+    said = capsys.readouterr()
+    document = json.loads(said.out)
+    assert {point["validity"] for point in document["points"]} == kinds
+    largest = max(film["eccentricity_max"] for film in document["films"])
+    for mark, kind in (("?: doubtful at", "doubtful"), ("!: not possible at", "beyond-gap")):
+        assert (mark in said.err) == (kind in kinds)
+    assert ("up to an eccentricity of" in said.err.replace("\n", " ")) == (largest >= 1.0)
+    assert max(map(len, said.err.splitlines())) <= 80
+    rows = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
+    assert {row["validity"] for row in rows} == kinds
+    found = response(load_case("jeffcott", ["film.theory=short", f"rotor.unbalance={unbalance}"]))
+    amplitude = response_figure(found).axes[0]
+    assert len(amplitude.patches) >= len(kinds - {"linear"})
+    gap = [line for line in amplitude.lines if line.get_label() == "clearance"]
+    assert [float(line.get_ydata()[0]) for line in gap] == ([35.0] if kinds != {"linear"} else [])
+
+
+def test_the_largest_eccentricity_is_that_of_the_orbit_about_the_resting_position() -> None:
+    found = response(load_case("jeffcott", ["film.theory=short", "rotor.unbalance=200 g*mm"]), [60.0, 90.0])
+    for number, point in enumerate(found.resting):
+        orbit = found.orbit(number, found.points.index("journal"), 720) / 35e-6
+        places = orbit + point.films[0].displacement
+        assert found.eccentricity_max[number, 0] == pytest.approx(np.hypot(*places.T).max(), rel=1e-4)
+        left = 1.0 - point.films[0].eccentricity
+        assert found.gap_share[number, 0] == pytest.approx(np.hypot(*orbit.T).max() / left, rel=1e-4)
+
+
+@pytest.mark.parametrize(("name", "unbalance", "to_Hz"), [
+    ("jeffcott", 60, 170), pytest.param("jeffcott", 100, 170, marks=pytest.mark.nightly),
+    pytest.param("rigid", 100, 160, marks=pytest.mark.nightly),
+])  # fmt: skip
+def test_linear_amplitudes_hold_up_to_the_share_of_the_gap_that_is_called_doubtful(
+    name: str, unbalance: int, to_Hz: float
+) -> None:
+    """Against the nonlinear synchronous response: 4 % up to a tenth of the gap that is left, 15 % up to DOUBTFUL."""
+    case = load_case(name, ["film.theory=short", f"rotor.unbalance={unbalance} g*mm", f"speed.to={to_Hz} Hz"])
+    nonlinear = limit_cycles(case).synchronous
+    found = response(case, [point.speed_Hz for point in nonlinear])
+    for number, speed in enumerate(found.speeds_Hz):
+        for point in nonlinear:
+            if point.speed_Hz != pytest.approx(speed, rel=1e-12):
+                continue
+            share = found.gap_share[number, 0]
+            linear = larger_semi_axis(found.in_films[number, 0])
+            error = abs(2.0 * larger_semi_axis(point.harmonics[1, 0]) / linear - 1.0)
+            assert error < (0.04 if share < 0.1 else 0.15 if share < DOUBTFUL else math.inf)
+    assert found.gap_share.max() > DOUBTFUL
 
 
 def test_a_mass_conserving_film_has_no_linear_response(capsys: pytest.CaptureFixture[str]) -> None:

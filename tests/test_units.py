@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+import time
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frbcli import units
+from frbcli.case.quantities import Quantity
 from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity
 
 
@@ -69,6 +71,28 @@ def test_bare_numbers_are_si(unit: str) -> None:
         ("5 Hz", ANGLE, "does not fit"),
         ("5 1/s", SPEED, "does not fit"),  # revolutions or radians?
         ("10 degC", TEMPERATURE_DIFFERENCE, "cannot be turned into K"),
+        ("35 u m", "kg*m", '"u" is a prefix without a unit'),  # to pint the atomic mass unit
+        ("1 k", "J/K", '"k" is a prefix without a unit'),  # Boltzmann's constant
+        ("35 u", "kg", '"u" is a prefix without a unit'),
+        ("35 µ", "m", '"µ" is a prefix without a unit'),
+        ("1 c", "m/s", '"c" is a prefix without a unit'),
+        ("1 mPas", "Pa", '"mPas" in its unit, which is no unit'),  # the plural of mPa
+        ("60 rpm", "1/s", "an angle or a plain number"),  # 6.28 by radians
+        ("1 pi m", "m", "an angle or a plain number"),
+        ("1 rad m", "m", "an angle or a plain number"),
+        ("1 m^0", "m", "cannot be read"),  # a KeyError of pint
+        ("1 degC^0", "K", "cannot be read"),
+        ("1 m**-1/2", "m", "cannot be read"),
+        ("1 degC*m", "m", "cannot be turned into m"),
+        ("1e-400 m", "m", "too small"),
+        ("1e-320 nm", "m", "too small"),
+        ("1 m^9999999999", "m", "cannot be read"),
+        ("1" * 100_000 + " m", "m", "finite"),
+        ("1 " + "m" * 100_000, "m", "cannot be read"),
+        ("1 " + "m*" * 50_000, "m", "cannot be read"),
+        ("1 a" + " " * 100_000 + "b", "m", "cannot be turned into m"),
+        ("1 m" + " " * 100_000 + "!", "m", "cannot be read"),
+        ("1 " + "x" * 100_000, SPEED, "does not fit"),
         ("3 m^^2", "m", "cannot be read"),
         ("2 m^99999999", "m", "cannot be read"),
         ("about 3 mm", "m", "not a number"),
@@ -84,10 +108,41 @@ def test_bare_numbers_are_si(unit: str) -> None:
     ],
 )
 def test_faults_say_what_is_wrong_and_what_to_write(given: object, unit: str, problem: str) -> None:
+    begun = time.process_time()
     with pytest.raises(ValueFault) as caught:
         quantity(given, unit, "20 mm")
+    assert time.process_time() - begun < 2.0  # the first one loads the registry
     assert problem in caught.value.problem
     assert '"20 mm"' in caught.value.remedy
+    assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize(
+    ("given", "unit", "better"),
+    [("35 u m", "m", "35 um"), ("12 m Pa s", "Pa*s", "12 mPa s"), ("1.5 k N", "N", "1.5 kN"), ("35 m m", "m", "35 mm")],
+)
+def test_a_blank_behind_a_prefix_has_a_remedy_that_reads(given: str, unit: str, better: str) -> None:
+    with pytest.raises(ValueFault) as caught:
+        quantity(given, unit, "20 mm")
+    assert f'Write "{better}"' in caught.value.remedy
+    assert math.isfinite(quantity(better, unit))
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "problem"),
+    [
+        (Quantity("Pa", "210 GPa", above=0), 0.0, "is 0 Pa, but must be greater than 0."),
+        (Quantity("Pa", "210 GPa", above=0), -1.0, "is -1 Pa, but must be greater than 0."),
+        (Quantity(NUMBER, "0.5", most=1), 1.0000000001, "is 1.0000000001, but must be at most 1."),
+        (Quantity("m", "1 mm", below=1e-3), 1.000000001e-3, "is 0.001000000001 m, but must be less than 1 mm."),
+        (Quantity("m", "1 mm", below=1e-3), 1e-3, "is 1 mm, but must be less than 1 mm."),
+        (Quantity("kg*m", "3 g*mm", above=0), 0, "is 0 g*mm, but must be greater than 0."),
+    ],
+)
+def test_a_value_and_its_bound_never_print_alike(kind: Quantity, given: float, problem: str) -> None:
+    with pytest.raises(ValueFault) as caught:
+        kind.read(given)
+    assert caught.value.problem == problem
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from pydantic import AfterValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity
+from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity, readable
 
 _NUMBER_AND_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*\S.*$"
 _NUMBER_ONLY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*%?\s*$"
@@ -51,9 +51,16 @@ class Quantity:
             (self.most is not None and value > self.most, "at most", self.most),
         ):
             if bad and bound is not None:
-                problem = f"is {display(value, self.unit)}, but must be {words} {display(bound, self.unit)}."
-                raise ValueFault(problem, self.as_remedy())
+                told = "0" if bound == 0.0 else display(bound, self.unit)
+                raise ValueFault(f"is {self._beside(value, bound)}, but must be {words} {told}.", self.as_remedy())
         return value
+
+    def _beside(self, value: float, bound: float) -> str:
+        """A value as it is told beside a bound that it is beyond: with all of its digits where both print alike."""
+        shown = display(value, self.unit)
+        if value == bound or shown != display(bound, self.unit):
+            return shown
+        return repr(value) if self.unit == NUMBER else f"{value!r} {readable(self.unit)}"
 
     def as_remedy(self) -> str:
         """The remedy, with an example."""

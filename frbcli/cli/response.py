@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
@@ -20,16 +21,18 @@ from frbcli.errors import Fault, InputError
 if TYPE_CHECKING:
     from frbcli.analysis.order_tracking import OrderTrack
     from frbcli.case.schema import Case
-    from frbcli.linear.response import Response
+    from frbcli.linear.response import Array, Response
     from frbcli.plot.style import Picture
     from frbcli.results.store import Run
 
+COLUMNS = 80
 MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
 EXPLANATION = (
     "um: larger semi-axis of the orbit; deg: phase of the forward motion to the\n"
     "angle of the rotor; growth: of the least damped whirl in 1/s, which hides the\n"
-    "rest where it is above 0."
+    "rest where it is above 0; eps: largest eccentricity of a journal on its orbit."
 )
+MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
 
 
 @click.command()
@@ -82,6 +85,7 @@ def command(
             "case": case.name,
             "points": _points(found),
             "forces": _forces(found),
+            "films": _films(found),
             "critical_speeds_Hz": found.critical_speeds_Hz,
             "picture": picture,
             "csv": csv,
@@ -120,26 +124,69 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
     shown = found.points[:MOST_POINTS]
     every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
     amplitude, phase = 1e6 * found.amplitude, found.phase_deg
+    eccentricity, validity = found.eccentricity_max.max(axis=1), found.validity
     rows = [
         (
             f"{found.speeds_Hz[i]:.4g}",
             *(f"{amplitude[i, j]:.3g} {phase[i, j]:.0f}°" for j in range(len(shown))),
             f"{found.growth[i]:.3g}",
+            f"{eccentricity[i]:.3g}{MARKS[validity[i]]}",
         )
         for i in range(every - 1, len(found.speeds_Hz), every)
     ]
     named = [name.replace("_", " ") for name in shown]
-    terminal.table(found.case.title or found.case.name, ("Hz", *(f"{name} um, deg" for name in named), "growth"), rows)
+    columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", "eps")
+    terminal.table(found.case.title or found.case.name, columns, rows)
     if len(found.points) > len(shown):
         rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
     terminal.result(EXPLANATION)
+    for sentence in _doubts(found):
+        terminal.result(fill(sentence, COLUMNS))
     peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)
     terminal.result(f"Peaks at {peaks} Hz." if peaks else "No peak in the range.")
 
 
+def _doubts(found: Response) -> list[str]:
+    """What is to be said of motions that linear coefficients do not describe."""
+    from frbcli.linear.response import BEYOND_GAP, DOUBTFUL, DOUBTFUL_MOTION
+
+    sentences = []
+    speeds, validity = found.speeds_Hz, found.validity
+    doubtful, beyond = ([s for s, v in zip(speeds, validity, strict=True) if v == kind]
+                        for kind in (DOUBTFUL_MOTION, BEYOND_GAP))  # fmt: skip
+    if doubtful:
+        sentences.append(
+            f"?: doubtful at {_among(doubtful, speeds)}. A journal moves over more than {DOUBTFUL:g} of the gap that "
+            "its resting position leaves: its amplitude may be wrong by more than 15 %."
+        )
+    if beyond:
+        sentences.append(
+            f"!: not possible at {_among(beyond, speeds)}. The orbit of a journal leaves its gap, up to an "
+            f"eccentricity of {found.eccentricity_max.max():.3g}; a run-up with this unbalance tells the motion."
+        )
+    return sentences
+
+
+def _among(some: list[float], speeds: Array) -> str:
+    """Some of the speeds of a response as a reader takes them."""
+    if len(some) == 1:
+        return f"{some[0]:.4g} Hz"
+    return f"{len(some)} of {len(speeds)} speeds, {min(some):.4g} to {max(some):.4g} Hz"
+
+
+def _films(found: Response) -> list[dict[str, object]]:
+    share, eccentricity = found.gap_share, found.eccentricity_max
+    return [
+        {"speed_Hz": speed, "film": film, "gap_share": share[i, j], "eccentricity_max": eccentricity[i, j]}
+        for i, speed in enumerate(found.speeds_Hz)
+        for j, film in enumerate(found.films)
+    ]
+
+
 def _points(found: Response) -> list[dict[str, object]]:
     amplitude, phase, forward, backward = found.amplitude, found.phase_deg, abs(found.forward), abs(found.backward)
+    validity = found.validity
     return [
         {
             "speed_Hz": speed,
@@ -149,6 +196,7 @@ def _points(found: Response) -> list[dict[str, object]]:
             "forward_m": forward[i, j],
             "backward_m": backward[i, j],
             "growth_1_s": found.growth[i],
+            "validity": validity[i],
         }
         for i, speed in enumerate(found.speeds_Hz)
         for j, name in enumerate(found.points)

@@ -10,12 +10,15 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from frbcli.analysis.order_tracking import OrderTrack
-from frbcli.linear.response import Response, larger_semi_axis
+from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, Response, larger_semi_axis
 from frbcli.plot.style import BLACK, COLOURS, GREY, legend_beside, new_figure, styled
 
 Array = NDArray[np.float64]
 MICRO = 1e6
 STABLE, GROWING = "-", (0, (1, 1.5))  # lines of motions that are seen, and of those that a whirl hides
+GAP = (0, (4, 2))  # line of a clearance
+SHADES = {DOUBTFUL_MOTION: 0.12, BEYOND_GAP: 0.3}
+LABELS = {DOUBTFUL_MOTION: "linear coefficients doubtful", BEYOND_GAP: "an orbit leaves its gap"}
 DASHES = ("-", (0, (5, 2)), (0, (5, 1, 1, 1)))  # of more points than there are colours
 
 
@@ -45,6 +48,7 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
         force.set_ylabel("force amplitude of a bearing in N")
         for panel in (phase, force):
             _speed_axis(panel, found)
+            _doubts(panel, found)
         for panel in (amplitude, force):
             panel.set_ylim(bottom=0.0)
         polar.set_aspect("equal", adjustable="datalim")
@@ -66,9 +70,27 @@ def draw_amplitude(axes: Axes, found: Response) -> None:
         _line(axes, found, MICRO * found.amplitude[:, number], *_line_of(number), name.replace("_", " "))
     for critical in found.critical_speeds_Hz:
         axes.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)))
+    if set(found.validity) != {SOUND}:
+        _doubts(axes, found, labelled=True)
+        for number, clearance in enumerate(np.unique(found.clearances, axis=1).T):
+            label = None if number else "clearance"
+            axes.plot(found.speeds_Hz, MICRO * clearance, color=BLACK, linewidth=0.8, linestyle=GAP, label=label)
     axes.set_ylabel("amplitude in µm (larger semi-axis)")
     _speed_axis(axes, found)
     axes.set_ylim(bottom=0.0)
+
+
+def _doubts(axes: Axes, found: Response, labelled: bool = False) -> None:
+    """Shades the speeds at which linear coefficients are doubtful, darker where an orbit leaves its gap."""
+    speeds = found.speeds_Hz
+    edges = np.concatenate([speeds[:1], 0.5 * (speeds[1:] + speeds[:-1]), speeds[-1:]])
+    for kind, depth in SHADES.items():
+        there = np.array([validity == kind for validity in found.validity])
+        begins = np.flatnonzero(there & ~np.insert(there[:-1], 0, False))
+        ends = np.flatnonzero(there & ~np.append(there[1:], False))
+        for number, (begin, end) in enumerate(zip(begins, ends, strict=True)):
+            label = LABELS[kind] if labelled and number == 0 else None
+            axes.axvspan(edges[begin], edges[end + 1], color=GREY, alpha=depth, linewidth=0.0, zorder=0.2, label=label)
 
 
 def _orbits(axes: Axes, found: Response, speed: int) -> None:
