@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 LAW = "law"  # of a case, the others of runs
 FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow")  # of output.signals
 CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", *FILM_SIGNALS)
-PICTURES = (*CURVES, "orbit", "displacement", "summary", LAW)
+SUBJECTS = (*CURVES, "orbit", "displacement", "summary", LAW)
 
 
 @click.command()
 @click.argument("run_files", metavar="RUN.h5...|CASE", type=INPUT, nargs=-1, required=True)
-@click.option("--what", type=click.Choice(PICTURES), default="eccentricity", show_default=True, help="The picture.")
+@click.option("--what", type=click.Choice(SUBJECTS), default="eccentricity", show_default=True, help="The picture.")
 @click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Begin, e.g. "6.4 s".')
 @click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End.")
 @click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
