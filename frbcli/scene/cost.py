@@ -20,7 +20,7 @@ from frbcli.film.grid import CHAIN_MODES, Mesh
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.cell_choice import USUAL, cells_time
-from frbcli.scene.course import STAGES, Course, expected_course, whirl_speed
+from frbcli.scene.course import STAGES, Course, expected_course, runs_nearly_dry, whirl_speed
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.films import film_places
 from frbcli.scene.planned import Plan
@@ -36,6 +36,7 @@ FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 CELLS_FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
 PUBLISHED_COUNT, PUBLISHED_POWER = 288, 1.4
+GROWING = 0.2  # share of a run with films that run nearly dry until their whirl has grown: 0.05 to 0.3 as measured
 # Of a rotor with n degrees of freedom and m coordinates of its journals beyond those of the shipped ones: ns per n^3 of
 # a step, which needs a new inverse now and then, per n^2 of a stage, and per m^3 of an iteration.
 SMALL_ROTOR, INVERSE_ns, PRODUCTS_ns, JOURNALS_ns = 30, 3.6, 3.0, 0.4
@@ -78,6 +79,8 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
 
 def _quiet_share(case: Case, profile: SpeedProfile, course: Course) -> float:
     """Share of the loop before a whirl, for which a run is repeated on fewer cells."""
+    if runs_nearly_dry(case):
+        return GROWING
     whirls = np.abs(profile.speed(course.times)) >= max(whirl_speed(case), 1e-300)
     return course.share(float(course.times[np.argmax(whirls)])) if whirls.any() else 1.0
 
