@@ -21,7 +21,9 @@ from frbcli.bearing_tests import kinematic
 from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
+from frbcli.results.lock import locked
 from frbcli.results.store import Run, read_run
+from frbcli.runs.interrupt import deaf
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
 from frbcli.studies import accuracy as ladder
@@ -555,3 +557,78 @@ def test_a_dollar_in_a_title_is_one(capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(words) == 0
     assert capsys.readouterr().err == ""
     assert r"$\nonsense$ for 5 $" in Path("a.svg").read_text()
+
+
+# --- signals ---
+
+SWALLOWING = """
+import sys, types, time, signal
+from pathlib import Path
+Path("swallowing.py").write_text('''
+import signal, time
+try:
+    signal.raise_signal(signal.SIGTERM)
+    time.sleep(0.05)
+except BaseException:
+    print("dropped", flush=True)
+''')
+sys.path.insert(0, "")
+import frbcli.case.shipped as shipped
+def slow():
+    import swallowing
+    time.sleep(60.0)
+    return {}
+shipped.shipped_cases = slow
+"""
+
+
+def test_a_library_that_is_imported_drops_no_signal() -> None:
+    with process(SWALLOWING, "cases") as one:
+        out, err = one.communicate(timeout=30.0)
+    assert (one.returncode, out, err.strip()) == (130, "", "interrupted")
+
+
+def test_a_run_hears_an_interruption_that_was_dropped_before_it() -> None:
+    class Asked:
+        asked = signal.SIGTERM
+
+        def __call__(self, *_: object) -> None:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, Asked())
+    try:
+        assert runup(load_case("jeffcott", SETTINGS), "run.h5").status == "interrupted"
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def test_processes_of_a_sweep_ignore_what_is_sent_to_all() -> None:
+    numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
+    words = "import signal, sys; print([signal.getsignal(int(n)) == signal.SIG_IGN for n in sys.argv[1:]])"
+    with deaf():
+        done = subprocess.run([sys.executable, "-c", words, *(str(int(n)) for n in numbers)],
+                              capture_output=True, text=True, check=True)  # fmt: skip
+    assert done.stdout == "[True, True, True]\n"
+    assert [signal.getsignal(n) for n in numbers] != [signal.SIG_IGN] * 3
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_sweep_that_all_its_processes_are_to_end_is_quiet_and_resumes(number: signal.Signals) -> None:
+    words = ["sweep", *QUICK[:3], "--set", "speed.duration=200 s", "--set", "rotor.unbalance=1 g*mm,2 g*mm"]
+    with process("", *words, "--jobs", "2", "-o", "study", start_new_session=True) as one:
+        until = time.monotonic() + 60.0
+        while not list(Path("study").glob("runs/*.h5")) and time.monotonic() < until:
+            time.sleep(0.05)
+        time.sleep(0.3)
+        os.killpg(one.pid, number)
+        _, err = one.communicate(timeout=60.0)
+    assert one.returncode == 130
+    lines = [line for line in err.splitlines() if not line.startswith("Compiling")]
+    assert lines == [
+        "Interrupted; the same command resumes the sweep.",
+        "No picture: it needs one or two keys with several values, and a point with a whirl.",
+    ]
+    for run in Path("study/runs").glob("*.h5"):
+        with locked(run):  # nobody writes it any more
+            assert read_run(run).status == "interrupted"

@@ -10,7 +10,8 @@ import signal
 import sys
 from _thread import interrupt_main
 from contextlib import suppress
-from threading import Timer
+from threading import Timer, main_thread
+from time import monotonic
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn
 
@@ -21,19 +22,34 @@ from frbcli.runs.interrupt import SIGNALS
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
-AGAIN_s = 0.01
+AGAIN_s, WITHIN_s = 0.01, 10.0
+IMPORTS = "<frozen importlib._bootstrap>"  # where Python imports a module
 
 
 class Interruption:
-    """What the signals do. asked: the one that came, 0 if none did."""
+    """What the signals do. asked: the one that came, 0 if none did.
+
+    An import is not interrupted, at least not for WITHIN_s: libraries drop what is raised there, or show it and raise
+    something else.
+    """
 
     def __init__(self) -> None:
         self.asked = 0
+        self._until = 0.0
 
-    def __call__(self, number: int, _frame: FrameType | None) -> NoReturn:
+    def __call__(self, number: int, frame: FrameType | None) -> None:
         """The handler of the signals."""
-        self.asked = number
+        if not self.asked:
+            self.asked, self._until = number, monotonic() + WITHIN_s
+        if _imports(frame) and monotonic() < self._until:
+            self._again()
+            return
         raise KeyboardInterrupt
+
+    def _again(self) -> None:
+        again = Timer(AGAIN_s, _send, [self.asked])
+        again.daemon = True
+        again.start()
 
     def listen(self) -> None:
         """Take the signals that are not ignored, as SIGHUP is under nohup."""
@@ -45,9 +61,24 @@ class Interruption:
     def _unraisable(self, lost: UnraisableHookArgs) -> None:
         """Handles exceptions that cannot be caught, as in a callback or in the destructor of a library."""
         if isinstance(lost.exc_value, KeyboardInterrupt):  # it was dropped there: again, where it is heard
-            Timer(AGAIN_s, interrupt_main, [self.asked]).start()
+            self._again()
         elif not self.asked:  # incomplete objects of an interruption fail when they are destroyed
             sys.__unraisablehook__(lost)
+
+
+def _send(number: int) -> None:
+    """Interrupt the main thread, also where it waits."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(main_thread().ident or 0, number)
+    else:
+        interrupt_main(signal.Signals(number))
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether a frame runs within an import."""
+    while frame is not None and frame.f_code.co_filename != IMPORTS:
+        frame = frame.f_back
+    return frame is not None
 
 
 def main() -> NoReturn:

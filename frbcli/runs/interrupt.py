@@ -45,12 +45,14 @@ def held_back() -> Iterator[Interrupt]:
     """Within it, Ctrl-C only sets `asked`, which the caller reads when the state is consistent.
 
     So do other signals that are to end the process, where it has a handler for them, as the command line does. Only the
-    main thread is interrupted, and only by what is not ignored altogether (as under nohup).
+    main thread is interrupted, and only by what is not ignored altogether (as under nohup). A handler that was `asked`
+    before, whose interruption a library has dropped, has not been heard yet.
     """
     interrupt = Interrupt()
     before = {number: handler for number in SIGNALS if callable(handler := signal.getsignal(number))}
     if threading.current_thread() is not threading.main_thread():
         before = {}
+    interrupt.asked = any(getattr(handler, "asked", 0) for handler in before.values())
     for number in before:
         signal.signal(number, interrupt.ask)
     try:
