@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Sequence
 
 from frbcli.case.machine_keys import machine_fault
 from frbcli.case.schema import Case
@@ -15,7 +15,9 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
 
 KEPT = 64  # machines
-NUMBER = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*")
+LONGEST_SHOWN = 40  # characters of a value in a fault
+REMEDY = 'Write e.g. "40 um".'
+NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)(.*)", re.DOTALL)
 
 
 class Family:
@@ -78,7 +80,7 @@ def positive_range(case: Case, key: str, low: str, high: str) -> tuple[float, fl
 
 def _number(key: str, text: str) -> tuple[float, str]:
     """A number and its unit."""
-    found: Sequence[str] | None = None if (match := NUMBER.fullmatch(text)) is None else match.groups()
-    if found is None:
-        raise InputError(key, (Fault(key, text, None, "is no number with a unit.", 'Write e.g. "40 um".'),))
-    return float(found[0]), found[1]
+    found = NUMBER.fullmatch(text.strip())
+    if found is None or not math.isfinite(float(found[1])):
+        raise InputError(key, (Fault(key, text[:LONGEST_SHOWN], None, "is no number with a unit.", REMEDY),))
+    return float(found[1]), found[2].strip()

@@ -1,0 +1,184 @@
+"""Give cases with two nasty values each to every command that takes a case, and tell what came of it.
+
+`python -W error nasty_pairs.py FOLDER SEED...` writes a line of JSON for each seed: the command, its exit code and CPU
+time, and what is bad about it. A run that `frb check` expects to take long is not begun.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import io
+import json
+import os
+import random
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+
+import numpy as np
+
+from frbcli.case.listing import values
+from frbcli.case.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.errors import FrbError
+from frbcli.runs.run import run_cost
+
+LONGEST_RUN_s = {"runup": 5.0, "rundown": 5.0, "compare": 2.0, "fit": 0.2, "accuracy": 0.2}  # expected, of one run-up
+LONGEST_s = 90.0  # of CPU time
+CODES = (0, 2, 3)
+
+SHORT_RUN = ("speed.from=20 Hz", "speed.to=60 Hz", "speed.duration=0.1 s", "speed.hold=0.02 s",
+             "speed.down_duration=0.1 s", "output.step=1 ms", "accuracy.target=0.02",
+             'confirm=["surface-speed", "gap-growth", "clearance"]')  # fmt: skip
+MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz", periods = 1 }'
+BASES: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("jeffcott", ("film.theory=short",)),
+    ("jeffcott", ()),
+    ("jeffcott", ("film.cavitation=reynolds", "accuracy.mesh=[4, 24]")),
+    ("rigid", ("film.theory=short", "contact.policy=elastic", "contact.stiffness=1e8 N/m")),
+    ("rigid-two-phase", ("accuracy.mesh=[4, 24]",)),
+    ("jeffcott", ('bearing.supply={kind="bores", count=3, diameter="3 mm", pressure="2 bar"}',
+                  "film.cavitation=penalty", "accuracy.mesh=[6, 32]")),
+    ("jeffcott", ("film.theory=short", 'thermal={ model="lumped", supply_temperature="60 degC" }',
+                  'oil.viscosity={ grade="SAE 10W-40" }')),
+    ("floating-ring", ()),
+    ("turbocharger-car", ()),
+)  # fmt: skip
+COMMANDS: tuple[tuple[str, ...], ...] = (
+    ("check", "CASE", "--all"),
+    ("rotation", "CASE", "-o", "OUT.png"),
+    ("rotation", "CASE", "--cavitation", "half-sommerfeld,elrod", "--no-picture"),
+    ("squeeze", "CASE", "--no-picture"),
+    ("whirl", "CASE", "--no-picture"),
+    ("runup", "CASE", "-o", "OUT.h5"),
+    ("rundown", "CASE", "-o", "OUT.h5"),
+    ("compare", "CASE", "--cavitation", "half-sommerfeld,sommerfeld", "-o", "OUT.png"),
+    ("bearing", "CASE", "--speed", "50 Hz", "-o", "OUT.png", "--csv", "OUT.csv"),
+    ("bearing", "CASE", "--speed", "50 Hz", "--load", "30 N", "--no-picture"),
+    ("bearing", "CASE", "--over", "eccentricity", "--no-picture"),
+    ("fit", "CASE", "--measured", "measured.csv", "--x", "x", "--y", "y", "--time", "t", "--speed", "n",
+     "--clearance", "35 um", "--vary", "bearing.clearance", "--no-picture"),
+    ("stability", "CASE", "-o", "OUT.png"),
+    ("stability", "CASE", "--shapes", "50 Hz", "-o", "OUT.png"),
+    ("stability", "CASE", "--stiffness", "5e6 N/m", "-o", "OUT.png"),
+    ("response", "CASE", "-o", "OUT.png", "--csv", "OUT.csv"),
+    ("response", "CASE", "--map", "-o", "OUT.png"),
+    ("limit-cycles", "CASE", "-o", "OUT.png"),
+    ("limit-cycles", "CASE", "--over", "bearing.clearance", "--from", "30 um", "--to", "40 um", "--no-picture"),
+    ("accuracy", "CASE", "--until", "20 ms", "-o", "OUT.png"),
+    ("sweep", "CASE", "--set", "rotor.unbalance=1 g*mm,2 g*mm", "--stability", "--jobs", "1", "-o", "OUT-sweep"),
+    ("plot", "CASE", "--what", "law", "-o", "OUT.png"),
+)  # fmt: skip
+FACTORS = (0.0, -1.0, 1e-12, 1e-6, 1e-3, 0.01, 0.1, 0.3, 0.9, 1.1, 3.0, 10.0, 100.0, 1e3, 1e6, 1e12)
+PLAIN = (0.0, -0.0, -1.0, 1e-15, 1e-9, 1e-3, 1.0, 0.999999, 1e3, 1e15)
+WORDS = ("", "nan", "[]", "true", "1e400 m", "35 u m", "elrod", "none", "auto", "3", "{ kind = 'none' }")
+
+
+class TooLong(BaseException):
+    """A command took longer than it may."""
+
+
+def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
+    """A command, its case, and the settings with two nasty values."""
+    chance = random.Random(seed)
+    command = COMMANDS[seed % len(COMMANDS)]
+    source, settings = BASES[chance.randrange(len(BASES))]
+    if "--stiffness" in command and chance.random() < 0.8:
+        source, settings = BASES[-1]
+    settings = (*settings, *SHORT_RUN, MOTION)
+    known = [value for value in _base(source, settings) if value.key.partition(".")[0] not in ("name", "title")]
+    numbers = [value for value in known if isinstance(value.value, float)]
+    nasty = []
+    for value in chance.sample(numbers if chance.random() < 0.8 else known, 2):
+        if isinstance(value.value, str) or chance.random() < 0.05:
+            nasty.append(f"{value.key}={chance.choice(WORDS)}")
+        elif isinstance(value.value, int):
+            nasty.append(f"{value.key}={chance.choice((0, 1, 2, 3, 100, 10**6))}")
+        else:
+            number = value.value * chance.choice(FACTORS) if chance.random() < 0.8 else chance.choice(PLAIN)
+            nasty.append(f"{value.key}={number!r}")
+    return command, source, [*settings, *nasty]
+
+
+@functools.cache
+def _base(source: str, settings: tuple[str, ...]) -> tuple[values, ...]:  # type: ignore[valid-type]
+    return values(load_case(source, settings))
+
+
+def _too_long(_signal: int, _frame: FrameType | None) -> None:
+    raise TooLong
+
+
+def _is_long(command: str, source: str, settings: list[str]) -> bool:
+    """Whether a command makes run-ups that `frb check` expects to take long."""
+    if command not in LONGEST_RUN_s:
+        return False
+    try:
+        case: Case = load_case(source, settings)
+        return run_cost("rundown" if command == "rundown" else "runup", case).total_s > LONGEST_RUN_s[command]
+    except FrbError:
+        return False
+
+
+@contextlib.contextmanager
+def _bound(seconds: float) -> Iterator[None]:
+    before = signal.signal(signal.SIGPROF, _too_long)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def tried(seed: int) -> dict[str, object]:
+    """What came of a trial, in the folder of this process."""
+    command, source, settings = trial(seed)
+    words = [source if word == "CASE" else word for word in command]
+    words += [word for setting in settings for word in ("--set", setting)]
+    told: dict[str, object] = {"seed": seed, "words": words, "code": None, "bad": ""}
+    out, said = io.StringIO(), io.StringIO()
+    begun = time.process_time()
+    try:
+        with _bound(LONGEST_s), contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
+            if _is_long(command[0], source, settings):
+                return told | {"code": "long", "cpu_s": time.process_time() - begun}
+            code = frb(words)
+        told["code"] = code
+        if code not in CODES:
+            told["bad"] = said.getvalue()[-2000:]
+        elif code and "frb:" not in said.getvalue() and not out.getvalue() + said.getvalue():
+            told["bad"] = "says nothing"
+    except TooLong:
+        told["bad"] = f"takes more than {LONGEST_s:g} s"
+    except BaseException:
+        told["bad"] = traceback.format_exc()[-3000:]
+    return told | {"cpu_s": time.process_time() - begun}
+
+
+def measured(path: Path) -> None:
+    """A measurement of nothing in particular, over the speeds of the bases."""
+    t = np.linspace(0.0, 2.0, 4_001)
+    speed = 20.0 + 20.0 * t
+    angle = 2.0 * np.pi * (20.0 * t + 10.0 * t**2)
+    table = np.stack([t, speed, 5e-6 * np.cos(angle), 5e-6 * np.sin(angle)], axis=1)
+    np.savetxt(path, table, delimiter=",", header="t,n,x,y", comments="")
+
+
+def main(folder: str, seeds: list[str]) -> None:
+    """A line of JSON for each seed."""
+    os.chdir(folder)
+    measured(Path("measured.csv"))
+    for seed in seeds:
+        sys.stdout.write(json.dumps(tried(int(seed))) + "\n")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2:])
