@@ -1,4 +1,4 @@
-"""Pairs of nasty values in every command that takes a case: done, refused, or ended early with a reason; no traceback."""
+"""Pairs of nasty values in every command that takes a case: done, refused, or ended early with a reason."""
 
 from __future__ import annotations
 
