@@ -172,6 +172,14 @@ def test_whirl_that_ends_has_an_offset() -> None:
     assert offset.frequency_ratio == pytest.approx(onset.frequency_ratio, abs=0.01)
 
 
+@pytest.mark.parametrize(("begins_s", "seen"), [(0.0, [3.0]), (-1.0, [-0.5, 3.0]), (1e9, [])])
+def test_a_clearance_that_changed_outside_of_the_run_is_no_event(begins_s: float, seen: list[float]) -> None:
+    columns = signals(Rotor(critical_Hz=None, whirl_s=None, step_s=1e-3))
+    run = as_run(columns | {"time_s": columns["time_s"] + begins_s})
+    run.references.update({"clearance_step_1_s": -0.5, "clearance_step_2_s": 3.0, "clearance_step_3_s": 99.0})
+    assert [event.t_s for event in find_events(run) if event.kind == "clearance-step"] == seen
+
+
 def test_a_short_burst_is_no_whirl() -> None:
     columns = signals(Rotor(whirl_s=None))
     burst = 0.3 * CLEARANCE * np.exp(-(((columns["time_s"] - 6.0) / 0.015) ** 2))

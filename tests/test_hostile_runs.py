@@ -24,6 +24,8 @@ LONGEST_CPU_s = 10.0
 MOST_MB = 500.0
 BATCH_s = 600.0
 GATE, NIGHTLY = 2, 32  # files of each kind
+# What broke the summary once: times of 1e-300 s, a whirl ratio of 1e300, a clearance that changed before the run.
+BROKE = ("times:26", "events:31", "record_values:31")
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +78,7 @@ def tried(folder: Path, commands: str, names: Sequence[str]) -> None:
 
 
 def test_a_hostile_run_file_is_refused_or_read(bases: Path) -> None:
-    tried(bases, "few", [f"{kind}:{seed}" for kind in KINDS for seed in range(GATE)])
+    tried(bases, "few", [f"{kind}:{seed}" for kind in KINDS for seed in range(GATE)] + list(BROKE))
 
 
 @pytest.mark.nightly

@@ -12,9 +12,13 @@ import pytest
 from scipy.io import savemat, wavfile
 from synthetic_run import CLEARANCE, Rotor, signals
 
-from frbcli.analysis.measured import Measurement, measured_run, tacho_speed
+from frbcli.analysis.measured import Measurement, measured_run
+from frbcli.analysis.tacho import tacho_speed
+from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
+from frbcli.results.store import Run
+from frbcli.runs.run import runup
 
 STEP_s = 2e-4
 NOISE = np.random.default_rng(0)
@@ -101,6 +105,55 @@ def test_the_command_draws_a_measurement(
     assert frb(["waterfall", str(path), *columns, "--order", "1,0.5", "-o", str(picture), "--quiet"]) == 0
     one = ["--x", "x", "--rate", "5000", "--speed-at", "100 Hz", "--clearance", "35 um"]
     assert frb(["waterfall", str(path), *one, "-o", str(picture), "--quiet"]) == 0
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Path]:
+    """A run-up of the Jeffcott rotor through critical speed and onset, and the table that frb exports of it."""
+    folder = tmp_path_factory.mktemp("exported")
+    settings = ("speed.from=100 Hz", "speed.to=190 Hz", "speed.duration=4 s", "output.step=0.2 ms")
+    run = runup(load_case("jeffcott", [*settings, "rotor.unbalance=40 g*mm"]), folder / "run.h5")
+    assert frb(["export", str(run.path), "-o", str(folder / "own.csv"), "--quiet"]) == 0
+    return run, folder / "own.csv"
+
+
+def columns_of(point: str) -> list[str]:
+    axes = ["--x", f"{point}_x_m", "--y", f"{point}_y_m", "--unit", "1 m"]
+    return [*axes, "--time", "time_s", "--speed", "speed_Hz", "--clearance", "35 um"]
+
+
+@pytest.mark.parametrize("point", ["journal", "disk"])
+def test_a_run_and_its_own_table_have_the_same_events_at_the_same_point(
+    point: str, exported: tuple[Run, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """README says so of `frb waterfall`; the critical speed of the journal is not that of the disk."""
+    run, path = exported
+    words = ["--measured", str(path), *columns_of(point), "--signal", point, "-o", str(tmp_path / "a.png"), "--json"]
+    assert frb(["compare", str(run.path), *words]) == 0
+    document = json.loads(capsys.readouterr().out)
+    computed, measured = document["events"]["computed"], document["events"]["measured"]
+    assert [event["kind"] for event in computed] == ["critical-speed", "onset"]
+    for own, other in zip(computed, measured, strict=True):
+        assert (own["kind"], own["point"]) == (other["kind"], other["point"]) == (own["kind"], point)
+        assert other["t_s"] == pytest.approx(own["t_s"], abs=1e-6)
+        assert other["speed_Hz"] == pytest.approx(own["speed_Hz"], abs=1e-6)
+        assert other["frequency_Hz"] == pytest.approx(own["frequency_Hz"], rel=1e-6)
+    assert frb(["waterfall", str(path), *columns_of(point), "-o", str(tmp_path / "a.png"), "--json"]) == 0
+    seen = {event["kind"]: event["speed_Hz"] for event in json.loads(capsys.readouterr().out)["events"]}
+    assert seen == pytest.approx({event["kind"]: event["speed_Hz"] for event in computed}, abs=1e-6)
+    told = {event["kind"]: event for event in run.events if event["point"] == point}
+    assert set(told) == {"disk": {"critical-speed"}, "journal": {"onset"}}[point]
+    for kind, event in told.items():  # the run's own events at this point
+        assert seen[kind] == pytest.approx(event["speed_Hz"], abs=1e-6)
+
+
+def test_a_measurement_of_one_direction_has_no_events_beside_a_run(
+    exported: tuple[Run, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run, path = exported
+    words = ["--measured", str(path), *(word for word in columns_of("journal") if word not in ("--y", "journal_y_m"))]
+    assert frb(["compare", str(run.path), *words, "-o", str(tmp_path / "a.png"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["events"]["measured"] == []
 
 
 @pytest.mark.parametrize(

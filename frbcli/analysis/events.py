@@ -125,10 +125,11 @@ def _near_the_speed(
 
 
 def _clearance_steps(run: RunLike) -> Iterator[Event]:
-    """Changes of a clearance that the run has reached, as possible causes of later events."""
+    """Changes of a clearance between the first and the last sample, as possible causes of later events."""
     count = len(run)
+    begin, end = (signals.piece(run, "time_s", place, place + 1)[0] for place in (0, count - 1))
     for t in signals.clearance_steps(run):
-        if t <= signals.piece(run, "time_s", count - 1, count)[0]:
+        if begin <= t <= end:
             yield Event("clearance-step", None, t, signals.speed_at(run, t), None, None)
 
 

@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+import math
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.signals import Values
+from frbcli.analysis.sampling import even_steps, times
+from frbcli.analysis.signals import Values, joined, located
+from frbcli.analysis.tacho import tacho_speed
 from frbcli.results.measured import Columns, read_columns, wrong_file
+from frbcli.results.records import LARGEST, SMALLEST, wrong_values
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run
+from frbcli.units import SPEED, ValueFault, quantity
 
 MEASURED = "measured"  # the command of such a run
-UNEVEN = 1e-3  # of the step, by which times may be off it; beyond this the signals are interpolated to even steps
-LEAST_PULSES = 3
-REVOLUTIONS = 8  # that a speed is taken over
+SAME = 1e-6  # relative difference of two units that are one
 
 
 @dataclass(frozen=True)
 class Measurement:
     """Where a motion stands in a file. x, y: columns of the displacement of a journal, y may be left out; time: column
-    in s, or rate in samples per second; speed: column in Hz, or speed_Hz a constant one, or tacho the column of a
-    signal with `pulses` per revolution; unit_m: what 1 in x and y is in m; clearance: m, to which amplitudes refer."""
+    of the times, or rate in samples per second; speed: column of the rotor speed, or speed_Hz a constant one, or tacho
+    the column of a signal with `pulses` per revolution; unit_m, time_unit_s, speed_unit_Hz: what 1 in the columns of
+    displacements, times and speeds is; clearance: m, to which amplitudes refer."""
 
     x: str
     clearance: float
@@ -35,6 +40,8 @@ class Measurement:
     tacho: str | None = None
     pulses: int = 1
     unit_m: float = 1.0
+    time_unit_s: float = 1.0
+    speed_unit_Hz: float = 1.0
 
 
 def measured_run(path: Path, given: Measurement) -> Run:
@@ -42,19 +49,15 @@ def measured_run(path: Path, given: Measurement) -> Run:
     Without a y that is zero, and no events are sought: they need both.
 
     A mean is taken from x and y: the zero of a sensor is not the centre of a bearing. Raises InputError for a file that
-    cannot be read, a column that is missing, or times that do not rise.
+    cannot be read or is ragged, a column that is missing or doubtful, times that do not rise or have gaps, and a rotor
+    that turns faster than the samples show.
     """
     columns = read_columns(path)
-    x = given.unit_m * columns[given.x]
-    motion = {"journal_x_m": x, "journal_y_m": np.zeros_like(x) if given.y is None else given.unit_m * columns[given.y]}
-    count = len(x)
-    time = _times(columns, given, count)
-    signals = {"time_s": time, "speed_Hz": _speeds(columns, given, time)}
-    signals |= {name: values - values.mean() for name, values in motion.items()}
-    if any(len(values) != count for values in signals.values()):
-        raise wrong_file(path, "has columns of unequal length.", "Give columns that were measured together.")
-    signals = _even(signals)
-    units = {"time_s": "s", "speed_Hz": "Hz"}
+    if not SMALLEST <= given.clearance <= LARGEST:
+        raise wrong_file(
+            path, f"cannot refer to a clearance of {given.clearance:g} m.", 'Give e.g. --clearance "35 um".'
+        )
+    signals = _signals(columns, given)
     run = Run(
         path=path,
         title=f"{path.stem}, {MEASURED}",
@@ -62,9 +65,9 @@ def measured_run(path: Path, given: Measurement) -> Run:
         case_name=path.stem,
         case_text="",
         versions={},
-        signals={name: Signal(values, units.get(name, "m")) for name, values in signals.items()},
+        signals=signals,
         status="finished",
-        t_end_s=float(signals["time_s"][-1]),
+        t_end_s=float(signals["time_s"].values[-1]),
         events=[],
         cost={},
         error={},
@@ -76,57 +79,94 @@ def measured_run(path: Path, given: Measurement) -> Run:
     return run
 
 
-def tacho_speed(time: Values, signal: Values, pulses: int) -> Values:
-    """(n,) rotor speed in Hz from a signal with so many pulses per revolution, at the times (n,) in s.
-
-    A pulse begins where the signal rises through the middle between its least and its largest value, interpolated
-    between samples. The speed is that over REVOLUTIONS about a pulse, fewer at the ends, as a rectangular pulse is
-    known to a sample only. Raises ValueError if there are too few pulses.
+def events_at(run: Run, point: str, clearance: float) -> list[dict[str, Any]]:
+    """The events of a run that its motion at one point shows, as they are found in a measurement of that: neither other
+    points nor the critical speeds of the linearised machine help. point: "journal", "disk", "journal_NAME" or
+    "disk_NAME"; clearance in m. None where y is zero throughout: it was not measured.
     """
-    level = 0.5 * (signal.min() + signal.max())
-    rises = np.flatnonzero((signal[:-1] < level) & (signal[1:] >= level))
-    if len(rises) < LEAST_PULSES:
-        raise ValueError(f"has {len(rises)} pulses, at least {LEAST_PULSES} are needed.")
-    share = (level - signal[rises]) / (signal[rises + 1] - signal[rises])
-    moments = time[rises] + share * (time[rises + 1] - time[rises])
-    number = np.arange(len(moments))
-    half = max(1, REVOLUTIONS * pulses // 2)
-    first, last = np.maximum(number - half, 0), np.minimum(number + half, len(moments) - 1)
-    speeds = (last - first) / (pulses * (moments[last] - moments[first]))
-    return np.asarray(np.interp(time, 0.5 * (moments[first] + moments[last]), speeds), dtype=np.float64)
+    seen = joined(*located(run, point))
+    if not np.any(run[f"{seen}_y_m"]):
+        return []
+    signals = {"time_s": run.signal("time_s"), "speed_Hz": run.signal("speed_Hz")}
+    signals |= {f"journal_{axis}_m": run.signal(f"{seen}_{axis}_m") for axis in "xy"}
+    alone = replace(run, signals=signals, references={"clearance_m": clearance}, status="finished")
+    return [asdict(replace(event, point=seen)) for event in find_events(alone)]
+
+
+def _signals(columns: Columns, given: Measurement) -> dict[str, Signal]:
+    """The signals of a run at even steps."""
+    used = [name for name in (given.x, given.y, given.time, given.speed, given.tacho) if name is not None]
+    if len({len(columns[name]) for name in used}) > 1:
+        raise wrong_file(columns.path, "has columns of unequal length.", "Give columns that were measured together.")
+    x = _column(columns, given.x, given.unit_m, "m", "--unit")
+    y = np.zeros_like(x) if given.y is None else _column(columns, given.y, given.unit_m, "m", "--unit")
+    time = _times(columns, given, len(x))
+    speed = _speeds(columns, given, time)
+    _check_sampling(columns, given, time, speed)
+    values = even_steps(time, {"speed_Hz": speed, "journal_x_m": x - x.mean(), "journal_y_m": y - y.mean()})
+    units = {"time_s": "s", "speed_Hz": "Hz"}
+    signals = {name: Signal(values[name], units.get(name, "m")) for name in values}
+    wrong = wrong_values(signals)
+    if wrong:
+        raise wrong_file(columns.path, f"gives a {wrong} that no machine has.", "Check the units of its columns.")
+    return signals
+
+
+def _column(columns: Columns, name: str, one: float, unit: str, option: str) -> Values:
+    """A column in SI; one: what 1 in it is. Raises InputError if the file says that it is something else."""
+    values, stated = columns[name], columns.units.get(name)
+    found = None if stated is None else _in_si(stated, unit)
+    if found is not None and not math.isclose(found, one, rel_tol=SAME):
+        problem = f'says that "{name}" is in {stated}, but {option} is {one:g} {unit}.'
+        raise wrong_file(columns.path, problem, f'Give {option} "1 {stated}".')
+    if not float(np.max(np.abs(values))) <= LARGEST / one:
+        problem = f'has values of up to {np.max(np.abs(values)):.3g} in "{name}", and {option} is {one:g} {unit}.'
+        raise wrong_file(columns.path, problem, f"Check {option}.")
+    return np.asarray(values * one)
+
+
+def _in_si(stated: str, unit: str) -> float | None:
+    """What a unit in a file is in SI, None if it is no unit, or another kind of one."""
+    try:
+        return quantity(f"1 {stated}", unit)
+    except ValueFault:
+        return None
 
 
 def _times(columns: Columns, given: Measurement, count: int) -> Values:
     if given.time is not None:
-        time = columns[given.time]
-        if np.any(np.diff(time) <= 0.0):
-            raise wrong_file(columns.path, f'has times in "{given.time}" that do not rise.', "Sort the rows by time.")
-        return time
-    rate = given.rate or columns.rate
+        return times(columns, given.time, _column(columns, given.time, given.time_unit_s, "s", "--time-unit"))
+    rate = columns.rate if given.rate is None else given.rate
     if rate is None:
         raise wrong_file(columns.path, "does not tell the times of its samples.", "Give --time COLUMN or --rate.")
+    if not SMALLEST <= rate <= LARGEST:
+        raise wrong_file(columns.path, f"cannot have {rate:g} samples per second.", "Give --rate.")
     return np.arange(count) / rate
 
 
 def _speeds(columns: Columns, given: Measurement, time: Values) -> Values:
     if given.speed is not None:
-        return columns[given.speed]
+        return _column(columns, given.speed, given.speed_unit_Hz, SPEED, "--speed-unit")
     if given.speed_Hz is not None:
         return np.full(len(time), given.speed_Hz)
     if given.tacho is None:
         remedy = "Give --speed COLUMN, --speed-at, or --tacho COLUMN."
         raise wrong_file(columns.path, "does not tell the rotor speed.", remedy)
+    pulses = columns[given.tacho]
     try:
-        return tacho_speed(time, columns[given.tacho], given.pulses)
+        return tacho_speed(time, pulses, given.pulses)
     except ValueError as error:
         raise wrong_file(columns.path, f'column "{given.tacho}" {error}', "Choose the column of the pulses.") from None
 
 
-def _even(signals: dict[str, Values]) -> dict[str, Values]:
-    """The same at even steps."""
-    time = signals["time_s"]
-    step = (time[-1] - time[0]) / (len(time) - 1)
-    even = time[0] + step * np.arange(len(time))
-    if np.max(np.abs(even - time)) < UNEVEN * step:
-        return {**signals, "time_s": even}
-    return {name: even if name == "time_s" else np.interp(even, time, values) for name, values in signals.items()}
+def _check_sampling(columns: Columns, given: Measurement, time: Values, speed: Values) -> None:
+    """Raises InputError if the rotor turns faster than the samples show, which also tells of a wrong unit of times or
+    speeds before anything is computed with them."""
+    rate = (len(time) - 1) / max(float(time[-1] - time[0]), SMALLEST)
+    fastest = float(np.max(np.abs(speed)))
+    if not 2.0 * fastest < rate:
+        problem = f"has {rate:.4g} samples per second, too few for a rotor of up to {fastest:.4g} Hz."
+        times_by = "--rate" if given.time is None else "--time-unit"
+        speeds_by = "--speed-unit" if given.speed else "--speed-at" if given.tacho is None else "--pulses"
+        remedy = f"Check {times_by} and {speeds_by}; more than two samples per revolution are needed."
+        raise wrong_file(columns.path, problem, remedy)

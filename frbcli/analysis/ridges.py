@@ -65,7 +65,9 @@ def ridges(run: Run, speeds_Hz: Values, clearance: float, signal: str = "journal
     rising = _rising(found.speed_Hz)
     whirl_Hz = _at(speeds_Hz, found.speed_Hz[rising], frequency[rising])
     whirl = _at(speeds_Hz, found.speed_Hz[rising], amplitude[rising])
-    onset = next((event["speed_Hz"] for event in run.events if event["kind"] == "onset"), np.nan)
+    here = (None, joined(*located(run, signal)))  # events of earlier versions name no point
+    onsets = (event["speed_Hz"] for event in run.events if event["kind"] == "onset" and event.get("point") in here)
+    onset = next(onsets, np.nan)
     return Ridges(speeds_Hz, synchronous, whirl_Hz, whirl, whirl > SEEN * clearance, float(onset))
 
 

@@ -33,6 +33,7 @@ PADDING = 4  # a sinusoid between two lines of the padded spectrum loses less th
 BLOCK = 2**20  # values of padded windows that are in memory at a time
 FLOOR_dB = -200.0  # level of no motion
 UNEVEN = 1e-3  # relative deviation of a sample's time that is more than round-off
+ROUNDING = 8.0  # last bits of a time, likewise
 
 
 @dataclass(frozen=True)
@@ -158,7 +159,8 @@ def _step(time_s: Column) -> float:
     step = (end - begin) / (count - 1)
     pieces = ((first, time_s[first : first + PIECE]) for first in range(0, count, PIECE))
     off = (np.max(np.abs(piece - begin - step * np.arange(first, first + len(piece)))) for first, piece in pieces)
-    if not step > 0.0 or not all(deviation <= UNEVEN * step for deviation in off):
+    rounding = ROUNDING * max(abs(begin), abs(end)) * float(np.finfo(float).eps)  # times since 1970 are large
+    if not step > 0.0 or not all(deviation <= UNEVEN * step + rounding for deviation in off):
         raise _fault("time_s", "", "is not evenly spaced.", "Use the run as frb wrote it.")
     return step
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.studies.against import AgainstMeasured
 
-KINDS = ("critical-speed", "onset", "offset", "lock-in")
+KINDS = ("critical-speed", "self-excited", "onset", "offset", "lock-in")
 
 
 def beside_measured(
@@ -39,7 +39,7 @@ def beside_measured(
             "command": "compare",
             "run": run_file,
             "measured": file,
-            "events": {"computed": found.run.events, "measured": found.measurement.events},
+            "events": {"computed": found.computed_events, "measured": found.measured_events},
             "deviations": [
                 {"what": what, "rms": rms, "of": size} for what, rms, size in found.deviations()
             ],
@@ -52,12 +52,13 @@ def _tell(terminal: Terminal, found: AgainstMeasured) -> None:
     rows = []
     for kind in KINDS:
         speeds = [
-            next((event["speed_Hz"] for event in run.events if event["kind"] == kind), None)
-            for run in (found.run, found.measurement)
+            next((event["speed_Hz"] for event in events if event["kind"] == kind), None)
+            for events in (found.computed_events, found.measured_events)
         ]
         if any(speed is not None for speed in speeds):
             rows.append((kind, *("-" if speed is None else f"{speed:.1f} Hz" for speed in speeds)))
-    terminal.table("first events, rotor speed", ("event", "computed", "measured"), rows)
+    where = found.point.replace("_", " ")
+    terminal.table(f"first events of the {where}, rotor speed", ("event", "computed", "measured"), rows)
     terminal.table("ridges", ("what", "deviation, rms", "measured, rms"), [
         (what, _shown(rms, what), _shown(size, what)) for what, rms, size in found.deviations()
     ])

@@ -65,7 +65,7 @@ class Models:
 @click.option("--keep", metavar="DIR", type=OUTPUT_FOLDER, help="Keep the run files in this directory.")
 @click.option("--measured", "file", metavar="FILE", type=INPUT,
               help="Of a run: a measured run-up to set beside it, CSV, WAV or MAT, see --x.")  # fmt: skip
-@click.option("--signal", default="journal", show_default=True, help="Of the run beside it: journal or journal_NAME.")
+@click.option("--signal", default="journal", show_default=True, help="Its point in the run: journal, disk_NAME, ...")
 @measured_options
 @picture_options
 @output_options

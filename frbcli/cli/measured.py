@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from frbcli.cli.quantities import LENGTH_OPTION, SPEED_OPTION
+from frbcli.cli.quantities import LENGTH_OPTION, SPEED_OPTION, QuantityOption
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _GIVEN = "frbcli.measurement"  # in the context of a command
 EITHER = (("time", "rate"), ("speed", "speed_at", "tacho"))  # options of which one is enough
+_TIME_UNIT, _SPEED_UNIT = QuantityOption("time", "s", "1 ms"), QuantityOption("speed", "Hz", "1 rpm")
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -24,13 +25,15 @@ def measured_options(function: Function) -> Function:
     named: dict[str, tuple[dict[str, Any], str]] = {
         "x": ({"metavar": "COLUMN"}, "Of a measurement: column of the displacement in x."),
         "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; events need it."),
-        "time": ({"metavar": "COLUMN"}, "Column of the times in s."),
+        "time": ({"metavar": "COLUMN"}, "Column of the times."),
         "rate": ({"type": click.FloatRange(min=0.0, min_open=True)}, "Samples per second, without a column of times."),
-        "speed": ({"metavar": "COLUMN"}, "Column of the rotor speed in Hz."),
+        "speed": ({"metavar": "COLUMN"}, "Column of the rotor speed."),
         "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
         "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
         "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Pulses per revolution."),
         "unit": ({"type": LENGTH_OPTION, "default": "1 um", "show_default": True}, "Unit of the displacements."),
+        "time-unit": ({"type": _TIME_UNIT, "default": "1 s", "show_default": True}, "Unit of the times."),
+        "speed-unit": ({"type": _SPEED_UNIT, "default": "1 Hz", "show_default": True}, "Unit of the rotor speed."),
     }
     told: Any = function
     told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
@@ -69,6 +72,8 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
         tacho=given["tacho"],
         pulses=given["pulses"],
         unit_m=given["unit"],
+        time_unit_s=given["time_unit"],
+        speed_unit_Hz=given["speed_unit"],
     )
 
 

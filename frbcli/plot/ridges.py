@@ -50,7 +50,8 @@ def against_figure(found: AgainstMeasured) -> Figure:
         grid = figure.add_gridspec(4, 2, height_ratios=(2.2, 1.0, 1.0, 1.0))
         maps = [figure.add_subplot(grid[0, column]) for column in range(2)]
         for axes, run, name in zip(maps, (found.run, found.measurement), ("computed", "measured"), strict=True):
-            mesh = draw_levels(axes, run, "journal", run_spectra(run, "journal", None, "x"), "time")
+            point = found.point if name == "computed" else "journal"
+            mesh = draw_levels(axes, run, point, run_spectra(run, point, None, "x"), "time")
             axes.set_title(name)
         highest = max(axes.get_ylim()[1] for axes in maps)
         for axes in maps:

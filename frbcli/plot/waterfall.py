@@ -116,7 +116,7 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
     if window_s > MOST_IN_WINDOW * (end - begin) / (len(run) - 1):
         raise refuse(run.path, f"has more than {MOST_IN_WINDOW} samples in a window.", "Shorten --window.")
     fastest = max(map(abs, extremes(speed, 0, len(run))))
-    highest = max(ABOVE_SYNCHRONOUS * fastest, FEWEST_LINES / max(window_s, 1e-9))
+    highest = max(ABOVE_SYNCHRONOUS * fastest, FEWEST_LINES / window_s)
     most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * window_s))))
     length = clearance(run, bearing_of(run, signal))
     return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)

@@ -145,7 +145,7 @@ def _is_even(time: Signal) -> bool:
         even = begin + step * np.arange(first, last)
         if np.abs(time[first:last] - even).max() > UNEVEN * step + rounding:
             return False
-    return step > rounding
+    return step > rounding and step >= SMALLEST
 
 
 def _is_table(record: Any, holds: Callable[[str, Any], bool]) -> bool:
@@ -170,7 +170,7 @@ def _is_event(record: Any) -> bool:
         and isinstance(record["kind"], str)
         and _KIND.fullmatch(record["kind"]) is not None
         and all(_is_finite(record[name]) for name in EVENT_NUMBERS)
-        and all(record[name] is None or _is_number(record[name]) for name in EVENT_OPTIONAL)
+        and all(record[name] is None or _is_finite(record[name]) for name in EVENT_OPTIONAL)
         and (record["film"] is None or _is_label(record["film"]))
         and all(value is None or _is_number(value) or _is_label(value) for value in record.values())
     )

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frbcli.analysis.measured import events_at
 from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
-from frbcli.analysis.signals import Values, bearing_clearance
+from frbcli.analysis.signals import Values, bearing_clearance, joined, located
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.results.records import SPEED
@@ -22,13 +24,17 @@ FEWEST = 4  # speeds that both runs have
 
 @dataclass(frozen=True)
 class AgainstMeasured(Tabular):
-    """computed, measured: the runs and their ridges at the same speeds; clearance: m, that of the computed run."""
+    """computed, measured: ridges of the runs at the same speeds; clearance: m, that of the computed run; point: of the
+    computed run, that was measured; computed_events, measured_events: found alike in the motion of that point alone."""
 
     run: Run
     measurement: Run
     computed: Ridges
     measured: Ridges
     clearance: float
+    point: str
+    computed_events: Sequence[dict[str, Any]]
+    measured_events: Sequence[dict[str, Any]]
 
     def deviations(self) -> tuple[tuple[str, float, float], ...]:
         """(what, root mean square of computed less measured, that of the measured ridge), m or Hz; of a whirl where
@@ -59,8 +65,8 @@ class AgainstMeasured(Tabular):
 
 
 def against_measured(run: Run, measurement: Run, signal: str = "journal") -> AgainstMeasured:
-    """The ridges of a run and of a measurement at the speeds that both have; signal: of the run, "journal" or
-    "journal_NAME".
+    """Events, and ridges at the speeds that both have, of a run and of a measurement; signal: the point of the run that
+    was measured, "journal", "disk", "journal_NAME" or "disk_NAME".
 
     Raises InputError if they have too few speeds in common, or one of them is too short for its spectra.
     """
@@ -73,7 +79,10 @@ def against_measured(run: Run, measurement: Run, signal: str = "journal") -> Aga
         problem = f"goes from {other}, and the run from {own}."
         raise InputError("comparison", (Fault("--measured", "", None, problem, "Compare runs of the same speeds."),))
     computed, measured = ridges(run, speeds, clearance, signal), ridges(measurement, speeds, clearance)
-    return AgainstMeasured(run, measurement, computed, measured, clearance)
+    point = joined(*located(run, signal))
+    there = [event | {"point": point} for event in events_at(measurement, "journal", clearance)]
+    here = events_at(run, signal, clearance)
+    return AgainstMeasured(run, measurement, computed, measured, clearance, point, here, there)
 
 
 def _range(run: Run) -> str:
