@@ -14,7 +14,14 @@ from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.error_budget import BEFORE_WHIRL, quiet_until, summed
-from frbcli.runs.fewer_cells import SAFETY, SAFETY_OF_RINGS, SAFETY_OF_RINGS_AT_REST, fewer_cells, on_fewer_cells
+from frbcli.runs.fewer_cells import (
+    SAFETY,
+    SAFETY_OF_GROOVES,
+    SAFETY_OF_RINGS,
+    SAFETY_OF_RINGS_AT_REST,
+    fewer_cells,
+    on_fewer_cells,
+)
 from frbcli.runs.film_error import FilmErrors
 from frbcli.runs.run import runup
 from frbcli.scene.cell_choice import cell_error
@@ -150,6 +157,7 @@ def test_between_rings_only_lengths_count() -> None:
     ("name", "settings", "times"),
     [
         ("rigid-two-phase", [], SAFETY),
+        ("axial-groove-two-phase", [], SAFETY_OF_GROOVES),
         ("floating-ring", [], SAFETY_OF_RINGS),
         ("floating-ring", ["speed.from=200 Hz"], SAFETY_OF_RINGS_AT_REST),
         ("floating-ring", ["speed.from=200 Hz", "bearing.ring.spin=blocked"], SAFETY),
