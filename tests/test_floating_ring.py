@@ -20,6 +20,7 @@ from frbcli.errors import InputError
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.linear.ring_speed import concentric_ratios
 from frbcli.linear.stability import stability
+from frbcli.linear.static_machine import StaticMachines
 from frbcli.results.store import Run
 from frbcli.rotor.held import held_rotor
 from frbcli.runs.run import runup
@@ -100,7 +101,7 @@ def test_resting_position_carries_the_load() -> None:
     """Each inner film carries half the rotor, each outer one its ring as well; the ring's torques balance."""
     case = ringed(*GROOVES, *constant(100.0, 0.1))
     (point,) = stability(case, [100.0]).points
-    system = system_of(case)
+    system = StaticMachines(case).system
     rest = resting_position(system, 200 * math.pi)
     places = system.rotor.journals @ rest
     omegas = system.omegas(200 * math.pi, 2 * math.pi * np.array(point.ring_speeds_Hz))

@@ -20,6 +20,7 @@ from frbcli.errors import InputError
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.compiled import compiled_cells, compiled_law
 from frbcli.film.cavitation.law import FilmOil, Law, Scales
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.table import SHIPPED, law_named
 from frbcli.scene.films import film_places, make_law
 from frbcli.scene.section import film_section
@@ -185,3 +186,29 @@ def test_what_is_no_law_is_refused() -> None:
     with pytest.raises(InputError, match="is not known here"):
         load_case("bearing", ["film.cavitation=mine"])
     assert law_named("elrod") in SHIPPED
+
+
+@pytest.mark.usefixtures("added")
+def test_coefficients_of_a_law_that_clips_and_keeps_oil_are_those_of_its_forces() -> None:
+    """Half-Sommerfeld with oil that is a state and never missing: its coefficients are differences of settled films,
+    and those of half-Sommerfeld on the same cells."""
+
+    @dataclass(frozen=True)
+    class Keeping(HalfSommerfeld):
+        name = "keeping"
+        label = "keeping"
+        closed = False
+        keeps_oil = True
+
+    frbcli.add_law(Keeping)
+    free = ("bearing.ends=oil-bath", "bearing.supply={ kind = 'none' }", "film.solution=cells")
+    films = []
+    for law in ("keeping", "half-sommerfeld"):
+        case = load_case("jeffcott", [f"film.cavitation={law}", *free[: 2 if law == "keeping" else 3]])
+        (film,) = frbcli.bearing_sheet(case, [20.0], load=30.0).points
+        films.append(film)
+    mine, known = films
+    assert mine.displacement == pytest.approx(known.displacement, abs=1e-8)
+    for name in ("stiffness", "damping"):
+        own, expected = getattr(mine, name), getattr(known, name)
+        assert own == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())

@@ -19,9 +19,10 @@ from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.linear.resting import resting_position
 from frbcli.linear.stability import Stability, StabilityPoint, eigenvalues, stability
+from frbcli.linear.static_machine import MachineAtRest
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.system import make_system
 
 EQUILIBRIUM = Path(__file__).parent / "data" / "equilibrium.csv"
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}
@@ -279,13 +280,13 @@ def test_rotor_that_becomes_stable_again_is_told_beside_its_threshold(monkeypatc
     """Growth of a made-up rotor: negative, positive from 177 Hz on, and negative again beyond 250 Hz."""
     import frbcli.linear.stability as module
 
-    real = module._linearised
+    real = module._at_rest
 
-    def calms_down(system: System, speed: float, resting: np.ndarray) -> StabilityPoint:
-        point = real(system, speed, resting)
+    def calms_down(machine: MachineAtRest, speed: float) -> StabilityPoint:
+        point = real(machine, speed)
         return point if speed < 250.0 else replace(point, eigenvalues=-np.abs(point.eigenvalues.real) + 1j)
 
-    monkeypatch.setattr(module, "_linearised", calms_down)
+    monkeypatch.setattr(module, "_at_rest", calms_down)
     found = stability(load_case("jeffcott", ["film.theory=short"]))
     assert found.threshold is not None
     assert "No motion grows at 11 higher speeds, from 250 to 300 Hz." in found.note

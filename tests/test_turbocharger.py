@@ -18,8 +18,9 @@ from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
+from frbcli.linear.coefficients import RestingFilm
 from frbcli.linear.modes import film_springs, natural_modes
-from frbcli.linear.stability import RestingFilm, eigenvalues
+from frbcli.linear.stability import eigenvalues
 from frbcli.plot.modes import modes_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor

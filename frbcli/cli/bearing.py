@@ -27,12 +27,12 @@ COLUMNS = 80
 NUMBERS = ("Hz", "eps", "att.", "So", "h", "p", "loss", "flow", "rise", "err.")
 HEAT = ("Hz", "eps", "temperature, degC", "viscosity, mPa s", "clearance, um")
 ZERO_CELSIUS = 273.15
-COEFFICIENTS = ("Hz", "eps", "xx", "xy", "yx", "yy")
+COEFFICIENTS = ("Hz", "eps", "xx", "xy", "yx", "yy", "err.")
 EXPLANATION = (
     "att.: attitude angle; So: Sommerfeld number (3.14); h: smallest film thickness, um; p: largest pressure, "
     "bar, absolute; loss: power, W; flow: oil that leaves at the ends, mm^3/s; rise: of its temperature if it took all "
-    "of the power, with {density:.4g} kg/m^3 and {capacity:.4g} J/(kg K), K; err.: relative error of the force. All "
-    "per bearing."
+    "of the power, with {density:.4g} kg/m^3 and {capacity:.4g} J/(kg K), K; err.: relative error of the force, and of "
+    "stiffness and damping over their largest entry, from other meshes. All per bearing."
 )
 SETTLED = "Coefficients of mass-conserving films are of oil that has settled; they do not determine stability."
 
@@ -166,7 +166,7 @@ def _numbers(state: FilmState) -> tuple[str, ...]:
         f"{state.power:.4g}",
         f"{1e9 * state.side_flow:.4g}",
         _told(state.temperature_rise, ".3g"),
-        f"{state.force_error:.0e}".replace("e-0", "e-"),
+        _error(state.force_error),
     )
 
 
@@ -180,13 +180,17 @@ def _heat(state: FilmState) -> tuple[str, ...]:
     )
 
 
+def _error(value: float) -> str:
+    return _told(value, ".0e").replace("e-0", "e-")
+
+
 def _told(value: float, form: str) -> str:
     return "-" if math.isnan(value) else format(value, form)
 
 
 def _entries(state: FilmState, matrix: Matrix | None, scale: float) -> tuple[str, ...]:
     values = () if matrix is None else (f"{scale * value:.4g}" for value in matrix.ravel())
-    return (f"{state.speed_Hz:.4g}", f"{state.eccentricity:.3f}", *values)
+    return (f"{state.speed_Hz:.4g}", f"{state.eccentricity:.3f}", *values, _error(state.error))
 
 
 def _point(state: FilmState) -> dict[str, object]:
@@ -213,5 +217,5 @@ def _point(state: FilmState) -> dict[str, object]:
         "viscosity_Pa_s": state.viscosity,
         "clearance_m": state.clearance,
         "temperature_K": state.temperature,
-        "error": {"force_relative": state.force_error},
+        "error": {"force_relative": state.force_error, "coefficients_relative": state.error},
     }

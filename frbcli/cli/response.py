@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from frbcli.cli.coefficient_error import errors_of, tell_coefficient_error
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.files import INPUT, OUTPUT, check_outputs, here
@@ -86,6 +87,7 @@ def command(
             "points": _points(found),
             "forces": _forces(found),
             "films": _films(found),
+            "coefficients": _coefficients(found),
             "critical_speeds_Hz": found.critical_speeds_Hz,
             "picture": picture,
             "csv": csv,
@@ -145,6 +147,7 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
         terminal.result(fill(sentence, COLUMNS))
     peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)
     terminal.result(f"Peaks at {peaks} Hz." if peaks else "No peak in the range.")
+    tell_coefficient_error(terminal, errors_of(found.resting))
 
 
 def _doubts(found: Response) -> list[str]:
@@ -208,4 +211,18 @@ def _forces(found: Response) -> list[dict[str, object]]:
         {"speed_Hz": speed, "film": film, "force_x_N": abs(x), "force_y_N": abs(y)}
         for i, speed in enumerate(found.speeds_Hz)
         for film, (x, y) in zip(found.films, found.forces[i], strict=True)
+    ]
+
+
+def _coefficients(found: Response) -> list[dict[str, object]]:
+    return [
+        {
+            "speed_Hz": point.speed_Hz,
+            "film": film.name,
+            "stiffness_N_m": film.stiffness,
+            "damping_N_s_m": film.damping,
+            "error": {"coefficients_relative": film.error},
+        }
+        for point in found.resting
+        for film in point.films
     ]

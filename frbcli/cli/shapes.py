@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from frbcli.cli.coefficient_error import tell_coefficient_error
 from frbcli.cli.pictures import draw
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, picture: Path |
     terminal.table(f"Damped modes at {speed_Hz:.5g} Hz", COLUMNS, rows)
     if not rows:
         terminal.result("No mode oscillates.")
+    tell_coefficient_error(terminal, [(found.coefficient_error, speed_Hz)])
     if picture is not None and found.modes:
         from frbcli.plot.shapes import shapes_figure
 
@@ -41,6 +43,7 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, picture: Path |
             "points": [],
             "threshold": None,
             "speed_Hz": speed_Hz,
+            "error": {"coefficients_relative": found.coefficient_error},
             "modes": [
                 {
                     "frequency_Hz": mode.frequency_Hz,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from frbcli.cli.coefficient_error import errors_of, tell_coefficient_error
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.files import OUTPUT, check_outputs, here
@@ -24,7 +25,8 @@ from frbcli.cli.stability_table import tell_points
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.threshold import ThresholdKind
-    from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
+    from frbcli.linear.coefficients import RestingFilm
+    from frbcli.linear.stability import Stability, StabilityPoint
 
 
 @click.command()
@@ -105,6 +107,7 @@ def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, ever
     from frbcli.scene.supply import unfed_films
 
     tell_points(terminal, found, every_speed)
+    tell_coefficient_error(terminal, errors_of(found.points))
     terminal.result(_sentence(found))
     warmest = found.points[-1]
     if warmest.warm is not None:
@@ -174,11 +177,12 @@ def _point(point: StabilityPoint) -> dict[str, object]:
     return document | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
 
 
-_FILM_KEYS = ("displacement", "eccentricity", "attitude_deg", "stiffness_N_m", "damping_N_s_m")
+_FILM_KEYS = ("displacement", "eccentricity", "attitude_deg", "stiffness_N_m", "damping_N_s_m", "error")
 
 
 def _film(film: RestingFilm) -> dict[str, object]:
-    values = (film.displacement, film.eccentricity, film.attitude_deg, film.stiffness, film.damping)
+    error = {"coefficients_relative": film.error}
+    values = (film.displacement, film.eccentricity, film.attitude_deg, film.stiffness, film.damping, error)
     return dict(zip(_FILM_KEYS, values, strict=True))
 
 

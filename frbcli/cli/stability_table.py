@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from frbcli.cli.common import Terminal
-    from frbcli.linear.stability import RestingFilm, Stability, StabilityPoint
+    from frbcli.linear.coefficients import RestingFilm
+    from frbcli.linear.stability import Stability, StabilityPoint
 
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 MODES = 2  # in the one line of a single film

@@ -19,6 +19,7 @@ from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine, film_loads, transfer
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
+from frbcli.rotor.order import first_largest
 from frbcli.scene.system import System
 
 Array = NDArray[np.float64]
@@ -240,5 +241,5 @@ def hopf_at(machine: Machine, here: Equilibrium, rising: bool, nu: float | None 
     own = oscillating[np.argmin(np.abs(off))]
     state = vectors[:, own].astype(complex)
     mode = space.read @ state
-    largest = mode[np.argmax(np.abs(mode[: 2 * machine.film_count]))]
-    return HopfPoint(here, float(values[own].imag), mode / largest, rising, state / largest)
+    unit = mode[first_largest(mode[: 2 * machine.film_count])]
+    return HopfPoint(here, float(values[own].imag), mode / unit, rising, state / unit)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from frbcli.cycles.balance import loads_along, unpacked
 from frbcli.cycles.linearised import StateSpace
 from frbcli.cycles.machine import Machine, film_loads
+from frbcli.rotor.order import largest_first
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -135,7 +136,7 @@ def _sorted(matrix: Array) -> Multipliers:
     values = np.linalg.eigvals(matrix).astype(complex)
     trivial = int(np.argmin(np.abs(values - 1.0)))
     others = np.delete(values, trivial)
-    others = others[np.argsort(-np.abs(others), kind="stable")]
+    others = others[largest_first(others)]
     return Multipliers(np.concatenate([values[trivial : trivial + 1], others]), float(abs(values[trivial] - 1.0)))
 
 
@@ -156,7 +157,7 @@ def _parted(found: Multipliers, matrix: Array, machine: Machine, space: StateSpa
     if abs(other.imag) > TRIVIAL:
         return found
     others = np.concatenate([np.delete(found.others, near), [other.real]])
-    others = others[np.argsort(-np.abs(others), kind="stable")]
+    others = others[largest_first(others)]
     return Multipliers(np.concatenate([[trivial + 0.0j], others]), float(np.linalg.norm(matrix @ along - along)))
 
 

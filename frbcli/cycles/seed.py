@@ -18,6 +18,7 @@ from frbcli.cycles.continuation import Place, Strides, corrected, follow, halved
 from frbcli.cycles.equilibria import OSCILLATING, Equilibrium
 from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine, film_loads, transfer
+from frbcli.rotor.order import fastest_first, first_largest
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -101,6 +102,6 @@ def _critical(machine: Machine, space: StateSpace, y: Array, omega: float) -> tu
     oscillating = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
     if not len(oscillating):
         return complex(-1.0, 0.0), np.zeros(machine.size, dtype=complex)
-    own = oscillating[np.argmax(values[oscillating].real)]
+    own = oscillating[fastest_first(values[oscillating])[0]]
     mode = space.read @ vectors[:, own]
-    return complex(values[own]), np.asarray(mode / mode[np.argmax(np.abs(mode[: 2 * machine.film_count]))])
+    return complex(values[own]), np.asarray(mode / mode[first_largest(mode[: 2 * machine.film_count])])

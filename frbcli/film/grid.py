@@ -19,10 +19,12 @@ CHAIN_MODES = 5
 
 @dataclass(frozen=True)
 class Mesh:
-    """Elements of one film section: `axial` over its width, `circumferential` over the turn (quadratic)."""
+    """Elements of one film section: `axial` over its width, `circumferential` over the turn (quadratic); lines: times
+    the usual number of those along which the pressure is clipped and integrated around."""
 
     axial: int
     circumferential: int
+    lines: int = 1
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,17 @@
 """The sheet of a bearing: resting position, coefficients, power loss, flow and largest pressure of every film.
 
 Over the rotor speed each film rests under its static load, which comes from the rotor of the case or is given; over the
-eccentricity (Sommerfeld's chart) the load is the one that the film carries there. Films are solved on finite volumes,
-finer than those of a run, for every gap and every cavitation model. With heat every speed has the viscosities and
-clearances at which the heat of the machine balances with the films of a run.
+eccentricity (Sommerfeld's chart) the load is the one that the film carries there. Positions, loads and coefficients are
+those of static_films.py, as in all static results; torques, flows and pressures are solved on finite volumes in the
+same places, for every gap and every cavitation model. With heat every speed has the viscosities and clearances at which
+the heat of the machine balances with the films of a run.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,9 +20,11 @@ from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
+from frbcli.linear.coefficients import RestingFilm, coefficient_error, resting_film
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.linear.resting import ring_speeds
-from frbcli.linear.sheet_machines import MachineAt, machines, systems
+from frbcli.linear.static_films import StaticFilms, static_films
+from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
@@ -76,19 +79,14 @@ def bearing_sheet(
         remedy = 'Leave --load out and add [rotor] and [speed], or write thermal.model = "none".'
         raise InputError(case.name or "case", (Fault("thermal.model", "lumped", None, problem, remedy),))
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
-    at = machines(case, load, speeds[-1])
-    start: MachineAt | None = None
+    machines = StaticMachines(case, load, speeds[-1])
+    near: MachineAtRest | None = None
     found: list[list[FilmState]] = []
     for number, speed in enumerate(reversed(speeds)):  # from near the centre, where a fast journal rests, outwards
-        omega = 2.0 * math.pi * speed
         try:
             with advised(case):
-                start = at(omega, start)
-            fine, coarse = start.fine, start.coarse
-            journals = fine.rotor.journals @ start.resting
-            spins = ring_speeds(fine, held_rotor(fine.rotor), omega, journals)
-            states = [film_state(case, fine, coarse, i, omega, spins, place) for i, place in enumerate(journals)]
-            found.append([replace(state, temperature=t) for state, t in zip(states, start.temperatures, strict=True)])
+                near = machines.at(2.0 * math.pi * speed, near)
+                found.append(_states(near))
         except NotConverged as error:
             found.append([no_state(place.name, speed, str(error)) for place in film_places(case)])
         if observe is not None:
@@ -114,21 +112,39 @@ def sommerfeld_chart(
         problem = "is not modelled over eccentricity: the temperatures belong to the load of the rotor."
         raise InputError(case.name or "case", (Fault("thermal.model", "lumped", None, problem, remedy),))
     speed = max(_speeds(case)) if speed_Hz is None else speed_Hz
-    fine, coarse = systems(case, 0.0, speed)
-    omega = 2.0 * math.pi * speed
-    spins = ring_speeds(fine, held_rotor(fine.rotor), omega, np.zeros((len(fine.names), 2)))
-    omegas = fine.omegas(omega, spins)
+    static = static_films(case, 0.0, speed)
+    system, volumes, omega = static.system, static.volumes(), 2.0 * math.pi * speed
+    spins = ring_speeds(system, held_rotor(system.rotor), omega, np.zeros((len(system.names), 2)))
+    bodies, omegas = np.concatenate([[omega], spins]), system.omegas(omega, spins)
     points = []
     for number, eccentricity in enumerate(eccentricities):
-        for i, name in enumerate(fine.names):
+        for i, name in enumerate(system.names):
             try:
-                place = under_vertical_load(fine.volumes[i], eccentricity, float(omegas[i]))
-                points.append(film_state(case, fine, coarse, i, omega, spins, place * fine.clearances[i]))
+                at_rest = _at_eccentricity(static, i, eccentricity, float(omegas[i]))
+                points.append(film_state(static, volumes[i], i, bodies, at_rest))
             except NotConverged as error:
                 points.append(no_state(name, speed, str(error), eccentricity))
         if observe is not None:
             observe(number + 1, len(eccentricities))
-    return BearingSheet(case, ECCENTRICITY, fine.names, fine.laws, tuple(points))
+    return BearingSheet(case, ECCENTRICITY, system.names, system.laws, tuple(points))
+
+
+def _states(machine: MachineAtRest) -> list[FilmState]:
+    """The states of the films of a machine."""
+    volumes, bodies = machine.static.volumes(), np.concatenate([[machine.omega], machine.at_rest.ring_speeds])
+    warm = (math.nan,) * len(volumes) if machine.warm is None else [film.temperature for film in machine.warm.films]
+    return [
+        film_state(machine.static, volume, i, bodies, film, temperature)
+        for i, (volume, film, temperature) in enumerate(zip(volumes, machine.films, warm, strict=True))
+    ]
+
+
+def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: float) -> RestingFilm:
+    """Film i under the load along -y that it carries at an eccentricity."""
+    place, force = under_vertical_load(static.system, i, eccentricity, omega)
+    others = [(under_vertical_load(films.system, i, eccentricity, omega)[1], films.share) for films in static.others]
+    system = static.system
+    return resting_film(system.names[i], force, place / system.clearances[i], coefficient_error(force, others))
 
 
 def _check(case: Case) -> None:
@@ -175,6 +191,7 @@ def _row(point: FilmState) -> dict[str, object]:
         "p_max_Pa": point.p_max,
         "temperature_rise_K": point.temperature_rise,
         "force_error_relative": point.force_error,
+        "coefficient_error": point.error,
         "viscosity_Pa_s": point.viscosity,
         "clearance_m": point.clearance,
         "temperature_K": point.temperature,

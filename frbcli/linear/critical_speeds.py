@@ -17,11 +17,9 @@ from numpy.typing import NDArray
 from frbcli.case.model import altered
 from frbcli.case.schema import Case, FilmModel
 from frbcli.errors import FrbError, NotConverged
-from frbcli.linear.heat import Finder, machine_finder
 from frbcli.linear.stability import eigenvalues
+from frbcli.linear.static_machine import StaticMachines
 from frbcli.scene.films import rings
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
 
 Array = NDArray[np.float64]
 
@@ -42,32 +40,28 @@ def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
         full = altered(case, {"film": film})
     top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))
     try:
-        plan = make_plan(full)
-        system = make_system(full, plan)
+        machines = StaticMachines(full)
     except FrbError:  # an opening that this film does not know
         return None
     sweep = np.geomspace(top, LOWEST * top, SPEEDS).tolist() if top > 0.0 else []
-    points = list(_modes(machine_finder(full, plan, system), sweep))
+    points = list(_modes(machines, sweep))
     found = (_crossings(below, above) for above, below in itertools.pairwise(points))
     return tuple(sorted(itertools.chain(*found))) if len(points) > 1 else None
 
 
-def _modes(find: Finder, speeds_Hz: Sequence[float]) -> Iterator[tuple[float, Array]]:
+def _modes(machines: StaticMachines, speeds_Hz: Sequence[float]) -> Iterator[tuple[float, Array]]:
     """Speed and natural frequencies (k,) in Hz of the modes that unbalance can excite, where the rotor can rest; from a
     fast journal near the middle outwards."""
-    still, machine = np.zeros(2), None
+    machine = None
     for speed in speeds_Hz:
         omega = 2.0 * math.pi * speed
         try:
-            machine = find(omega, machine)
+            machine = machines.at(omega, machine, with_error=False)
         except NotConverged:
             continue
-        system = machine.system
-        places, totals = system.rotor.journals @ machine.resting, system.omegas(omega, np.zeros(0))
-        films = [system.film_force(i, place, still, float(totals[i])) for i, place in enumerate(places)]
-        stiffness = -np.stack([film.by_displacement for film in films])
-        damping = -np.stack([film.by_velocity for film in films])
-        values = eigenvalues(system.rotor, omega, stiffness, damping)
+        stiffness = np.stack([film.stiffness for film in machine.films])
+        damping = np.stack([film.damping for film in machine.films])
+        values = eigenvalues(machine.system.rotor, omega, stiffness, damping)
         excited = values[(values.imag > 0.0) & (-values.real < DAMPED * np.abs(values))]
         yield speed, np.abs(excited) / (2.0 * math.pi)
 

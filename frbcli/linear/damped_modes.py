@@ -15,6 +15,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.stability import OSCILLATING, stability_points
 from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.turbocharger import all_modes, kept_modes
 
@@ -33,8 +34,9 @@ class DampedMode:
     """One oscillating mode.
 
     eigenvalue: 1/s, imaginary part positive; direction: "forward" | "backward", or "mixed" where some points whirl
-    forward and others backward; motion: (p, 2) complex amplitudes of x and y of the points of a run, the largest
-    semi-axis of all being 1; shape: (s, 2) the same along the shaft.
+    forward and others backward, or all move to and fro in a line; motion: (p, 2) complex amplitudes of x and y of the
+    points of a run, the largest semi-axis of all being 1; shape: (s, 2) the same along the shaft, its largest
+    displacement being real.
     """
 
     eigenvalue: complex
@@ -63,7 +65,8 @@ class DampedModes(Tabular):
     """The oscillating modes at a rotor speed, those that grow first, then the least damped ones.
 
     points: the names of the p points; positions: (s,) along the shaft in m, or over its length where a case tells no
-    length (`to_scale` is False); marks: names and positions of bearings and disks.
+    length (`to_scale` is False); marks: names and positions of bearings and disks; coefficient_error: expected one of
+    the films' stiffness and damping, over the largest entry.
     """
 
     case: Case
@@ -73,6 +76,7 @@ class DampedModes(Tabular):
     to_scale: bool
     marks: tuple[tuple[str, float], ...]
     modes: tuple[DampedMode, ...]
+    coefficient_error: float = math.nan
 
     def to_pandas(self) -> pd.DataFrame:
         """One row per mode."""
@@ -109,10 +113,14 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
         shape = np.einsum("sij,j->si", along, vector)
         size = float(np.max(_larger(np.concatenate([motion, shape]))))
         if size > 0.0:
-            modes.append(DampedMode(value, _direction(motion / size), motion / size, shape / size))
-    modes.sort(key=lambda mode: mode.damping_ratio)
+            there = shape.ravel()[first_largest(shape.ravel())]
+            unit = size * there / abs(there)  # its displacement is real: eigenvectors have any phase
+            modes.append(DampedMode(value, _direction(motion / unit), motion / unit, shape / unit))
+    keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in modes), strict=True)]
+    modes = [modes[i] for i in np.lexsort(keys)] if modes else []
     names = tuple(name for name, _ in rotor.points)
-    return DampedModes(case, speed_Hz, names, positions, to_scale, marks, tuple(modes))
+    error = max(film.error for film in point.films)
+    return DampedModes(case, speed_Hz, names, positions, to_scale, marks, tuple(modes), error)
 
 
 def _eigenvectors(
@@ -133,8 +141,9 @@ def _direction(motion: Amplitudes) -> str:
     """Of points with complex amplitudes (p, 2)."""
     forward, backward = np.abs(motion[:, 0] + 1j * motion[:, 1]), np.abs(motion[:, 0] - 1j * motion[:, 1])
     moving = forward + backward > STILL * np.max(forward + backward)
+    moving &= np.abs(forward - backward) > EQUAL * (forward + backward)  # to and fro in a line: no sense
     senses = set((forward > backward)[moving].tolist())
-    return MIXED if len(senses) > 1 else FORWARD if True in senses else BACKWARD
+    return MIXED if len(senses) != 1 else FORWARD if True in senses else BACKWARD
 
 
 def _larger(motion: Amplitudes) -> Array:

@@ -1,4 +1,4 @@
-"""One film of a bearing's sheet: what it does with its journal in a given place, solved on finite volumes."""
+"""One film of a bearing's sheet: what it does with its journal at rest."""
 
 from __future__ import annotations
 
@@ -12,18 +12,20 @@ from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.loads import estimate, force, loads
+from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.side_flow import outflow
-from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
+from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import sommerfeld_number
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.linear.coefficients import RestingFilm, force_error, settled_force
+from frbcli.linear.static_films import StaticFilms
 from frbcli.scene.system import System
 
 Array = NDArray[np.float64]
 
 HEAT_CAPACITY = 2000.0  # J/(kg K) of mineral oils within 10 % from 40 to 120 degC
-DIFFERENCE = 1e-4  # of the gap, and of the velocity that moves the journal by it in 1 / omega
 TURNS, ALIGNED = 40, 1e-7  # iterations of the attitude angle, and the angle in rad that ends them
 SAMPLES = 720  # angles at which the smallest gap is looked for
 
@@ -35,11 +37,12 @@ class FilmState:
     speed_Hz: of the rotor; journal_speed_Hz, shell_speed_Hz: of the two bodies of the film; load: (2,) N on the journal
     by one bearing; displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the
     displacement, positive counter-clockwise; film_thickness_min in m; stiffness, damping: (2, 2) N/m and N s/m, -dF/dD
-    and -dF/dD', of films that keep oil when this has settled; sommerfeld_number: (3.14), with omega_J + omega_S;
-    torque: on the journal, N m; power: that journal and shell put into the film, W; side_flow: what leaves at the open
-    ends, m^3/s, without what flows back into a groove; p_max: absolute, Pa; temperature_rise: of the oil that
-    leaves, K, if it took all of the power; force_error: estimated, relative; viscosity: Pa s; clearance: m;
-    temperature: of the film, K, NaN without heat; problem: why there is no state, then the numbers are NaN.
+    and -dF/dD', of films that keep oil when this has settled; error: of both, see RestingFilm; sommerfeld_number:
+    (3.14), with omega_J + omega_S; torque: on the journal, N m; power: that journal and shell put into the film, W;
+    side_flow: what leaves at the open ends, m^3/s, without what flows back into a groove; p_max: absolute, Pa;
+    temperature_rise: of the oil that leaves, K, if it took all of the power; force_error: estimated, relative;
+    viscosity: Pa s; clearance: m; temperature: of the film, K, NaN without heat; problem: why there is no state, then
+    the numbers are NaN.
     """
 
     film: str
@@ -52,6 +55,7 @@ class FilmState:
     film_thickness_min: float = math.nan
     stiffness: Array | None = None
     damping: Array | None = None
+    error: float = math.nan
     sommerfeld_number: float = math.nan
     torque: float = math.nan
     power: float = math.nan
@@ -78,92 +82,62 @@ def heat_capacity(case: Case) -> float:
     return case.oil.heat_capacity or HEAT_CAPACITY
 
 
-def under_vertical_load(film: VolumeFilm, eccentricity: float, omega: float) -> Array:
-    """(2,) displacement over the clearance of this eccentricity at which the film's force points along y."""
+def under_vertical_load(system: System, i: int, eccentricity: float, omega: float) -> tuple[Array, FilmForce]:
+    """(2,) place in m of film i at this eccentricity at which its force points along y, and the film there."""
     angle = -0.25 * math.pi if omega >= 0.0 else -0.75 * math.pi
+    near: FilmForce | None = None
     for _ in range(TURNS):
-        d = (eccentricity * math.cos(angle), eccentricity * math.sin(angle))
-        motion = Motion(d, (0.0, 0.0), omega)
-        at = film_at(film, eccentricity, omega)
-        solution = steady_solution(film, motion)
-        f_x, f_y = force(at, film.mean_pressure(solution.state))
+        place = eccentricity * system.clearances[i] * np.array([math.cos(angle), math.sin(angle)])
+        near = system.film_force(i, place, np.zeros(2), omega, near)
+        f_x, f_y = near.force.tolist()
         if f_x == 0.0 and f_y == 0.0:
             raise NotConverged(f"The film carries nothing at an eccentricity of {eccentricity:g}.")
         off = math.remainder(0.5 * math.pi - math.atan2(f_y, f_x), 2.0 * math.pi)
         if abs(off) < ALIGNED:
-            return np.array(d)
+            return place, settled_force(system, i, place, omega, near)
         angle += off
     raise NotConverged(f"No attitude angle was found at an eccentricity of {eccentricity:g}: off by {off:.2g} rad.")
 
 
 def film_state(
-    case: Case, fine: System, coarse: System, i: int, omega: float, spins: Array, place: Array
+    static: StaticFilms, volume: VolumeFilm, i: int, bodies: Array, at_rest: RestingFilm, temperature: float = math.nan
 ) -> FilmState:
-    """The state of film i with its journal at `place` (2,) in m. Raises NotConverged."""
-    film, c = fine.volumes[i], fine.clearances[i]
-    section, d = film.section, place / c
-    bodies = np.concatenate([[omega], spins])
-    total, slip = (float(fine.turning[i, row] @ bodies) for row in (0, 1))
+    """The state of film i at rest. volume: the film on finite volumes, which tells what the oil does besides in this
+    place; bodies: (1 + rings,) speeds of rotor and rings in rad/s; temperature: K. Raises NotConverged."""
+    case, system, section = static.case, static.system, volume.section
+    total, slip = (float(system.turning[i, row] @ bodies) for row in (0, 1))
     journal, shell = 0.5 * (total + slip), 0.5 * (total - slip)
+    c, d = system.clearances[i], at_rest.displacement
     motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
-    solution = steady_solution(film, motion)
-    at = film_at(film, math.hypot(*d), total)
+    solution, at = steady_solution(volume, motion), film_at(volume, at_rest.eccentricity, total)
     found = loads(at, motion, solution, slip, case.film.cavitation_factor)
-    slopes = steady_force(film, place, np.zeros(2), total, solution.w)
-    k, damping = -slopes.by_displacement, -slopes.by_velocity
-    if film.law.keeps_oil:
-        k, damping = _differences(film, place, total)
-    carried, load = np.array(found.force), -np.array(found.force)
-    attitude = math.nan
-    if carried.any() and d.any():
-        attitude = math.degrees(math.atan2(load[0] * d[1] - load[1] * d[0], load @ d))
     power = -found.torque.journal * journal + found.torque.shell * shell
     flow = outflow(at, motion.d, at.pressure(solution.state))
-    size, width = float(np.hypot(*carried)), section.bearing_width
-    other = coarse.film_force(i, place, np.zeros(2), total).force
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
+    size, width = math.hypot(*at_rest.load), section.bearing_width
     return FilmState(
-        film=fine.names[i],
-        speed_Hz=omega / (2.0 * math.pi),
+        film=system.names[i],
+        speed_Hz=float(bodies[0]) / (2.0 * math.pi),
         journal_speed_Hz=journal / (2.0 * math.pi),
         shell_speed_Hz=shell / (2.0 * math.pi),
-        load=load,
+        load=np.array(at_rest.load),
         displacement=d,
-        attitude_deg=attitude,
+        attitude_deg=at_rest.attitude_deg,
         film_thickness_min=c * float(gap_height(section, motion.d, phi).min()),
-        stiffness=k,
-        damping=damping,
+        stiffness=at_rest.stiffness,
+        damping=at_rest.damping,
+        error=at_rest.error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
         torque=found.torque.journal,
         power=power,
         side_flow=flow,
         p_max=found.p_max,
         temperature_rise=power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
-        force_error=estimate(found.force, (float(other[0]), float(other[1])), film.law.order),
+        force_error=force_error(static, i, d * c, total),
         viscosity=section.viscosity,
         clearance=c,
+        temperature=temperature,
     )
-
-
-def _differences(film: VolumeFilm, place: Array, omega: float) -> tuple[Array, Array]:
-    """Stiffness and damping (2, 2) of a film whose oil has settled in each of two neighbouring motions."""
-    c = film.section.clearance
-    step = DIFFERENCE * (c - float(np.hypot(*place)))
-    pace = step * max(abs(omega), 1.0)
-    stiffness, damping = np.empty((2, 2)), np.empty((2, 2))
-    for column, unit in enumerate(np.eye(2)):
-        ahead, behind = (_force(film, place + side * step * unit, np.zeros(2), omega) for side in (1.0, -1.0))
-        stiffness[:, column] = -(ahead - behind) / (2.0 * step)
-        ahead, behind = (_force(film, place, side * pace * unit, omega) for side in (1.0, -1.0))
-        damping[:, column] = -(ahead - behind) / (2.0 * pace)
-    return stiffness, damping
-
-
-def _force(film: VolumeFilm, place: Array, velocity: Array, omega: float) -> Array:
-    c = film.section.clearance
-    d, v = place / c, velocity / c
-    motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
-    return np.array(force(film_at(film, math.hypot(*d), omega), film.pressure(steady_solution(film, motion).state)))
 
 
 def no_state(name: str, speed: float, problem: str, eccentricity: float = math.nan) -> FilmState:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,32 +62,6 @@ class WarmMachine:
     def balance(self) -> float:
         """What is left over of the power, relative."""
         return self.steady.balance
-
-
-@dataclass(frozen=True)
-class Machine:
-    """A machine at rest in the displacements `resting` (n,) in m; warm: with its heat, None without."""
-
-    system: System
-    resting: Array
-    warm: WarmMachine | None = None
-
-
-Finder = Callable[[float, Machine | None], Machine]
-
-
-def machine_finder(case: Case, plan: Plan, system: System) -> Finder:
-    """A function that finds the machine of a case, warm if it has heat, at omega rad/s, beginning from one near it. It
-    raises NotConverged."""
-    machines = None if case.heat is None else WarmMachines(case, plan, system)
-
-    def find(omega: float, near: Machine | None) -> Machine:
-        if machines is None:
-            return Machine(system, resting_position(system, omega, None if near is None else near.resting))
-        warm = machines.at(omega, None if near is None else near.warm)
-        return Machine(warm.system, warm.resting, warm)
-
-    return find
 
 
 def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:

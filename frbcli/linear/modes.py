@@ -17,6 +17,7 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
+from frbcli.rotor.order import first_largest, ranks
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, reduction_error, whirl_modes
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
@@ -24,7 +25,7 @@ from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbochar
 if TYPE_CHECKING:
     import pandas as pd
 
-    from frbcli.linear.stability import RestingFilm
+    from frbcli.linear.coefficients import RestingFilm
 
 Array = NDArray[np.float64]
 
@@ -164,9 +165,9 @@ def _at_speed(modes: FreeModes, springs: Array, stiffness: Array, omega: float) 
             shape = modes.shapes @ coordinates
             frequency = abs(float(found.frequencies[index])) / (2 * math.pi)
             kind = _kind(coordinates, shape)
-            shown.append(Mode(frequency, direction, kind, shape / shape[np.argmax(np.abs(shape))]))
-    shown.sort(key=lambda mode: mode.frequency_Hz)
-    return ModesAtSpeed(omega / (2 * math.pi), tuple(shown))
+            shown.append(Mode(frequency, direction, kind, shape / shape[first_largest(shape)]))
+    frequencies = ranks(np.array([mode.frequency_Hz for mode in shown]))  # forward before backward where both are equal
+    return ModesAtSpeed(omega / (2 * math.pi), tuple(shown[i] for i in np.argsort(frequencies, kind="stable")))
 
 
 def _kind(coordinates: Array, shape: Array) -> str:

@@ -2,10 +2,13 @@
 
 The rotor is linear, and the films see its journals only. So it is condensed first to the force that it exerts on its
 films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
-rings turn with the speeds at which the torques on them balance (ring_speeds); the two are solved alternately.
+rings turn with the speeds at which the torques on them balance (ring_speeds), which follow from the places of the
+journals: they are no unknowns of their own.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +16,7 @@ from numpy.typing import NDArray
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.parabola import share_within
+from frbcli.film.rectangles.film import FilmForce
 from frbcli.rotor.held import HeldRotor, held_rotor
 from frbcli.scene.system import System
 
@@ -24,8 +28,7 @@ SMALLEST_GAP_CHANGE = 0.25  # a step may shrink 1 - eps of a journal to this sha
 SMALLEST_SHARE = 1e-8  # of a Newton step that is tried
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
 OUTER_START = 0.9  # eccentricity of the last start that is tried
-RING_STEP = 1e-10  # of the rotor speed: a change of the rings' speeds below this ends their iteration
-RING_ITERATIONS = 40
+NUDGE = 1e-6  # of the clearance: of the differences by which the rings' speeds follow a journal
 
 
 def resting_position(system: System, omega: float, start: Array | None = None) -> Array:
@@ -33,6 +36,11 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
 
     Raises NotConverged if no start leads to one.
     """
+    return resting_films(system, omega, start)[0]
+
+
+def resting_films(system: System, omega: float, start: Array | None = None) -> tuple[Array, tuple[FilmForce, ...]]:
+    """As resting_position, with the films there; without them where nothing turns and nothing has to be carried."""
     held, clearances = held_rotor(system.rotor), np.array(system.clearances)[:, None]
     loads = held.load.reshape(-1, 2)
     size = np.linalg.norm(loads, axis=1, keepdims=True)
@@ -42,13 +50,12 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
         starts.insert(0, system.rotor.journals @ start)
     left = np.inf
     for first in starts:
-        position, residual = _settle(system, held, omega, first)
+        position, residual, films = _newton(system, held, omega, first)
         if residual is None:
-            deflection: Array = held.shape + held.following @ position.ravel()
-            return deflection
+            return held.shape + held.following @ position.ravel(), films
         left = min(left, residual)
     if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
-        return held.shape
+        return held.shape, ()
     raise NotConverged(
         f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
         f"{len(starts)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. "
@@ -76,23 +83,13 @@ def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) 
     return speeds
 
 
-def _settle(system: System, held: HeldRotor, omega: float, start: Array) -> tuple[Array, float | None]:
-    """As _newton, with the rings' speeds of the position reached."""
-    position, turning = start, ring_speeds(system, held, omega, start)
-    for _ in range(RING_ITERATIONS):
-        position, residual = _newton(system, held, system.omegas(omega, turning), position)
-        following = ring_speeds(system, held, omega, position)
-        if residual is not None or np.all(np.abs(following - turning) <= RING_STEP * abs(omega)):
-            return position, residual
-        turning = following
-    return position, float(np.linalg.norm(held.load))
-
-
-def _newton(system: System, held: HeldRotor, omegas: Array, start: Array) -> tuple[Array, float | None]:
-    """The position reached, and the force in N that is left over, None if it is at rest."""
+def _newton(
+    system: System, held: HeldRotor, omega: float, start: Array
+) -> tuple[Array, float | None, tuple[FilmForce, ...]]:
+    """The position reached, the force in N that is left over, None if it is at rest, and the films."""
     clearances = np.array(system.clearances)[:, None]
     position = start
-    residual, slope = _balance(system, held, omegas, position)
+    residual, slope, forces = _balance(system, held, omega, position, ())
     for _ in range(ITERATIONS):
         if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
             break
@@ -100,17 +97,17 @@ def _newton(system: System, held: HeldRotor, omegas: Array, start: Array) -> tup
         share, length = _largest_share(position / clearances, step / clearances), np.abs(step / clearances).max()
         while share > SMALLEST_SHARE:
             following = position + share * step
-            new_residual, new_slope = _balance(system, held, omegas, following)
+            new_residual, new_slope, new_forces = _balance(system, held, omega, following, forces)
             if length < STEP or np.linalg.norm(new_residual) < np.linalg.norm(residual):
                 break
             share *= 0.5
         else:
             break
-        position, residual, slope = following, new_residual, new_slope
+        position, residual, slope, forces = following, new_residual, new_slope, new_forces
         if length < STEP and share == 1.0:
             resting = np.linalg.norm(position / clearances, axis=1).max() < LARGEST_ECCENTRICITY
-            return position, None if resting else float(np.linalg.norm(residual))
-    return position, float(np.linalg.norm(residual))
+            return position, None if resting else float(np.linalg.norm(residual)), forces
+    return position, float(np.linalg.norm(residual)), forces
 
 
 def _largest_share(position: Array, step: Array) -> float:
@@ -122,13 +119,41 @@ def _largest_share(position: Array, step: Array) -> float:
     return share
 
 
-def _balance(system: System, held: HeldRotor, omegas: Array, position: Array) -> tuple[Array, Array]:
-    """Sum (2 films,) of what rotor and films put on the journals, N, and its derivative (2 films, 2 films), N/m."""
+def _balance(
+    system: System, held: HeldRotor, omega: float, position: Array, before: Sequence[FilmForce]
+) -> tuple[Array, Array, tuple[FilmForce, ...]]:
+    """Sum (2 films,) of what rotor and films put on the journals, N, its derivative (2 films, 2 films), N/m, and the
+    films; before: those of a place near by, from whose fields films on cells are sought.
+
+    The derivative by the speed of a film is that of the motion of its gap, as if its journal moved across: a law that
+    follows the speed itself makes Newton's method a little slower, and the position no other one.
+    """
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
+    omegas = system.omegas(omega, ring_speeds(system, held, omega, position))
+    following = _following_omegas(system, held, omega, position)
+    forces = []
     for i, many in enumerate(system.rotor.multiplicity):
-        force = system.film_force(i, position[i], np.zeros(2), float(omegas[i]))
+        near = before[i] if before else None
+        force = system.film_force(i, position[i], np.zeros(2), float(omegas[i]), near)
         own = slice(2 * i, 2 * i + 2)
         surplus[own] += many * force.force
         slope[own, own] += many * force.by_displacement
-    return surplus, slope
+        by_omega = 0.5 * force.by_velocity @ [position[i, 1], -position[i, 0]]
+        slope[own] += many * np.outer(by_omega, following[i])
+        forces.append(force)
+    return surplus, slope, tuple(forces)
+
+
+def _following_omegas(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
+    """(films, 2 films) derivatives of the films' speeds by the places of the journals, in rad/s over m."""
+    found = np.zeros((len(position), position.size))
+    for column in range(position.size if system.ring_count else 0):
+        step = np.zeros(position.size)
+        step[column] = NUDGE * system.clearances[column // 2]
+        ahead, behind = (
+            system.omegas(omega, ring_speeds(system, held, omega, position + side * step.reshape(-1, 2)))
+            for side in (1.0, -1.0)
+        )
+        found[:, column] = (ahead - behind) / (2.0 * step[column])
+    return found

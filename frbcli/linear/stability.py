@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,19 +20,18 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.rectangles.film import FilmForce
 from frbcli.html import Tabular
-from frbcli.linear.heat import Finder, Machine, WarmMachine, machine_finder
-from frbcli.linear.resting import ring_speeds
-from frbcli.rotor.held import held_rotor
+from frbcli.linear.coefficients import RestingFilm
+from frbcli.linear.heat import WarmMachine
+from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.order import fastest_first, ranks
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.channels import coupled
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.keys import bearing_key, cavitation_keys
-from frbcli.scene.plan import make_plan
 from frbcli.scene.remedies import advised
-from frbcli.scene.system import System, make_system
+from frbcli.scene.system import System
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,27 +43,6 @@ SPEEDS = 60  # of the default sweep: 5 Hz apart from 0 to 300 Hz
 THRESHOLD_TOLERANCE = 1e-9  # relative tolerance of the speed: one step of brentq beyond 1e-6
 OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 DIVERGENT = 1e-9  # real part over the largest absolute value from which a motion grows without oscillating
-
-
-@dataclass(frozen=True)
-class RestingFilm:
-    """A film at its resting position.
-
-    displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the displacement, positive
-    counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m: of one bearing;
-    name: as in the signals of a run, "" of a single film without a name.
-    """
-
-    displacement: Array
-    attitude_deg: float
-    stiffness: Array
-    damping: Array
-    name: str = ""
-
-    @property
-    def eccentricity(self) -> float:
-        """Relative eccentricity of the journal."""
-        return math.hypot(*self.displacement)
 
 
 @dataclass(frozen=True)
@@ -102,7 +80,7 @@ class StabilityPoint:
         size = np.abs(self.eigenvalues)
         divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
         told: Eigenvalues = self.eigenvalues[(self.eigenvalues.imag > OSCILLATING * size) | divergent]
-        return told[np.argsort(-told.real, kind="stable")]
+        return told[fastest_first(told)]
 
     @property
     def growing(self) -> Eigenvalues:
@@ -114,7 +92,7 @@ class StabilityPoint:
     def critical(self) -> complex:
         """The eigenvalue with the largest real part among those that oscillate, or among all where none does."""
         candidates = self.oscillating if len(self.oscillating) else self.eigenvalues
-        return complex(candidates[np.argmax(candidates.real)]) if len(candidates) else complex(math.nan, math.nan)
+        return complex(candidates[fastest_first(candidates)[0]]) if len(candidates) else complex(math.nan, math.nan)
 
     @property
     def growth(self) -> float:
@@ -172,9 +150,9 @@ def stability(
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
     _check_machine(case, speeds)
-    _, find, sweep = _sweep(case, speeds, observe)
+    machines, sweep = _sweep(case, speeds, observe)
     found = {point.speed_Hz: point for point in sweep}
-    threshold, note = _threshold(case, find, sweep)
+    threshold, note = _threshold(case, machines, sweep)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
 
 
@@ -187,8 +165,8 @@ def stability_points(
     is not positive, or a film has no eight coefficients.
     """
     _check_machine(case, speeds_Hz)
-    system, _, points = _sweep(case, speeds_Hz, observe)
-    return system, points
+    machines, points = _sweep(case, speeds_Hz, observe)
+    return machines.system, points
 
 
 def _check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
@@ -200,19 +178,17 @@ def _check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
 
 def _sweep(
     case: Case, speeds_Hz: Sequence[float], observe: Callable[[int, int], None] | None = None
-) -> tuple[System, Finder, tuple[StabilityPoint, ...]]:
-    """As stability_points, with what finds the machine at further speeds."""
-    plan = make_plan(case)
-    system = make_system(case, plan)
-    find = machine_finder(case, plan, system)
+) -> tuple[StaticMachines, tuple[StabilityPoint, ...]]:
+    """As stability_points, with the machines at further speeds."""
+    machines = StaticMachines(case)
     points: list[StabilityPoint] = []
-    near: Machine | None = None
+    near: MachineAtRest | None = None
     for speed in sorted(speeds_Hz, reverse=True):  # from near the centre, where a fast journal rests, outwards
-        point, near = _point(case, find, speed, near)
+        point, near = _point(case, machines, speed, near)
         points.append(point)
         if observe is not None:
             observe(len(points), len(speeds_Hz))
-    return system, find, tuple(reversed(points))
+    return machines, tuple(reversed(points))
 
 
 def default_speeds(case: Case, count: int = SPEEDS) -> tuple[float, ...]:
@@ -234,49 +210,34 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
     n = rotor.size
     state = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(rotor.mass, np.hstack([k, d]))]])
     values = np.linalg.eigvals(state).astype(complex)
-    return values[np.lexsort((-values.imag, values.real, np.abs(values.imag)))]
+    # frequencies that are equal but for round-off are one, and the real parts decide
+    frequency = np.abs(values.imag)
+    equal = ranks(frequency, float(np.max(np.abs(values))))
+    return values[np.lexsort((-values.imag, frequency, values.real, equal))]
 
 
-def _point(case: Case, find: Finder, speed: float, near: Machine | None) -> tuple[StabilityPoint, Machine | None]:
+def _point(
+    case: Case, machines: StaticMachines, speed: float, near: MachineAtRest | None
+) -> tuple[StabilityPoint, MachineAtRest | None]:
     """The point at a speed in Hz, sought from the machine `near`, and that from which to seek the next one."""
     try:
         with advised(case):
-            machine = find(2 * math.pi * speed, near)
+            machine = machines.at(2 * math.pi * speed, near)
             return _at_rest(machine, speed), machine
     except NotConverged as error:
         return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), near
 
 
-def _at_rest(machine: Machine, speed: float) -> StabilityPoint:
+def _at_rest(machine: MachineAtRest, speed: float) -> StabilityPoint:
     """The point at a speed in Hz of a machine that rests."""
-    return replace(_linearised(machine.system, speed, machine.resting), warm=machine.warm)
-
-
-def _linearised(system: System, speed: float, resting: Array) -> StabilityPoint:
-    """The point at a speed in Hz of the rotor that rests in the displacements `resting` (n,)."""
-    omega = 2 * math.pi * speed
-    journals = system.rotor.journals @ resting
-    turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
-    films = tuple(
-        _resting_film(name, system.film_force(i, place, np.zeros(2), float(total)), place / system.clearances[i])
-        for i, (name, place, total) in enumerate(
-            zip(system.names, journals, system.omegas(omega, turning), strict=True)
-        )
-    )
+    system, films = machine.system, machine.films
     stiffness, damping = np.stack([film.stiffness for film in films]), np.stack([film.damping for film in films])
-    values = eigenvalues(without_spins(system.rotor, system.ring_count), omega, stiffness, damping)
-    return StabilityPoint(speed, films, values, ring_speeds_Hz=tuple((turning / (2 * math.pi)).tolist()))
+    values = eigenvalues(without_spins(system.rotor, system.ring_count), machine.omega, stiffness, damping)
+    rings = tuple((machine.at_rest.ring_speeds / (2 * math.pi)).tolist())
+    return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm)
 
 
-def _resting_film(name: str, force: FilmForce, displacement: Array) -> RestingFilm:
-    load, attitude = -force.force, math.nan
-    if load.any():
-        across = load[0] * displacement[1] - load[1] * displacement[0]
-        attitude = math.degrees(math.atan2(across, load @ displacement))
-    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name)
-
-
-def _threshold(case: Case, find: Finder, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
+def _threshold(case: Case, machines: StaticMachines, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
     """The lowest speed at which the growth passes zero from below; a note where there is none, or where the rotor
     becomes stable once more."""
     resting = [point for point in sweep if point.films]
@@ -291,7 +252,7 @@ def _threshold(case: Case, find: Finder, sweep: Sequence[StabilityPoint]) -> tup
         return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
     for place, (below, above) in enumerate(itertools.pairwise(resting)):
         if above.growth > 0.0:
-            threshold, problem = _crossing(case, find, below.speed_Hz, above.speed_Hz)
+            threshold, problem = _crossing(case, machines, below.speed_Hz, above.speed_Hz)
             return threshold, problem + _stable_again(resting[place + 1 :])
     return None, f"Stable up to the highest speed: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
 
@@ -315,12 +276,12 @@ def _stable_again(points: Sequence[StabilityPoint]) -> str:
     return f" No motion grows at {len(stable)} higher speeds, from {stable[0]:.4g} to {stable[-1]:.4g} Hz."
 
 
-def _crossing(case: Case, find: Finder, low: float, high: float) -> tuple[Threshold | None, str]:
+def _crossing(case: Case, machines: StaticMachines, low: float, high: float) -> tuple[Threshold | None, str]:
     """The threshold between two speeds in Hz."""
     from scipy.optimize import brentq  # runs, which need eigenvalues alone, need not wait for its import
 
     def at(speed: float) -> StabilityPoint:
-        return _at_rest(find(2 * math.pi * speed, None), speed)
+        return _at_rest(machines.at(2 * math.pi * speed, with_error=False), speed)
 
     try:
         with advised(case):
@@ -365,6 +326,7 @@ def _row(point: StabilityPoint) -> dict[str, float | str]:
         row |= {f"d{axis}{end}": value for axis, value in zip("xy", film.displacement.tolist(), strict=True)}
         for name, matrix in (("stiffness_{}_N_m", film.stiffness), ("damping_{}_N_s_m", film.damping)):
             row |= {name.format("xy"[i] + "xy"[j]) + end: float(value) for (i, j), value in np.ndenumerate(matrix)}
+        row[f"coefficient_error{end}"] = film.error
     critical = point.critical
     row |= {"growth_1_s": critical.real, "frequency_Hz": critical.imag / (2 * math.pi)}
     return row | {"growing_modes": len(point.growing)}

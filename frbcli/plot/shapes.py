@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from frbcli.linear.damped_modes import BACKWARD, FORWARD, DampedMode, DampedModes
 from frbcli.plot.style import BLUE, GREEN, GREY, ORANGE, VERMILION, new_figure, styled
+from frbcli.rotor.order import first_largest
 
 COLUMNS, ROWS = 3, 2
 ORBITS = 9  # of places along a shaft
@@ -68,4 +69,4 @@ def draw_shape(axes: Any, found: DampedModes, mode: DampedMode) -> None:
 
 def _largest(mode: DampedMode) -> complex:
     """Amplitude of x or y where it is largest."""
-    return complex(mode.shape.ravel()[np.argmax(np.abs(mode.shape))])
+    return complex(mode.shape.ravel()[first_largest(mode.shape.ravel())])

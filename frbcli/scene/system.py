@@ -110,10 +110,14 @@ class System:
         """(films,) omega_J + omega_S of each film, rad/s."""
         return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
 
-    def film_force(self, index: int, displacement: Array, velocity: Array, omega: float) -> FilmForce:
-        """As film.bearing.evaluate; a mass-conserving film is steady. Raises NotConverged."""
+    def film_force(
+        self, index: int, displacement: Array, velocity: Array, omega: float, near: FilmForce | None = None
+    ) -> FilmForce:
+        """As film.bearing.evaluate; a mass-conserving film is steady. near: of the film in a motion near by, from which
+        it is sought where its oil does not remember. Raises NotConverged."""
         if isinstance(self.films, VolumeFilms):
-            return steady_force(self.volumes[index], displacement, velocity, omega)
+            start = None if near is None or self.remembering[index] else near.field
+            return steady_force(self.volumes[index], displacement, velocity, omega, start)
         if isinstance(self.films, ElementFilm):
             assert self.published is not None
             return published_force(self.published, displacement, velocity, omega)
@@ -124,10 +128,11 @@ class System:
         return evaluate(self.films[index], self.clearances[index], displacement, velocity, omega)
 
 
-def make_system(case: Case, plan: Plan) -> System:
-    """The system of a case; its films are tabulated here."""
+def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz: float | None = None) -> System:
+    """The system of a case; its films are tabulated here. rotor: default that of the case; top_Hz: largest speed of the
+    rotor, default that of the run."""
     places, ringed = film_places(case), turning_rings(case)
-    rotor = make_rotor(case)
+    rotor = make_rotor(case) if rotor is None else rotor
     if ringed:
         rotor = with_spins(rotor, [bearing.ring.inertia for bearing in ringed])
     system = System(
@@ -146,7 +151,7 @@ def make_system(case: Case, plan: Plan) -> System:
         film = published_film(case, film_section(case, places[0].geometry), plan.cells)
         return replace(system, films=element_film(film), published=film)
     if plan.cells is not None:
-        volumes = tuple(volume_film(case, place, plan.cells) for place in places)
+        volumes = tuple(volume_film(case, place, plan.cells, top_Hz) for place in places)
         data = volume_films(volumes, centrifugal_pressures(case, volumes), settled_share(plan.tolerance))
         data = with_channels(data, volumes, coupled_channels(case, volumes))
         factor = case.film.cavitation_factor

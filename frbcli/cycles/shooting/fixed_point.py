@@ -20,6 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.rotor.order import largest_first
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Map = Callable[[Array, Array], Array]  # (N,) of a state (N,) and parameters (P,)
@@ -166,5 +168,5 @@ def direction_along(space: SlowSpace, phase: Array, before: Array) -> Array:
 def ritz(space: SlowSpace) -> tuple[Complex, Complex]:
     """(k,) eigenvalues of V^T M V by falling size, and (N, k) their states."""
     values, vectors = np.linalg.eig(space.reduced)
-    order = np.argsort(-np.abs(values), kind="stable")
+    order = largest_first(values)
     return values[order].astype(complex), (space.states @ vectors[:, order]).astype(complex)

@@ -30,6 +30,7 @@ from frbcli.cycles.shooting.fixed_point import (
     slow_space,
 )
 from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
+from frbcli.rotor.order import fastest_first, largest_first
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -103,7 +104,7 @@ class Rest:
     def whirls(self) -> NDArray[np.int64]:
         """Numbers of the rates that oscillate, by falling growth."""
         oscillating = np.flatnonzero(self.rates.imag > 0.05 * self.omega)
-        return oscillating[np.argsort(-self.rates[oscillating].real, kind="stable")]
+        return oscillating[fastest_first(self.rates[oscillating])]
 
     @property
     def growing(self) -> int:
@@ -313,5 +314,5 @@ def multipliers_of(space: SlowSpace, phase: Array) -> Multipliers:
         second = int(np.argmin(np.abs(others - 1.0)))
     if first.imag != 0.0 or abs(others[second] - 1.0) < DOUBLE:
         first, others[second] = 1.0, (first + others[second]).real - 1.0
-    others = others[np.argsort(-np.abs(others), kind="stable")]
+    others = others[largest_first(others)]
     return Multipliers(np.concatenate([[first], others]), defect)

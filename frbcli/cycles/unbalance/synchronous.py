@@ -18,6 +18,7 @@ from frbcli.cycles.continuation import Equations, Place, corrected, oriented, un
 from frbcli.cycles.equilibria import Equilibrium
 from frbcli.cycles.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
 from frbcli.cycles.machine import Machine, unbalance_motion
+from frbcli.rotor.order import largest_first
 
 Array = NDArray[np.float64]
 
@@ -57,7 +58,7 @@ class Synchronous(Follower):
         harmonics = (len(place.y) - 2) // self.machine.size // 2
         count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
         values = np.linalg.eigvals(monodromy(self.machine, self.space_at(place.y), place.y, count)).astype(complex)
-        values = values[np.argsort(-np.abs(values), kind="stable")]
+        values = values[largest_first(values)]
         return Multipliers(np.concatenate([[1.0 + 0.0j], values]), 0.0)
 
 

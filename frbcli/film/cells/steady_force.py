@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from frbcli.errors import FilmUnsolved
 from frbcli.film.cells.balances import FLOWS, SIDES, GridMotion
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import volume_films
@@ -35,11 +36,17 @@ def steady_solution(film: VolumeFilm, motion: Motion, start: Array | None = None
 def steady_force(
     film: VolumeFilm, displacement: Array, velocity: Array, omega: float, start: Array | None = None
 ) -> FilmForce:
-    """As film.bearing.evaluate, for a film whose oil has settled. Raises NotConverged."""
+    """As film.bearing.evaluate, for a film whose oil has settled. start: (m, k) field of a motion near by, if one is
+    known. Raises NotConverged."""
     c = film.section.clearance
     d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
-    solution = steady_solution(film, motion, start)
+    try:
+        solution = steady_solution(film, motion, start)
+    except FilmUnsolved:
+        if start is None:
+            raise
+        solution = steady_solution(film, motion)
     data = volume_films([film_at(film, math.hypot(*motion.d), omega)])
     m, k = film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
@@ -53,4 +60,4 @@ def steady_force(
         )  # fmt: skip
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.mean_pressure(solution.state)))
-    return FilmForce(at, slopes[0] / CARRIED, slopes[1])
+    return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.w)

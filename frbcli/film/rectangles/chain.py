@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.grid import CHAIN_MODES, Array, axial_modes, axial_vertices
+from frbcli.film.grid import CHAIN_MODES, Array, Mesh, axial_modes, axial_vertices
 from frbcli.film.rectangles.clip import cut_element
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, SLOPE
 from frbcli.film.rectangles.table import half_width_lines
@@ -63,22 +63,23 @@ def chain_grid(edges: Array, elements: int) -> Array:
     return np.ascontiguousarray(np.hstack(columns))
 
 
-def chain_table(axial: int, radius_to_width: float, profile: Callable[[Array], Array], constant: Array) -> Array:
+def chain_table(mesh: Mesh, radius_to_width: float, profile: Callable[[Array], Array], constant: Array) -> Array:
     """(1, 1, SHAPES + CHAIN_MODES, c) axial table.
 
     profile: scaled gauge pressure in the grooves at the axial positions (n,) in [0, 1]; constant: (2,) integral of n
     times pressure over all that is not solved: the grooves.
     """
-    modes = axial_modes(axial_vertices(axial))
+    modes = axial_modes(axial_vertices(mesh.axial))
     kept = min(CHAIN_MODES, len(modes.loads))
-    positions, weights = half_width_lines(LINES)
-    table = np.zeros((SHAPES + kept, max(kept, LINES)))
+    lines = mesh.lines * LINES
+    positions, weights = half_width_lines(lines)
+    table = np.zeros((SHAPES + kept, max(kept, lines)))
     table[DECAY, :kept] = radius_to_width**2 * modes.eigenvalues[:kept]
     table[LOAD, :kept] = modes.loads[:kept]
     table[GROOVE, :kept] = modes.project(profile(modes.nodes))[:kept]
-    table[SHARE, :LINES] = weights
+    table[SHARE, :lines] = weights
     table[CONSTANT, :2] = constant
-    table[SHAPES:, :LINES] = modes.at(positions)[:kept]
+    table[SHAPES:, :lines] = modes.at(positions)[:kept]
     return table[None, None]
 
 
@@ -223,7 +224,9 @@ def chain_force(
             grid, along, across, w_x, w_y, axial[DECAY, k], axial[LOAD, k], axial[GROOVE, k], scratch, fields[k]
         )
     total, part = np.zeros((5, 2)), np.empty((5, 2))
-    for z in range(LINES):
+    for z in range(axial.shape[1]):
+        if axial[SHARE, z] == 0.0:  # columns of modes beyond the lines
+            break
         line[:, :] = 0.0
         for k in range(modes):
             shape = axial[SHAPES + k, z]

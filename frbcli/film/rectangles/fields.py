@@ -22,7 +22,7 @@ from frbcli.film.rectangles.table import DEPTH_STEP, eccentricity_axis, half_wid
 CONTRACTION = 0.35  # one grid for all eccentricities, see ring_vertices
 LINES = 8  # Gauss points over half the width: the edge of the cavity crosses them at any slope
 
-# Rows of the grid: element boundaries and lengths; positions and shares of the axial lines (the first LINES columns);
+# Rows of the grid: element boundaries and lengths; positions and shares of the axial lines (the first columns);
 # the six rows of force_weights.
 VERTICES, LENGTHS, POSITIONS, SHARES, WEIGHTS = range(5)
 
@@ -44,14 +44,15 @@ def field_vertices(mesh: Mesh) -> Array:
 
 
 def field_table(mesh: Mesh, radius_to_width: float) -> Array:
-    """(n, 4, LINES, m + 1) fields of one section at the axial lines over the half turn 0 <= Theta <= pi.
+    """(n, 4, lines, m + 1) fields of one section at the axial lines over the half turn 0 <= Theta <= pi.
 
     Axis 1: field of a unit w_r (even in Theta), of a unit w_t (odd), and their derivatives by x = -ln(1 - eps).
     """
     modes = axial_modes(axial_vertices(mesh.axial))
-    shapes = modes.at(half_width_lines(LINES)[0])
+    positions, _ = half_width_lines(mesh.lines * LINES)
+    shapes = modes.at(positions)
     eccentricities, vertices = eccentricity_axis(), field_vertices(mesh)
-    table = np.empty((len(eccentricities), 4, LINES, mesh.circumferential + 1))
+    table = np.empty((len(eccentricities), 4, len(positions), mesh.circumferential + 1))
     for i, eccentricity in enumerate(eccentricities):
         fields = unit_fields(vertices, eccentricity, radius_to_width**2 * modes.eigenvalues, modes.loads)
         fields[2:] *= 1.0 - eccentricity
@@ -174,6 +175,7 @@ def field_grid(mesh: Mesh) -> Array:
     vertices = field_vertices(mesh)
     grid = np.zeros((WEIGHTS + 6, mesh.circumferential))
     grid[VERTICES], grid[LENGTHS] = vertices, element_lengths(vertices)
-    grid[POSITIONS, :LINES], grid[SHARES, :LINES] = half_width_lines(LINES)
+    lines = mesh.lines * LINES
+    grid[POSITIONS, :lines], grid[SHARES, :lines] = half_width_lines(lines)
     grid[WEIGHTS:] = force_weights(vertices).reshape(6, -1)
     return grid

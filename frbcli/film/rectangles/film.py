@@ -65,18 +65,20 @@ def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh
     across = np.array([np.sum(np.cos(starts) - np.cos(ends)), np.sum(np.sin(starts) - np.sin(ends))])
     constant = (mean - (level if clipped else 0.0)) * across
     radius_to_width = 0.5 * bearing.diameter / bearing.width
-    table = chain_table(mesh.axial, radius_to_width, profile, constant)
+    table = chain_table(mesh, radius_to_width, profile, constant)
     clip_level = level if clipped else 0.0
     return ChainFilm(bearing.force_scale, int(clipped), clip_level, table, grid)
 
 
 @dataclass(frozen=True)
 class FilmForce:
-    """Force on the journal by a whole bearing, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m."""
+    """Force on the journal by a whole bearing, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
+    field: (m, k) the unknown of a film on cells, from which a film near by is sought."""
 
     force: Array
     by_displacement: Array
     by_velocity: Array
+    field: Array | None = None
 
 
 def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:

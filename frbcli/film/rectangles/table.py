@@ -112,7 +112,7 @@ def force_table(mesh: Mesh, radius_to_width: float, clipped: bool) -> Array:
     1/s, with w measured as (w_r, w_t (1 - eps)^STRETCH).
     """
     modes = axial_modes(axial_vertices(mesh.axial))
-    lines, weights = half_width_lines()
+    lines, weights = half_width_lines(mesh.lines * LINES)
     shapes = modes.at(lines)
     eccentricities = eccentricity_axis()
     directions = np.linspace(0.0, np.pi, DIRECTIONS)

@@ -1,0 +1,120 @@
+"""Stiffness and damping of films at rest, with their error: one place for all results that are made of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.linear.resting import ring_speeds
+from frbcli.linear.static_films import StaticFilms
+from frbcli.rotor.held import held_rotor
+from frbcli.scene.system import System
+
+Array = NDArray[np.float64]
+
+LEAST = 3e-5  # of the error: what the interpolation of tables leaves, the same on every mesh
+DIFFERENCE = 1e-4  # of the gap, and of the velocity that moves the journal by it in 1 / omega
+
+
+@dataclass(frozen=True)
+class RestingFilm:
+    """A film at its resting position.
+
+    displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the displacement, positive
+    counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m, -dF/dD and
+    -dF/dD': of one bearing, of films that keep oil when this has settled; name: as in the signals of a run, "" of a
+    single film without a name; error: expected one of stiffness and damping, over the largest entry of each, from other
+    meshes, NaN where it is not known; load: (2,) N on the journal.
+    """
+
+    displacement: Array
+    attitude_deg: float
+    stiffness: Array
+    damping: Array
+    name: str = ""
+    error: float = math.nan
+    load: tuple[float, float] = (math.nan, math.nan)
+
+    @property
+    def eccentricity(self) -> float:
+        """Relative eccentricity of the journal."""
+        return math.hypot(*self.displacement)
+
+
+def settled_force(system: System, i: int, place: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+    """Force and derivatives of film i with its journal at rest at `place` (2,) in m, of a film that keeps oil when this
+    has settled in each of two neighbouring motions. total: omega_J + omega_S. Raises NotConverged."""
+    found = system.film_force(i, place, np.zeros(2), total, near)
+    if not system.remembering[i]:
+        return found
+    step = DIFFERENCE * (system.clearances[i] - float(np.hypot(*place)))
+    pace = step * max(abs(total), 1.0)
+    by_displacement, by_velocity = np.empty((2, 2)), np.empty((2, 2))
+    for column, unit in enumerate(np.eye(2)):
+        ahead, behind = (
+            system.film_force(i, place + side * step * unit, np.zeros(2), total).force for side in (1.0, -1.0)
+        )
+        by_displacement[:, column] = (ahead - behind) / (2.0 * step)
+        ahead, behind = (system.film_force(i, place, side * pace * unit, total).force for side in (1.0, -1.0))
+        by_velocity[:, column] = (ahead - behind) / (2.0 * pace)
+    return FilmForce(found.force, by_displacement, by_velocity, found.field)
+
+
+@dataclass(frozen=True)
+class FilmsAtRest:
+    """The films of a machine at rest. journals: (films, 2) in m; ring_speeds: (rings,) rad/s; totals: (films,)
+    omega_J + omega_S; forces: of the films."""
+
+    journals: Array
+    ring_speeds: Array
+    totals: Array
+    forces: tuple[FilmForce, ...]
+
+
+def films_at_rest(system: System, omega: float, resting: Array, near: Sequence[FilmForce] = ()) -> FilmsAtRest:
+    """The films at omega rad/s in the displacements `resting` (n,) in m; near: in a motion near by, if known. Raises
+    NotConverged."""
+    journals = system.rotor.journals @ resting
+    turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
+    totals = system.omegas(omega, turning)
+    forces = tuple(
+        settled_force(system, i, place, float(totals[i]), near[i] if near else None) for i, place in enumerate(journals)
+    )
+    return FilmsAtRest(journals, turning, totals, forces)
+
+
+def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]]) -> float:
+    """Expected error of stiffness and damping over the largest entry of each, from the same film on other meshes and
+    the share of the difference that is the error; NaN without others."""
+    errors = []
+    for other, share in others:
+        for name in ("by_displacement", "by_velocity"):
+            mine, off = getattr(own, name), getattr(own, name) - getattr(other, name)
+            size = float(np.abs(mine).max())
+            errors.append(max(share * float(np.abs(off).max()) / size, LEAST) if size > 0.0 else LEAST)
+    return max(errors, default=math.nan)
+
+
+def force_error(static: StaticFilms, i: int, place: Array, total: float) -> float:
+    """Relative error of the force of film i at `place` (2,) in m, from another mesh; NaN where it is not known."""
+    if not static.others:
+        return math.nan
+    other = static.others[0]
+    mine, force = (films.system.film_force(i, place, np.zeros(2), total).force for films in (static.own, other))
+    size = float(np.hypot(*mine))
+    return other.share * float(np.hypot(*(force - mine))) / size if size > 0.0 else 0.0
+
+
+def resting_film(name: str, force: FilmForce, displacement: Array, error: float) -> RestingFilm:
+    """The film of a force; displacement (2,) over the clearance."""
+    load, attitude = -force.force, math.nan
+    if load.any() and displacement.any():
+        across = load[0] * displacement[1] - load[1] * displacement[0]
+        attitude = math.degrees(math.atan2(across, load @ displacement))
+    x, y = load.tolist()
+    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name, error, (x, y))

@@ -1,0 +1,156 @@
+"""The films of static results: resting positions, coefficients, stability and response all have the same ones.
+
+Gaps made of rectangles, and bearing models, have the film of a run: it has no cells, and is cheap. All others are
+solved on CELLS, more than those of a run, which has to solve them many times. With the films come the same ones on
+other meshes, whose coefficients tell the error of theirs.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.film.cavitation.law import FRONTS
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.grid import Mesh
+from frbcli.rotor.linear import LinearRotor
+from frbcli.scene.bearing_models import GIVEN
+from frbcli.scene.film_choice import CELLS as ON_CELLS
+from frbcli.scene.film_choice import DEFAULT_MESH, all_clipped, choose_films, needs_cells
+from frbcli.scene.films import film_places, volume_film
+from frbcli.scene.plan import make_plan
+from frbcli.scene.planned import Plan
+from frbcli.scene.system import System, make_system
+from frbcli.scene.tabulated import SOLUTIONS
+from frbcli.scene.warm import warm_case, warm_system
+
+Array = NDArray[np.float64]
+
+CELLS = (144, 20)  # around and along a section, equal: 0.1 % of the force up to an eccentricity of 0.9
+# Fronts of cavities lie between cells: how far coefficients are off is not even from mesh to mesh, so that one coarser
+# mesh may agree by chance.
+COARSER = ((72, 10), (96, 14))
+FINER, FINER_SHARE = 3, 1.5  # times the elements each way, and the lines between them, of films without cells; the
+# differences scatter as the edge of the cavity crosses the lines
+
+
+@dataclass(frozen=True)
+class Films:
+    """The machine on one mesh. share: of the difference between the coefficients on this mesh and on the one of static
+    results that is the error of the latter, 0 for itself."""
+
+    plan: Plan
+    system: System
+    share: float = 0.0
+
+
+@dataclass(frozen=True)
+class StaticFilms:
+    """The machine on the films of static results, and on others for the error; case: whose films they are; top_Hz:
+    largest rotor speed."""
+
+    case: Case
+    own: Films
+    others: tuple[Films, ...]
+    top_Hz: float | None
+
+    @property
+    def system(self) -> System:
+        """The machine."""
+        return self.own.system
+
+    @property
+    def on_cells(self) -> bool:
+        """Whether the films are on cells, the other meshes then being coarser ones."""
+        return bool(self.system.volumes)
+
+    def warm(self, viscosities: Array, clearances: Array) -> StaticFilms:
+        """The same with viscosities in Pa s and clearances in m, (films,) each."""
+
+        def warmed(films: Films) -> Films:
+            return replace(films, system=warm_system(self.case, films.plan, films.system, viscosities, clearances))
+
+        case = warm_case(self.case, viscosities, clearances)
+        return StaticFilms(case, warmed(self.own), tuple(map(warmed, self.others)), self.top_Hz)
+
+    def volumes(self) -> tuple[VolumeFilm, ...]:
+        """The films on CELLS, for the fields of pressure and flow."""
+        if self.on_cells:
+            return self.system.volumes
+        return tuple(volume_film(self.case, place, CELLS, self.top_Hz) for place in film_places(self.case))
+
+
+def static_films(case: Case, load: float | None = None, top_Hz: float | None = None) -> StaticFilms:
+    """The films of a case. load: along -y on a single film in N, default that of the rotor or of [motion]; top_Hz:
+    largest rotor speed, default that of the run. Raises InputError."""
+    rotor = _rotor(case, load)
+    plan = _plan(case)
+
+    def made(plan: Plan, share: float = 0.0) -> Films:
+        return Films(plan, make_system(case, plan, rotor, top_Hz), share)
+
+    return StaticFilms(case, made(plan), tuple(made(*other) for other in _others(plan)), top_Hz)
+
+
+def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
+    """Plans of other meshes, with their shares; none for a bearing model, whose error is not known."""
+    if plan.form == GIVEN:
+        return ()
+    if plan.cells is not None:
+        around = plan.cells[0]
+        return tuple((replace(plan, cells=cells), 1.0 / ((around / cells[0]) ** FRONTS - 1.0)) for cells in COARSER)
+    meshes = [DEFAULT_MESH if plan.theory == "short" else _finer(mesh) for _, mesh in plan.films]
+    films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))
+    return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
+
+
+def _finer(mesh: Mesh) -> Mesh:
+    return Mesh(FINER * mesh.axial, FINER * mesh.circumferential, FINER)
+
+
+def _plan(case: Case) -> Plan:
+    """The plan of a run, or of the films alone where there is no rotor, with the cells of static results."""
+    if case.given_rotor is not None and case.given_speed is not None:
+        plan = make_plan(case)
+    elif needs_cells(case) or not all_clipped(case):
+        plan = _films_alone(case, "finite", ON_CELLS, DEFAULT_MESH, ())
+    else:
+        films = choose_films(case, case.accuracy.target)
+        plan = _films_alone(case, films.theory, films.form, films.mesh, films.films)
+    if plan.cells is None and plan.form not in (ON_CELLS, SOLUTIONS):
+        return plan
+    return replace(plan, form=ON_CELLS, cells=CELLS)
+
+
+def _films_alone(case: Case, theory: str, form: str, mesh: Mesh, films: tuple[tuple[str, Mesh], ...]) -> Plan:
+    """A plan without a run."""
+    return Plan(theory, case.film.cavitation, form, mesh, films, None, math.nan, "", 0.0, math.nan, "", None, ())
+
+
+def _rotor(case: Case, load: float | None) -> LinearRotor | None:
+    """A rotor that is nothing but a load along -y in N; None for the rotor of the case."""
+    alone = len(film_places(case)) == 1
+    if case.given_rotor is not None and (load is None or not alone):
+        return None
+    if load is None and case.motion is not None:
+        load = case.motion.load
+    if load is None:
+        remedy = "Give --load, or --over eccentricity, or add [rotor]."
+        raise InputError(case.name or "case", (Fault("motion.load", "", None, "is missing.", remedy),))
+    return LinearRotor(
+        mass=np.eye(2),
+        damping=np.zeros((2, 2)),
+        gyroscopic=np.zeros((2, 2)),
+        stiffness=np.zeros((2, 2)),
+        static_load=np.array([0.0, -load]),
+        unbalance_cos=np.zeros(2),
+        unbalance_sin=np.zeros(2),
+        journals=np.eye(2)[None],
+        multiplicity=np.ones(1),
+        points=(),
+    )

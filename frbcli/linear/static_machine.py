@@ -1,0 +1,108 @@
+"""The machine of a case at rest at any speed, with its heat if it has any, and the coefficients of its films."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.linear.coefficients import FilmsAtRest, RestingFilm, coefficient_error, films_at_rest, resting_film
+from frbcli.linear.heat import WarmMachine, WarmMachines
+from frbcli.linear.resting import resting_films
+from frbcli.linear.static_films import Films, StaticFilms, static_films
+from frbcli.scene.plan import make_plan
+from frbcli.scene.system import System, make_system
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MachineAtRest:
+    """A machine at omega rad/s. static: its films at their viscosities; resting: (n,) displacements in m; films:
+    coefficients and their error; at_rest: the films as they are solved; warm: the heat of the machine, None without."""
+
+    static: StaticFilms
+    omega: float
+    resting: Array
+    films: tuple[RestingFilm, ...]
+    at_rest: FilmsAtRest
+    warm: WarmMachine | None = None
+
+    @property
+    def system(self) -> System:
+        """The machine."""
+        return self.static.system
+
+
+class StaticMachines:
+    """Machines of a case at rest at any speed; their films are made once. load, top_Hz: as static_films.
+
+    With heat, the temperatures are those at which the heat balances with the films of a run; positions and coefficients
+    are then of static films with these viscosities and clearances."""
+
+    def __init__(self, case: Case, load: float | None = None, top_Hz: float | None = None) -> None:
+        self._static, self._heat = static_films(case, load, top_Hz), None
+        if case.heat is not None:
+            plan = make_plan(case)
+            self._heat = WarmMachines(case, plan, make_system(case, plan))
+
+    @property
+    def static(self) -> StaticFilms:
+        """The films, without heat."""
+        return self._static
+
+    @property
+    def system(self) -> System:
+        """The machine, without heat."""
+        return self._static.system
+
+    def at(self, omega: float, near: MachineAtRest | None = None, with_error: bool = True) -> MachineAtRest:
+        """The machine at omega rad/s, sought from one near it; with_error: whether errors of the coefficients are
+        wanted, else they are NaN. Raises NotConverged."""
+        warm, static = None, self._static
+        start = None if near is None else near.resting
+        if self._heat is not None:
+            warm = self._heat.at(omega, None if near is None else near.warm)
+            viscosities, clearances = (
+                np.array([getattr(film, name) for film in warm.films]) for name in ("viscosity", "clearance")
+            )
+            static, start = static.warm(viscosities, clearances), warm.resting
+        others: list[tuple[FilmsAtRest, float]] = []
+        if static.on_cells:  # a coarse mesh also brings the journals near to where they rest
+            start, others = _on_others(static.others if with_error else static.others[:1], omega, start)
+        resting, near_by = resting_films(static.system, omega, start)
+        found = films_at_rest(static.system, omega, resting, near_by)
+        if with_error and not static.on_cells:
+            _, others = _on_others(static.others, omega, resting)
+        films = tuple(
+            resting_film(
+                name,
+                force,
+                found.journals[i] / static.system.clearances[i],
+                coefficient_error(force, [(other.forces[i], share) for other, share in others])
+                if with_error
+                else math.nan,
+            )
+            for i, (name, force) in enumerate(zip(static.system.names, found.forces, strict=True))
+        )
+        return MachineAtRest(static, omega, resting, films, found, warm)
+
+
+def _on_others(
+    meshes: tuple[Films, ...], omega: float, start: Array | None
+) -> tuple[Array | None, list[tuple[FilmsAtRest, float]]]:
+    """The displacements on the last of several meshes, each sought from those on the one before, and the films of all;
+    meshes on which no position is found are left out."""
+    found = []
+    for mesh in meshes:
+        try:
+            resting, near_by = resting_films(mesh.system, omega, start)
+            found.append((films_at_rest(mesh.system, omega, resting, near_by), mesh.share))
+            start = resting
+        except NotConverged:
+            continue
+    return start, found
