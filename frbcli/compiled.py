@@ -7,6 +7,8 @@ so that one of another file could change and not be seen.
 from __future__ import annotations
 
 import hashlib
+import logging
+import os
 import re
 from collections.abc import Callable, Set
 from functools import cache
@@ -16,6 +18,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from llvmlite import ir
 from numba import njit
+from numba.core import config
 from numba.core.ccallback import CFunc
 from numba.core.sigutils import normalize_signature
 from numpy.typing import NDArray
@@ -51,14 +54,15 @@ def compiled(
     def decorated(function: Kernel) -> Kernel:
         # Of these numba tells no types.
         options: Any = {"no_cpython_wrapper": internal, "no_cfunc_wrapper": True, "_nrt": makes_arrays}
-        kernel: Any = njit(
-            cache=True,
+        decorate = njit(
             error_model="numpy",
             inline="always" if inline else "never",
             forceinline=force_inline,
             fastmath=set(fastmath) or False,
             **options,
-        )(function)
+        )
+        kernel: Any = decorate(function)
+        _keep(kernel.enable_caching)
         _follow(kernel, Path(function.__code__.co_filename))
         return cast("Kernel", kernel)
 
@@ -70,7 +74,7 @@ def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> 
     normalize: Any = normalize_signature  # numba gives it no types
     made: Any = CFunc(function, normalize(signature), locals={}, options={"error_model": "numpy"})
     if sources:
-        made.enable_caching()
+        _keep(made.enable_caching)
         _follow(made, *sources)
     made.compile()
     return made
@@ -99,6 +103,24 @@ def call_of(numbers: int) -> Callable[..., Any]:
         return context.get_dummy_value()
 
     return generate
+
+
+def _keep(enable: Callable[[], None]) -> None:
+    """Have a kernel kept on disk: where numba has no place for it, in a temporary directory, which one line tells."""
+    try:
+        enable()
+    except RuntimeError:
+        from frbcli.caches import temporary_cache
+
+        place = str(temporary_cache())
+        os.environ["NUMBA_CACHE_DIR"] = place  # also of the processes of a sweep
+        settings: Any = config  # numba tells no types of it
+        settings.CACHE_DIR = place
+        logging.getLogger("frbcli").warning(
+            "Compiled kernels are kept in %s, for neither the installation nor the home directory can be written. "
+            "Set NUMBA_CACHE_DIR to a directory of your own to keep them longer.", place,
+        )  # fmt: skip
+        enable()
 
 
 def _follow(made: Any, *sources: Path) -> None:

@@ -179,12 +179,37 @@ def test_the_command_writes_table_picture_and_coefficients(
     assert set(element) == {"n", "tag", "frequency", *(f"{c}{a}" for c in "kc" for a in ("xx", "xy", "yx", "yy"))}
 
 
+def test_several_films_have_a_file_for_ross_each(tmp_path: Path) -> None:
+    """`ross.BearingElement.load` takes the first table of a file and passes over the others."""
+    for film, path in ross_of("floating-ring", tmp_path, "inner", "outer").items():
+        (name,) = tomllib.loads(path.read_text(encoding="utf-8"))
+        assert name == f"BearingElement_{film}"
+
+
+def ross_of(case: str, folder: Path, *films: str, speeds: tuple[str, ...] = ("50 Hz",)) -> dict[str, Path]:
+    """The files for ROSS of each film, with the numbers of the table."""
+    asked = [word for speed in speeds for word in ("--speed", speed)]
+    words = ["bearing", case, *asked, "--set", "accuracy.mesh=[4, 16]", "--no-picture", "--quiet"]
+    assert frb([*words, "--csv", str(folder / "t.csv"), "--ross", str(folder / "t.toml")]) == 0
+    paths = {film: folder / (f"t-{film}.toml" if film else "t.toml") for film in films}
+    assert sorted(folder.glob("*.toml")) == sorted(paths.values())
+    rows = list(csv.DictReader((folder / "t.csv").read_text(encoding="utf-8").splitlines()))
+    for film, path in paths.items():
+        (element,) = tomllib.loads(path.read_text(encoding="utf-8")).values()
+        for name, column in (("kyx", "k_yx_N_m"), ("cxy", "c_xy_Ns_m")):
+            assert element[name] == [float(row[column]) for row in rows if row["film"] == film]
+    return paths
+
+
 @pytest.mark.skipif(not ROSS, reason="no interpreter with ROSS (FRB_ROSS_PYTHON)")
-def test_ross_reads_the_coefficients(tmp_path: Path) -> None:
-    path = tmp_path / "t.toml"
-    speeds = ["--speed", "50 Hz", "--speed", "100 Hz"]
-    assert frb(["bearing", "jeffcott", *speeds, "--ross", str(path), "--no-picture"]) == 0
-    given = tomllib.loads(path.read_text(encoding="utf-8"))["BearingElement_bearing"]
+@pytest.mark.parametrize(("case", "films"), [("jeffcott", ("",)), ("floating-ring", ("inner", "outer"))])
+def test_ross_reads_the_coefficients(case: str, films: tuple[str, ...], tmp_path: Path) -> None:
+    for film, path in ross_of(case, tmp_path, *films, speeds=("50 Hz", "100 Hz")).items():
+        assert_read_by_ross(path, film or "bearing")
+
+
+def assert_read_by_ross(path: Path, film: str) -> None:
+    given = tomllib.loads(path.read_text(encoding="utf-8"))[f"BearingElement_{film}"]
     words = "import json, sys, ross; b = ross.BearingElement.load(sys.argv[1]); w = float(sys.argv[2]); "
     words += "print(json.dumps([b.K(w)[:2, :2].tolist(), b.C(w)[:2, :2].tolist()]))"
     bare = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}

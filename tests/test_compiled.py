@@ -7,14 +7,18 @@ import gc
 import os
 import re
 import resource
+import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
 
+import frbcli
+from frbcli.caches import temporary_cache
 from frbcli.case.load import load_case
 from frbcli.cli import compiling
 from frbcli.cli.common import Terminal
@@ -218,3 +222,46 @@ def test_the_announced_time_of_compiling_holds(law: str, tmp_path: Path) -> None
         if about is not None:
             announced = float(about[1])
     assert announced / 1.5 < told[0] - told[1] < 1.5 * announced
+
+
+# --- nowhere to keep them ---
+
+KEPT = """
+import sys, frbcli
+assert frbcli.__file__.startswith(sys.argv[1]), frbcli.__file__
+from frbcli.film.hermite import hermite
+print(hermite._cache._cache_path, hermite._cache._cache_file is not None)
+import frbcli.plot.style
+"""
+
+
+def test_an_installation_that_cannot_be_written_has_a_temporary_cache(tmp_path: Path) -> None:
+    """Without a home directory either. Files in place of directories keep out also those who may write everywhere."""
+    package, temporary = tmp_path / "installed", tmp_path / "temporary"
+    shutil.copytree(Path(frbcli.__file__).parent, package / "frbcli", ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in {path.parent for path in package.rglob("*.py")}:
+        (folder / "__pycache__").touch()
+    (tmp_path / "file").touch()
+    temporary.mkdir()
+    variables = {"PATH": os.environ["PATH"], "HOME": str(tmp_path / "file" / "home"), "TMPDIR": str(temporary)}
+    for _ in range(2):  # the second start finds the directory of the first one
+        words = [sys.executable, "-c", KEPT, str(package)]
+        done = subprocess.run(words, env=variables | {"PYTHONPATH": str(package)}, capture_output=True, text=True,
+                              check=True, cwd=tmp_path)  # fmt: skip
+        (line,) = done.stderr.splitlines()
+        (place,) = temporary.iterdir()
+        assert line.startswith(f"Compiled kernels are kept in {place}, for neither")
+        assert done.stdout.startswith(str(place))
+        assert place.stat().st_mode & 0o777 == 0o700
+
+
+def test_a_temporary_cache_of_others_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    first = temporary_cache.__wrapped__()
+    assert temporary_cache.__wrapped__() == first
+    first.chmod(0o777)
+    other = temporary_cache.__wrapped__()
+    assert other != first
+    first.rmdir()
+    first.symlink_to(tmp_path)
+    assert temporary_cache.__wrapped__() not in (first, other, tmp_path)

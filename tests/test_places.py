@@ -240,6 +240,14 @@ def test_a_run_within_itself_is_refused() -> None:
     assert not Path("a.h5.lock").exists()
 
 
+def test_a_run_on_a_full_disk_leaves_no_lock(capsys: pytest.CaptureFixture[str]) -> None:
+    there = sorted(os.listdir())
+    with full_at(0):
+        assert frb(["runup", CASE, *SHORT, "-o", "a.h5", "--no-picture"]) == 2
+    assert "a.h5\n  output: cannot be written: File too large." in capsys.readouterr().err
+    assert sorted(os.listdir()) == there
+
+
 def test_a_second_sweep_is_refused_at_its_start(capsys: pytest.CaptureFixture[str]) -> None:
     Path("study").mkdir()
     with held("study/sweep.jsonl") as first:

@@ -13,6 +13,7 @@ and returns its exit code (None is 0). Errors are raised as FrbError; `frbcli.cl
 from __future__ import annotations
 
 import json
+import logging
 import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -232,6 +233,7 @@ def _remember_json(context: click.Context, _: click.Parameter, as_json: bool) ->
 
 
 def _terminal(context: click.Context, _: click.Parameter, quiet: bool) -> Terminal:
+    logging.getLogger("frbcli").setLevel(logging.ERROR if quiet else logging.NOTSET)
     return Terminal(json=bool(context.meta.get(_JSON)), quiet=quiet, look=look_of(context))
 
 

@@ -67,8 +67,9 @@ def _taken(path: Path, lock: Path) -> int:
             if _is_at(descriptor, lock):  # else its holder has just removed it
                 if _text(descriptor):
                     _remove_parts(path)
-                os.ftruncate(descriptor, 0)
-                os.write(descriptor, f"{MARK}{os.getpid()} {platform.node()}\n".encode())
+                with suppress(OSError):  # a full disk is told where the run is written
+                    os.ftruncate(descriptor, 0)
+                    os.write(descriptor, f"{MARK}{os.getpid()} {platform.node()}\n".encode())
                 return descriptor
         except BaseException:
             os.close(descriptor)
