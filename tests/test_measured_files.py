@@ -3,6 +3,7 @@ error that says where."""
 
 from __future__ import annotations
 
+import random
 import struct
 import time as clock
 import zlib
@@ -361,3 +362,65 @@ def test_options_that_no_machine_has_are_refused(
 ) -> None:
     path = written(tmp_path / "table.csv", "t,x,y,n", plain_rows(), "\n")
     assert problem in said(path, Measurement(**{**vars(GIVEN), **changed}))
+
+
+# --- anything ---
+
+TOKENS = ("", "nan", "inf", "-inf", "1e300", "-1e15", "1e-320", "0", "1,5", "abc", '"', "#", ";", "\t", "True", "1+2j",
+          "0x10", "\x1b[31m", "1_000", "9" * 400, "\ufeff", "''", "-", "1e", "µ")  # fmt: skip
+SEEDS = [*range(6), *(pytest.param(seed, marks=pytest.mark.nightly) for seed in range(6, 300))]
+
+
+def hostile_table(chance: random.Random) -> bytes:
+    delimiter = chance.choice([",", ";", "\t", " "])
+    rows = [row.split(",") for row in ["t,x,y,n", *plain_rows()[: chance.choice([3, 30, 500])]]]
+    for _ in range(chance.choice([1, 1, 5, 200])):
+        row = chance.choice([rows[0], chance.choice(rows)])
+        change = chance.randrange(4)
+        if change == 0 and row:
+            row[chance.randrange(len(row))] = chance.choice(TOKENS)
+        elif change == 1:
+            row.insert(chance.randrange(len(row) + 1), chance.choice(TOKENS))
+        elif change == 2 and row:
+            del row[chance.randrange(len(row))]
+        else:
+            rows.insert(chance.randrange(len(rows) + 1), [chance.choice(TOKENS) for _ in range(chance.randrange(8))])
+    text = chance.choice(["\n", "\r\n", "\r"]).join(delimiter.join(row) for row in rows)
+    return text.encode(chance.choice(["utf-8", "utf-8", "utf-16", "utf-8-sig"]), "replace")
+
+
+def hostile_bytes(content: bytes, chance: random.Random) -> bytes:
+    changed = bytearray(content)
+    for _ in range(chance.choice([1, 1, 4, 50])):
+        at = chance.randrange(chance.choice([min(200, len(changed)), len(changed)]))
+        changed[at] = chance.choice([0, 1, 127, 128, 255, chance.randrange(256)])
+    return bytes(changed[: chance.choice([len(changed), len(changed), chance.randrange(len(changed))])])
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_any_file_is_read_or_refused_by_one_error(
+    seed: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Warnings of Python are errors in tests."""
+    chance = random.Random(seed)
+    kind = ("csv", "wav", "mat")[seed % 3]
+    path = tmp_path / f"run.{kind}"
+    if kind == "csv":
+        path.write_bytes(hostile_table(chance))
+        words = ["--x", "x", "--y", "y", chance.choice(["--time", "--rate"]), "t", "--speed", "n"]
+        words = [word if words[4] == "--time" or word != "t" else "4000" for word in words]
+    elif kind == "wav":
+        bits, form = chance.choice([(8, 1), (16, 1), (24, 1), (32, 3)])
+        path.write_bytes(hostile_bytes(wav(MOTION, bits, form, extra=NOTES), chance))
+        words = ["--x", "1", "--y", "2", "--speed-at", chance.choice(["120 Hz", "1e-9 Hz", "1e9 Hz"])]
+    else:
+        mat(path, t=TIME, x=X, y=Y, n=np.full(COUNT, SPEED_Hz))
+        path.write_bytes(hostile_bytes(path.read_bytes(), chance))
+        words = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n"]
+    began = clock.process_time()
+    code = frb(["waterfall", str(path), *words, "--clearance", "35 um", "-o", str(tmp_path / "a.png"), "--quiet"])
+    told = capsys.readouterr().err
+    assert code in (0, 2), told
+    assert told.count("frb: ") == (1 if code else 0)
+    assert len(told) < 2000
+    assert clock.process_time() - began < 10.0

@@ -20,6 +20,7 @@ Values = NDArray[np.float64]
 SUFFIXES = (".csv", ".txt", ".wav", ".mat")
 LARGEST_FILE = 1024**3  # bytes
 MOST_NAMED = 20  # columns in an error
+TOLD = (ValueError, OSError, NotImplementedError, Warning)  # whose words a reader of the file is meant to read
 NO_TABLE = "Write CSV with one line of names, and numbers below."
 
 
@@ -86,7 +87,8 @@ def read_columns(path: Path) -> Columns:
     try:
         found = reader(path)
     except Exception as error:  # of three libraries, which raise errors of their own
-        problem = f"cannot be read: {printable(' '.join(str(error).split()))[:200].rstrip('.')}."
+        reason = " ".join(str(error).split()) if isinstance(error, TOLD) else "it is damaged"
+        problem = f"cannot be read: {printable(reason)[:200].rstrip('.')}."
         raise wrong_file(path, problem, "Write it as CSV with one line of names.") from None
     counts = [len(values) for values in found.values.values()]
     if not found.doubtful and (not counts or min(counts) < 2):
