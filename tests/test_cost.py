@@ -13,7 +13,7 @@ from frbcli.case.load import load_case
 from frbcli.film.grid import Mesh
 from frbcli.runs.header import header
 from frbcli.runs.run import runup
-from frbcli.scene.cell_choice import ALONG, AROUND, cell_error, cells_time, fewest_cells
+from frbcli.scene.cell_choice import ALONG, AROUND, GROOVE, cell_error, cells_time, fewest_cells
 from frbcli.scene.cost import expected_cost, solve_us
 from frbcli.scene.course import STAGES, whirl_speed
 from frbcli.scene.expected_error import expected_error
@@ -212,14 +212,16 @@ def about_target(name: str, *settings: str) -> tuple[Plan, str]:
 
 
 def test_cells_hold_the_target_with_the_least_cost() -> None:
-    """The cheapest of the cells that do: no others with as small an error are cheaper."""
+    """The cheapest of the cells that do: no others with as small an error are cheaper, but those that are too few for
+    an error beside grooves to be known."""
     for target in (1e-2, 3e-3, 1e-3):
         case = load_case("axial-groove-two-phase", [f"accuracy.target={target!r}"])
         plan = make_plan(case)
         assert plan.cells is not None
         assert plan.film_error <= target
         assert expected_error(plan).eccentricity <= 1.2 * target
-        cheaper = [(m, k) for m in AROUND for k in ALONG if cells_time(m, k) < 0.99 * cells_time(*plan.cells)]
+        around = [m for m in AROUND if m >= GROOVE.least]
+        cheaper = [(m, k) for m in around for k in ALONG if cells_time(m, k) < 0.99 * cells_time(*plan.cells)]
         assert all(cell_error(case, cells) > 0.8 * target for cells in cheaper)
 
 
