@@ -120,6 +120,11 @@ def test_distance_from_the_front(found: AccuracyLadder) -> None:
     assert few.above_front() == pytest.approx(3.0)
     assert few.above_front(quiet=True) == pytest.approx(1.25)
     assert replace(found, ladder=(cheap, planned)).above_front() == 1.0
+    at_once, free = replace(cheap, cpu_s=0.0, error=planned.error), replace(planned, cpu_s=0.0)
+    assert replace(found, ladder=(at_once, planned)).above_front() == np.inf  # runs that end at once cost nothing
+    assert replace(found, ladder=(at_once, free)).above_front() == 1.0
+    unknown = replace(planned, error=replace(planned.error, eccentricity_largest=np.nan))
+    assert np.isnan(replace(found, ladder=(cheap, unknown)).above_front())
 
 
 def test_rungs_carry_what_their_runs_state(found: AccuracyLadder) -> None:

@@ -1,4 +1,4 @@
-"""Pairs of nasty values in every command that takes a case: done, refused, or ended early with a reason."""
+"""Pairs of nasty values in every command that takes a case: each is done, refused, or ended early with a reason."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 
 from frbcli.cli.main import COMMANDS
 
-BATCH, BATCHES = 44, 24
+BATCH, BATCHES = 44, 8
 BATCH_s = 1800.0
 MEMORY = 4 * 1024**3
 

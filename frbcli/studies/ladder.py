@@ -88,14 +88,18 @@ class AccuracyLadder(Tabular):
 
     def above_front(self, quiet: bool = False) -> float:
         """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
-        quiet: by the counted work in place of the measured CPU time. Infinite if that run did not begin."""
+        quiet: by the counted work in place of the measured CPU time. Infinite if that run did not begin, and beside
+        runs that end at once, which cost nothing; NaN if its error is not known."""
         planned = next((item for item in self.ladder if item.planned), None)
         if planned is None:
             return math.inf
         error = planned.error.eccentricity_largest
         costs = {item.rung: item.work_s if quiet else item.cpu_s for item in self.ladder}
         as_close = [item.rung for item in self.ladder if item.error.eccentricity_largest <= error]
-        return costs[planned.rung] / min(costs[rung] for rung in as_close)
+        own, cheapest = costs[planned.rung], min((costs[rung] for rung in as_close), default=math.nan)
+        if own == cheapest:
+            return 1.0
+        return math.inf if cheapest == 0.0 else own / cheapest
 
     def to_pandas(self) -> pd.DataFrame:
         """One row per rung."""
