@@ -234,8 +234,7 @@ def test_an_interrupted_verification_is_no_second_run(
 def process(code: str, *words: str, **options: Any) -> subprocess.Popen[str]:
     """frb in a process of its own, in which some code is run first."""
     environment = os.environ | {"PYTHONPATH": str(ROOT)} | options.pop("variables", {})
-    heard = "import signal; signal.signal(signal.SIGHUP, signal.SIG_DFL)"  # under nohup it is ignored
-    whole = [sys.executable, "-c", f"{heard}\n{code}\nfrom frbcli.cli.process import main; main()", *words]
+    whole = [sys.executable, "-c", f"{code}\nfrom frbcli.cli.process import main; main()", *words]
     return subprocess.Popen(
         whole, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
     )
