@@ -239,7 +239,7 @@ NOTES = b"bext" + struct.pack("<I", 8) + b"rig no 3"
 
 
 @pytest.mark.parametrize(("bits", "kind"), [(8, 1), (16, 1), (24, 1), (32, 1), (32, 3)])
-@pytest.mark.parametrize("extra", [b"", NOTES])
+@pytest.mark.parametrize("extra", [b"", NOTES], ids=["plain", "notes"])
 def test_samples_of_any_width_have_the_same_amplitude(bits: int, kind: int, extra: bytes, tmp_path: Path) -> None:
     path = tmp_path / "run.wav"
     path.write_bytes(wav(MOTION, bits, kind, extra=extra))
