@@ -10,6 +10,7 @@ import contextlib
 import functools
 import io
 import json
+import math
 import os
 import random
 import signal
@@ -30,6 +31,7 @@ from frbcli.errors import FrbError
 from frbcli.runs.run import run_cost
 
 LONGEST_RUN_s = {"runup": 5.0, "rundown": 5.0, "compare": 2.0, "fit": 0.2, "accuracy": 0.2}  # expected, of one run-up
+LONGEST_STEP_s = 0.1
 LONGEST_s = 90.0  # of CPU time
 CODES = (0, 2, 3)
 
@@ -120,14 +122,14 @@ def _too_long(_signal: int, _frame: FrameType | None) -> None:
 
 
 def _is_long(command: str, source: str, settings: list[str]) -> bool:
-    """Whether a command makes run-ups that `frb check` expects to take long."""
-    if command not in LONGEST_RUN_s:
-        return False
+    """Whether a command makes run-ups that `frb check` expects to take long, or a step of a run-up alone is long: that
+    of a shaft so soft that hundreds of its modes are kept."""
     try:
         case: Case = load_case(source, settings)
-        return run_cost("rundown" if command == "rundown" else "runup", case).total_s > LONGEST_RUN_s[command]
+        cost = run_cost("rundown" if command == "rundown" else "runup", case)
     except FrbError:
         return False
+    return cost.total_s > LONGEST_RUN_s.get(command, math.inf) or cost.step_s > LONGEST_STEP_s
 
 
 @contextlib.contextmanager
