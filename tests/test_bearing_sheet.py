@@ -80,7 +80,7 @@ def test_load_attitude_and_side_flow_of_butenschoen(row: Row) -> None:
     "row", printed("lund-thomsen.csv"), ids=lambda row: f"{row['width_over_diameter']}-{row['s']}"
 )
 def test_coefficients_of_lund_and_thomsen(row: Row) -> None:
-    """Within 2 % of the largest entry; their x lies along the load, y across."""
+    """Within 1.6 % of the largest entry; their x lies along the load, y across."""
     width, clearance = 0.1 * row["width_over_diameter"], 1e-4
     load = 0.02 * 50.0 * width * 0.1 * (0.05 / clearance) ** 2 / row["s"]
     case = load_case_text(
@@ -95,9 +95,9 @@ def test_coefficients_of_lund_and_thomsen(row: Row) -> None:
     assert state.eccentricity == pytest.approx(row["eccentricity"], abs=2e-3)
     assert state.attitude_deg == pytest.approx(row["attitude_deg"], abs=0.2)
     given = np.array([[row["kxx"], row["kxy"]], [row["kyx"], row["kyy"]]])
-    assert np.abs(k - given).max() < 0.02 * np.abs(given).max()
+    assert np.abs(k - given).max() < 0.016 * np.abs(given).max()
     given = np.array([[row["bxx"], row["bxy"]], [row["bxy"], row["byy"]]])
-    assert np.abs(b - given).max() < 0.02 * np.abs(given).max()
+    assert np.abs(b - given).max() < 0.016 * np.abs(given).max()
 
 
 @pytest.fixture(scope="module")
