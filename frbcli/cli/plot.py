@@ -87,11 +87,11 @@ def _animate(
     run_file: Path, target: Path, span: tuple[float | None, float | None], terminal: Terminal
 ) -> None:
     from frbcli.plot.animation import animate_orbits, check_animation
-    from frbcli.results.kinds import PICTURES
+    from frbcli.results import kinds
     from frbcli.results.store import read_run
 
     check_animation(target)
-    check_outputs((target, PICTURES[target.suffix.lower()]))
+    check_outputs((target, kinds.PICTURES[target.suffix.lower()]))
     animate_orbits(read_run(run_file), target, *span)
     terminal.result(f"orbit: {target}")
     terminal.emit({"command": "plot", "run": run_file, "output": target, "what": "orbit"})
