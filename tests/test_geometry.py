@@ -99,7 +99,7 @@ def test_symmetric_lobes_carry_nothing_at_the_centre_and_are_isotropic(count: in
 
     step = 1e-4
     size = np.linalg.norm(force((0.3, 0.0)))
-    assert np.abs(force((0.0, 0.0), 0.0)).max() == 0.0
+    assert np.abs(force((0.0, 0.0), 0.0)).max() < 1e-300  # a full film begins at the smallest number above zero
     assert np.abs(force((0.0, 0.0))).max() < 1e-8 * size
     k = np.column_stack([(force((-x, -y)) - force((x, y))) / (2 * step) for x, y in ((step, 0.0), (0.0, step))])
     assert k[0, 0] == pytest.approx(k[1, 1], rel=1e-4)

@@ -121,7 +121,7 @@ def _run(
     with TemporaryDirectory(prefix="frb-onset-") as folder:
         try:
             other = case.with_settings(*settings)
-            run = runup(other, Path(folder) / "run.h5", observe=watch)
+            run = runup(other, Path(folder) / "run.h5", observe=watch, force=True)
         except FrbError as error:
             return OnsetRun(changed, math.nan, to, problem=str(error))
         if run.status == "interrupted":

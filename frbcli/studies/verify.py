@@ -47,7 +47,7 @@ def verify(case: Case, run: Run, observe: Callable[[Progress], None] | None = No
     with TemporaryDirectory(prefix="frb-verify-") as folder:
 
         def other(*settings: str) -> Run:
-            return again(case.with_settings(*settings), Path(folder) / "run.h5", observe=observe)
+            return again(case.with_settings(*settings), Path(folder) / "run.h5", observe=observe, force=True)
 
         finer = other(f"accuracy.tolerance={0.5 * plan.tolerance!r}", f"accuracy.steps_per_revolution={steps}")
         apart, cpu_s, coupling = difference(run, finer), float(finer.cost["cpu_s"]), None
