@@ -11,7 +11,6 @@ from typing import Any
 from frbcli.runs.interrupt import deaf
 
 HUNG, DIED = "hung", "died"
-ENDS_WITHIN_s = 5.0
 
 Work = Callable[[Any], Any]
 
@@ -52,11 +51,8 @@ class Worker:
 
     def _end(self) -> None:
         self._here.close()
-        self._process.terminate()
-        self._process.join(ENDS_WITHIN_s)
-        if self._process.is_alive():
-            self._process.kill()
-            self._process.join()
+        self._process.kill()  # it ignores all that asks it to end, see deaf
+        self._process.join()
 
 
 def _serve(work: Work, there: Connection) -> None:
