@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.film.grid import Mesh
+from frbcli.film.kinds.tables import TableFilms
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
@@ -62,11 +63,9 @@ def system_of(rotor: LinearRotor, bearings: tuple[RectangularBearing, ...], film
     count = len(films)
     return System(
         rotor=rotor,
-        films=films,
+        films=TableFilms(tuple(bearing.clearance for bearing in bearings), films, bearings),
         names=tuple(str(i) for i in range(count)),
-        clearances=tuple(bearing.clearance for bearing in bearings),
         bodies=np.tile([[ROTOR, HOUSING]], (count, 1)),
         turning=np.tile([[[1.0], [1.0], [0.0]]], (count, 1, 1)),
         drags=(0.0,) * count,
-        bearings=bearings,
     )

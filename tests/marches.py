@@ -78,7 +78,7 @@ def forces(system: System, q: Array, v: Array, speed_up: float, omega: float, an
     total = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
     total = total + rotor.unbalance_cos * (speed_up * math.cos(angle) - omega**2 * math.sin(angle))
     total = total + rotor.unbalance_sin * (speed_up * math.sin(angle) + omega**2 * math.cos(angle))
-    bearings = zip(rotor.journals, rotor.multiplicity, system.films, system.clearances, strict=True)
+    bearings = zip(rotor.journals, rotor.multiplicity, system.films.loop, system.clearances, strict=True)
     for selection, count, film, c in bearings:
         if film.force_scale > 0.0:
             total = total + count * selection.T @ evaluate(film, c, selection @ q, selection @ v, omega).force
@@ -101,7 +101,7 @@ def march(
     written, status = 0, RUNNING
     while status == RUNNING:
         status, fresh = advance(
-            data, system.films, tableau, limits, state, budget, output.after(written)
+            data, system.films.loop, tableau, limits, state, budget, output.after(written)
         )
         written += fresh
     assert written == int(state.numbers[OUTPUTS])

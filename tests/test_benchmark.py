@@ -90,7 +90,7 @@ def naive_cpu_per_simulated_second(system: System, run: Run, slope: float) -> fl
 
     slope: rotor speed per time in rad/s^2.
     """
-    rotor, bearing = system.rotor, system.bearings[0]
+    rotor, bearing = system.rotor, system.films.bearings[0]
     film = NaiveFilm(bearing)
     inverse = np.linalg.inv(rotor.mass)
     n = rotor.size
@@ -184,19 +184,19 @@ def test_film_evaluations_against_the_naive_way() -> None:
 
     case = load_case("jeffcott")
     system = make_system(case, make_plan(case))
-    many(system.films[0], 1)
+    many(system.films.loop[0], 1)
     count = 100_000
     began = time.process_time()
-    many(system.films[0], count)
+    many(system.films.loop[0], count)
     fast = (time.process_time() - began) / count
     d, v = np.array([0.3, -0.2]), np.array([1.0, -2.0])
-    film = NaiveFilm(system.bearings[0])
+    film = NaiveFilm(system.films.bearings[0])
     film.force(d, v, 200.0)
     began = time.process_time()
     for _ in range(10):
         film.force(d, v, 200.0)
     naive = 5 * (time.process_time() - began) / 10
-    assert film.force(d, v, 200.0) == pytest.approx(film_force(system.films[0], *d, *v, 200.0)[:2], rel=0.02)
+    assert film.force(d, v, 200.0) == pytest.approx(film_force(system.films.loop[0], *d, *v, 200.0)[:2], rel=0.02)
     report(f"\nforce and derivatives: {1e6 * fast:.2f} us; naive {1e3 * naive:.1f} ms; ratio {naive / fast:.3g}")
     assert naive / fast > 5000
 
@@ -228,7 +228,7 @@ def slowness_probe() -> Callable[[], float]:
     fast, or at a moment when others use it.
     """
     case = load_case("jeffcott")
-    film = NaiveFilm(make_system(case, make_plan(case)).bearings[0])
+    film = NaiveFilm(make_system(case, make_plan(case)).films.bearings[0])
     d, v = np.array([0.3, -0.2]), np.array([1.0, -2.0])
     film.force(d, v, 200.0)
 

@@ -22,10 +22,11 @@ from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.course import STAGES
+from frbcli.scene.machine_films import settled_share
 from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.system import System, make_system, settled_share
+from frbcli.scene.system import System, make_system
 from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
@@ -48,12 +49,12 @@ def run(case: Case, plan: Plan, system: System, state: State | None = None, budg
     profile = run_up_profile(case)
     state = first_state(case.start, system, profile) if state is None else state
     rows, n = 4000, system.rotor.size
-    output = make_output(rows, n, len(system.volumes))
+    output = make_output(rows, n, len(system.films.volumes))
     status, written = RUNNING, 0
     tableau, control, rotor = METHODS[plan.method].tableau, control_of(case, plan), rotor_data(system, profile)
     while status == RUNNING:
         status, fresh = advance(
-            rotor, system.films, tableau, control, state, budget, output.after(written)
+            rotor, system.films.loop, tableau, control, state, budget, output.after(written)
         )
         written += fresh
     return output.q[:written], state
@@ -65,7 +66,7 @@ def run(case: Case, plan: Plan, system: System, state: State | None = None, budg
 def test_all_oil_is_accounted_for(settings: list[str]) -> None:
     case = case_of("jeffcott", "start.position=resting", *settings)
     plan, system = planned(case)
-    film = system.volumes[0]
+    film = system.films.volumes[0]
     before = first_state(case.start, system, run_up_profile(case))
     _, after = run(case, plan, system)
     free = ~film.grid.fixed
@@ -114,7 +115,7 @@ def test_measured_order_in_time_is_that_of_the_method(cavitation: str, method: s
         # no error of a step is as large as this tolerance: what is longer than asked for is refused, nothing else
         limits = control(tolerance=1e-2, longest=end / steps, output=end)
         output = make_output(9, len(state.q), 1)
-        status, _ = advance(rotor, system.films, METHODS[method].tableau, limits, state, 10**6, output)
+        status, _ = advance(rotor, system.films.loop, METHODS[method].tableau, limits, state, 10**6, output)
         assert status == FINISHED
         assert state.numbers[REJECTED] == 0
         return end / state.numbers[STEPS], state.q[:2] / system.clearances[0]
@@ -144,9 +145,9 @@ def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str, grid:
     def found(tolerance: float, settled: float) -> tuple[Array, float]:
         """Displacements over the clearance, and film solves per step."""
         plan, system = planned(case, tolerance=tolerance)
-        assert isinstance(system.films, VolumeFilms)
-        system.films.numbers[:, SETTLED] = settled
-        film, first = system.volumes[0], first_state(case.start, system, run_up_profile(case))
+        assert isinstance(system.films.loop, VolumeFilms)
+        system.films.loop.numbers[:, SETTLED] = settled
+        film, first = system.films.volumes[0], first_state(case.start, system, run_up_profile(case))
         q, last = run(case, plan, system)
         if system.remembers:
             gained = (film.grid.area * (last.wet[2, 0] - first.wet[2, 0]))[~film.grid.fixed].sum()
@@ -167,7 +168,7 @@ def test_films_of_rings_take_few_iterations(cavitation: str, most: float) -> Non
     _, state = run(case, plan, system)
     steps = state.numbers[STEPS] + state.numbers[REJECTED]
     assert state.numbers[REJECTED] < 0.05 * steps
-    assert state.numbers[SOLVES] / (steps * len(system.volumes) * STAGES[plan.method]) < most
+    assert state.numbers[SOLVES] / (steps * len(system.films.volumes) * STAGES[plan.method]) < most
 
 
 def test_half_sommerfeld_on_cells_is_that_of_the_table() -> None:

@@ -24,6 +24,7 @@ from frbcli.film.cells.data import FLOW_SCALE, UNKNOWN, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.state import OIL, PASSED, W
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_defect
@@ -37,7 +38,7 @@ from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.films import begin_stage, make_work
 from frbcli.solve.micro_step import _solve_films
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
-from frbcli.solve.state import OIL, PASSED, RUNNING, State, W, make_output
+from frbcli.solve.state import RUNNING, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -57,9 +58,10 @@ def ringed(*settings: str) -> Case:
 def system_of(case: Case, change: Callable[[Channel], Channel] = lambda channel: channel) -> System:
     """The system of a case, its channels changed."""
     system = make_system(case, make_plan(case))
-    channels = [change(channel) for channel in coupled_channels(case, system.volumes)]
-    data = volume_films(system.volumes)
-    return replace(system, films=with_channels(data, system.volumes, channels))
+    channels = [change(channel) for channel in coupled_channels(case, system.films.volumes)]
+    data = volume_films(system.films.volumes)
+    films = replace(system.films, data=with_channels(data, system.films.volumes, channels))
+    return replace(system, films=films)
 
 
 def run(case: Case, system: System) -> tuple[State, State]:
@@ -67,7 +69,7 @@ def run(case: Case, system: System) -> tuple[State, State]:
     profile, plan = run_up_profile(case), make_plan(case)
     first, state = first_state(case.start, system, profile), first_state(case.start, system, profile)
     output, written, status = make_output(1000, system.rotor.size, 2), 0, RUNNING
-    parts = rotor_data(system, profile), system.films, METHODS[plan.method].tableau, control_of(case, plan)
+    parts = rotor_data(system, profile), system.films.loop, METHODS[plan.method].tableau, control_of(case, plan)
     while status == RUNNING:
         status, fresh = advance(*parts, state, 10**6, output.after(written))
         written += fresh
@@ -82,7 +84,7 @@ def begin(films, work, wet, flows, weights, g):  # type: ignore[no-untyped-def]
 def feed_hole_pressures(system: System, state: State) -> tuple[float, float]:
     """Gauge pressures in Pa at the first feed holes of the inner and of the outer film."""
     means = []
-    for film, w in zip(system.volumes, state.wet[W], strict=True):
+    for film, w in zip(system.films.volumes, state.wet[W], strict=True):
         pressure = film.law.cells(w, film.scales).pressure * film.section.pressure_scale
         first = np.argwhere(film.grid.fixed)[0]
         means.append(float(pressure[tuple(first)]))
@@ -97,16 +99,16 @@ def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> N
     case = ringed(*AT_END[: len(supply)], *TWO_PHASE, *SHORT)
     system = make_system(case, make_plan(case))
     first, last = run(case, system)
-    feed_holes = system.films.feed_holes  # type: ignore[union-attr]
+    feed_holes = system.films.loop.feed_holes  # type: ignore[union-attr]
     sizes = [film.section.copies * film.section.radius * film.section.width * film.section.clearance
-             for film in system.volumes]  # fmt: skip
+             for film in system.films.volumes]  # fmt: skip
     assert feed_holes[0, FLOW_SCALE] == sizes[0]
     brought = np.array(sizes) * last.flows[PASSED, :, CHANNELS_NET]
     if supply:
         assert brought[0] > 0.0
         assert brought.sum() == pytest.approx(0.0, abs=1e-10 * brought[0])
-    for i, film in enumerate(system.volumes):
-        own = system.films.cells[i, UNKNOWN] != 0.0  # type: ignore[union-attr]
+    for i, film in enumerate(system.films.volumes):
+        own = system.films.loop.cells[i, UNKNOWN] != 0.0  # type: ignore[union-attr]
         gained = (film.grid.area * (last.wet[OIL, i] - first.wet[OIL, i]))[own].sum()
         assert gained == pytest.approx(net_flow(last, i), abs=1e-10 * last.flows[PASSED, i].max())
     defect = oil_defect(system, last)
@@ -137,7 +139,7 @@ def test_films_at_rest_are_a_network(resistance: float) -> None:
     """
     case = ringed(*STILL, *AT_END, "speed.duration=1e-3 s", "accuracy.mesh=[5,36]")  # as many cells under all holes
     system = system_of(case, lambda channel: replace(channel, resistance=resistance))
-    inner, outer = system.volumes
+    inner, outer = system.films.volumes
     supplied = 1e5
     leak = _fed(inner, 1e5, 0.0) / 1e5
     through = 1.0 / (resistance / BORES + 1.0 / leak)  # flow through channels and inner film per pressure outside
@@ -155,7 +157,8 @@ def test_films_at_rest_are_a_network(resistance: float) -> None:
 def test_resistance_of_a_bore() -> None:
     """128 eta L / (pi d^4); for 2.5 mm through 7.5 mm of ring, with 12 mPa s."""
     assert channel_resistance(2.5e-3, 7.5e-3, 12e-3) == pytest.approx(9.387e7, rel=1e-4)
-    (first, *_) = coupled_channels(ringed(*AT_END), make_system(ringed(*AT_END), make_plan(ringed(*AT_END))).volumes)
+    case = ringed(*AT_END)
+    (first, *_) = coupled_channels(case, make_system(case, make_plan(case)).films.volumes)
     assert first.resistance == channel_resistance(2.5e-3, 7.5e-3, 12e-3)
     assert first.centrifugal == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2))
 
@@ -169,7 +172,8 @@ def test_a_channel_without_resistance_has_one_pressure_less_what_is_thrown_outwa
     spin = 200.0 * math.pi
     state.v[list(system.spins)] = spin
     plan = make_plan(case)
-    parts = rotor_data(system, run_up_profile(case)), system.films, METHODS[plan.method].tableau, control_of(case, plan)
+    rotor, tableau = rotor_data(system, run_up_profile(case)), METHODS[plan.method].tableau
+    parts = rotor, system.films.loop, tableau, control_of(case, plan)
     advance(*parts, state, 10**6, make_output(100, system.rotor.size, 2))
     inner, outer = feed_hole_pressures(system, state)
     assert outer - inner == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2) * spin**2, rel=1e-3)
@@ -200,14 +204,14 @@ def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> No
     weights, turn = np.array([[0.0, 0.0], [0.0, 1.0]]), 0.0 if system.remembers else 0.3
 
     def solved(u: Array) -> tuple[Array, Array]:
-        work = make_work(system.films, state.wet, 2)
+        work = make_work(system.films.loop, state.wet, 2)
         work.grids[:, GRID_TURN], work.grids[:, GRID_SPEED] = turn, 150.0  # turn and speed of the ring
-        begin(system.films, work, state.wet, state.flows, weights, g)
+        begin(system.films.loop, work, state.wet, state.flows, weights, g)
         film = np.zeros((JOURNAL_ROWS, 4))
         film[U], film[X_0] = u, place
         film[OMEGA] = np.repeat([2 * math.pi * 100.0 + 150.0, 150.0], 2)
         for _ in range(2):  # the derivatives are those of the second time, where all has settled
-            assert _solve_films(system.films, work, clearances, control, g, 1, film) > 0
+            assert _solve_films(system.films.loop, work, clearances, control, g, 1, film) > 0
         own = np.zeros((4, 4))
         for f in (0, 2):
             own[f : f + 2, f], own[f : f + 2, f + 1] = film[BY_X, f : f + 2], film[BY_Y, f : f + 2]

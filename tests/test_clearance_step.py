@@ -14,6 +14,7 @@ import frbcli
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.film.state import OIL
 from frbcli.linear.resting import resting_position
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.march import March
@@ -22,7 +23,7 @@ from frbcli.scene.plan import make_plan
 from frbcli.scene.profiles import run_up_profile
 from frbcli.scene.segments import Segment, make_segments
 from frbcli.scene.system import make_system
-from frbcli.solve.state import FINISHED, OIL, RUNNING, State
+from frbcli.solve.state import FINISHED, RUNNING, State
 
 Array = NDArray[np.float64]
 STEADY = ["speed.from=60Hz", "speed.to=60Hz", "speed.duration=0.4s", "rotor.unbalance=0 kg*m", "output.step=0.5ms"]
@@ -103,7 +104,7 @@ def test_oil_stays_or_leaves_through_the_ends(model: str, clearance: str) -> Non
 
 def own_oil(segment: Segment, snapshot: dict[str, Array]) -> float:
     """m^3 in the free cells of the only film, less what has come in since the beginning."""
-    film, state = segment.system.volumes[0], State(*(snapshot[name] for name in State._fields))
+    film, state = segment.system.films.volumes[0], State(*(snapshot[name] for name in State._fields))
     inside = float((film.grid.area * state.wet[OIL, 0])[~film.grid.fixed].sum())
     return film.section.radius * film.section.width * film.section.clearance * (inside - net_flow(state, 0))
 

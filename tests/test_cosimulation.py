@@ -45,10 +45,10 @@ def marched(case: Case, apart: bool, longest: float, tolerance: float) -> tuple[
     if apart:
         state = in_turn(system, state, float(profile.speeds[0]))
     rows = int(profile.end / control.output_step) + 10
-    output = make_output(rows, system.rotor.size, len(system.volumes))
+    output = make_output(rows, system.rotor.size, len(system.films.volumes))
     step = advance_in_turn if apart else advance
     tableau = METHODS["esdirk4"].tableau
-    status, written = step(rotor_data(system, profile), system.films, tableau, control, state, 10**8, output)
+    status, written = step(rotor_data(system, profile), system.films.loop, tableau, control, state, 10**8, output)
     assert status == FINISHED
     return output.q[:written] / system.clearances[0], state
 

@@ -14,10 +14,12 @@ from frbcli.film.grid import Mesh
 from frbcli.runs.header import header
 from frbcli.runs.run import runup
 from frbcli.scene.cell_choice import ALONG, AROUND, GROOVE, cell_error, cells_time, fewest_cells
-from frbcli.scene.cost import expected_cost, solve_us
+from frbcli.scene.cost import expected_cost
 from frbcli.scene.course import STAGES, whirl_speed
 from frbcli.scene.expected_error import expected_error
-from frbcli.scene.film_choice import CELLS, CHAINS, CLOSED_FORM, FIELDS, TABLE, choose_films, short_error
+from frbcli.scene.film_choice import choose_films, short_error
+from frbcli.scene.forms.cells import CELLS
+from frbcli.scene.forms.tables import CHAINS, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.plan import CELL_SHARE, TIGHT_SHARE, make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import signal_count
@@ -58,12 +60,13 @@ def test_steps_are_those_of_the_revolutions() -> None:
     both = load_case("run-down")
     down = expected_cost(both, make_plan(both), run_down_profile(both))
     assert down.steps == pytest.approx((2 * 1500 + 150) * 40, rel=0.1)
-    assert cost.cpu_s == pytest.approx(1e-6 * cost.film_solves * solve_us(plan))
+    assert cost.cpu_s == pytest.approx(1e-6 * cost.film_solves * plan.form.solve_us(plan))
 
 
 def test_finer_films_cost_more() -> None:
     def us(name: str, *settings: str) -> float:
-        return solve_us(make_plan(load_case(name, settings)))
+        plan = make_plan(load_case(name, settings))
+        return plan.form.solve_us(plan)
 
     assert us("soft-shaft", "accuracy.mesh=[6, 96]") > 1.5 * us("soft-shaft")
     assert us("jeffcott-two-phase", "accuracy.mesh=[12, 96]") > 4.0 * us("jeffcott-two-phase")

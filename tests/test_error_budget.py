@@ -19,7 +19,6 @@ from frbcli.runs.fewer_cells import (
     SAFETY_OF_GROOVES,
     SAFETY_OF_RINGS,
     SAFETY_OF_RINGS_AT_REST,
-    fewer_cells,
     on_fewer_cells,
 )
 from frbcli.runs.film_error import FilmErrors
@@ -111,7 +110,7 @@ def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tm
 def test_cells_of_the_comparison(name: str, mesh: list[int], fewer: tuple[int, int] | None) -> None:
     case = load_case(name, [f"accuracy.mesh={mesh}"])
     plan = make_plan(case)
-    assert fewer_cells(case, plan, make_system(case, plan)) == fewer
+    assert plan.form.fewer_cells(case, plan) == fewer
 
 
 def test_error_of_cells_from_two_runs() -> None:
@@ -169,7 +168,7 @@ def test_the_share_of_the_difference_that_is_stated(name: str, settings: list[st
     case = load_case(name, settings)
     plan = make_plan(case)
     assert plan.cells is not None
-    cells = fewer_cells(case, plan, make_system(case, plan))
+    cells = plan.form.fewer_cells(case, plan)
     assert cells is not None
     found = on_fewer_cells(march.March(case, plan, make_segments(case, plan), run_up_profile(case)), 0.0)
     assert found is not None

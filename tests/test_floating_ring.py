@@ -105,7 +105,7 @@ def test_resting_position_carries_the_load() -> None:
     rest = resting_position(system, 200 * math.pi)
     places = system.rotor.journals @ rest
     omegas = system.omegas(200 * math.pi, 2 * math.pi * np.array(point.ring_speeds_Hz))
-    forces = [system.film_force(i, place, np.zeros(2), float(omegas[i])).force for i, place in enumerate(places)]
+    forces = [system.films.force(i, place, np.zeros(2), float(omegas[i])).force for i, place in enumerate(places)]
     np.testing.assert_allclose(forces[0], [0.0, 3.0 * 9.81], atol=1e-5)
     np.testing.assert_allclose(forces[1], [0.0, 3.075 * 9.81], atol=1e-5)
     turning = 2 * math.pi * np.array(point.ring_speeds_Hz)
@@ -151,7 +151,7 @@ def _film_forces(run: Run, system: System, q: Array, v: Array) -> Array:
     """(samples, films, 2) forces of the films, computed again from the motion."""
     omega, ring = 2 * math.pi * run["speed_Hz"][2:-2], 2 * math.pi * run["ring_speed_Hz"][2:-2]
     return np.array([
-        [system.film_force(i, selection @ q_k, selection @ v_k, total).force
+        [system.films.force(i, selection @ q_k, selection @ v_k, total).force
          for i, (selection, total) in enumerate(
              zip(system.rotor.journals, system.omegas(o, np.array([r])), strict=True))]
         for q_k, v_k, o, r in zip(q, v, omega, ring, strict=True)
@@ -275,11 +275,11 @@ def test_channels_throw_oil_outwards_unless_told_not_to() -> None:
     centrifugal, level = (ringed("film.cavitation=half-sommerfeld", f"bearing.centrifugal_pressure={word}")
                      for word in ("true", "false"))  # fmt: skip
     system = system_of(centrifugal)
-    inner, outer = centrifugal_pressures(centrifugal, system.volumes)
-    assert inner * system.volumes[0].section.pressure_scale == pytest.approx(830 / 4 * (20e-3**2 - 12.5e-3**2))
+    inner, outer = centrifugal_pressures(centrifugal, system.films.volumes)
+    assert inner * system.films.volumes[0].section.pressure_scale == pytest.approx(830 / 4 * (20e-3**2 - 12.5e-3**2))
     assert outer == 0.0
-    assert centrifugal_pressures(level, system.volumes) == (0.0, 0.0)
-    assert centrifugal_pressures(ringed('bearing.ring.spin="blocked"'), system.volumes) == (0.0, 0.0)
+    assert centrifugal_pressures(level, system.films.volumes) == (0.0, 0.0)
+    assert centrifugal_pressures(ringed('bearing.ring.spin="blocked"'), system.films.volumes) == (0.0, 0.0)
 
 
 # --------------------------------------------------------------------------------------- a cavitation model per film

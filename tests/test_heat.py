@@ -341,7 +341,7 @@ def test_scaled_film_is_the_film_of_that_viscosity_and_clearance(settings: list[
     again = make_system(warm_case(case, warm, clearance), plan)
     assert scaled.drags == pytest.approx(again.drags)
     place, velocity = np.array([12e-6, -9e-6]), np.array([1e-4, 2e-4])
-    one, other = (machine.film_force(0, place, velocity, 900.0) for machine in (scaled, again))
+    one, other = (machine.films.force(0, place, velocity, 900.0) for machine in (scaled, again))
     for name in ("force", "by_displacement", "by_velocity"):
         expected = getattr(other, name)
         assert np.allclose(getattr(one, name), expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
@@ -362,7 +362,7 @@ def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) ->
     """The same linear film on finite volumes, its outflow where the pressure falls towards the end."""
     cells = ["film.solution=cells", "accuracy.mesh=[40, 240]", "film.cavitation=sommerfeld", "bearing.ends=oil-bath"]
     case = load_case("jeffcott", [f"bearing.supply.pressure={pressure}", *cells])
-    (film,) = make_system(case, make_plan(case)).volumes
+    (film,) = make_system(case, make_plan(case)).films.volumes
     omega, d = 900.0, np.array([0.6, -0.8]) * eccentricity
     motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
     solution = FilmSolver(film).steady(motion)
@@ -386,10 +386,10 @@ def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
 def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     settings = ["film.cavitation=sommerfeld", "bearing.ends=oil-bath", "film.solution=cells", "accuracy.mesh=[40, 240]"]
     case = load_case("axial-groove", settings)
-    (film,) = make_system(case, make_plan(case)).volumes
+    (film,) = make_system(case, make_plan(case)).films.volumes
     plain = load_case("axial-groove")
     system = make_system(plain, make_plan(plain))
-    flow = make_end_flow(system.bearings[0], system.films[0])
+    flow = make_end_flow(system.films.bearings[0], system.films.loop[0])
     d, omega = np.array([0.3, -0.4]), 900.0
     motion = Motion((0.3, -0.4), (0.0, 0.0), omega)
     w = 0.5 * omega * np.array([d[1], -d[0]])
@@ -400,7 +400,7 @@ def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
 @pytest.mark.parametrize("cavitation", ["reynolds", "two-phase"])
 def test_side_flow_of_cells_balances_what_the_groove_feeds(cavitation: str) -> None:
     case = load_case("jeffcott", [f"film.cavitation={cavitation}", "bearing.supply.pressure=3 bar"])
-    (film,) = make_system(case, make_plan(case)).volumes
+    (film,) = make_system(case, make_plan(case)).films.volumes
     motion = Motion((0.3, -0.4), (0.0, 0.0), 900.0)
     solution = FilmSolver(film).steady(motion)
     balance = loads(film, motion, solution).oil

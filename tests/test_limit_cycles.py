@@ -245,7 +245,7 @@ def test_a_disturbance_above_the_threshold_grows_by_the_eigenvalue(name: str) ->
     output = make_output(400, len(q), len(system.names))
     tableau, status, rows = METHODS[plan.method].tableau, RUNNING, []
     while status == RUNNING:
-        status, count = advance(rotor, system.films, tableau, control, state, 10**7, output)
+        status, count = advance(rotor, system.films.loop, tableau, control, state, 10**7, output)
         rows.append(np.hstack([output.q[:count, :n] - q[:n], output.v[:count] - v]))
     x = np.concatenate(rows)
     x[:, 2 * n :] /= machine.pace
@@ -298,7 +298,7 @@ def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
     up to an eccentricity of 0.6; and the derivatives are those of the force."""
     case = frbcli.load_case("floating-ring", ["film.cavitation=half-sommerfeld"])
     system = make_system(case, make_plan(case))
-    mean, volume = smooth_films(system)[film]._replace(drop=0.0), system.volumes[film]
+    mean, volume = smooth_films(system)[film]._replace(drop=0.0), system.films.volumes[film]
     c, omega, bores = volume.section.clearance, 2000.0, len(volume.section.holes)
     for eccentricity, v in ((0.2, (0.0, 0.0)), (0.6, (100.0, 50.0))):
         d = (eccentricity * math.cos(0.3), eccentricity * math.sin(0.3))

@@ -39,7 +39,7 @@ def test_numbers_do_not_depend_on_the_size_of_the_buffers() -> None:
     output = make_output(20, 4)
     rows, status = [], RUNNING
     while status == RUNNING:
-        status, written = advance(data, system.films, METHODS["esdirk4"].tableau, limits, state, 10**9, output)
+        status, written = advance(data, system.films.loop, METHODS["esdirk4"].tableau, limits, state, 10**9, output)
         rows.append(output.q[:written].copy())
     np.testing.assert_array_equal(np.concatenate(rows), whole.q)
 

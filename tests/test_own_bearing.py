@@ -388,7 +388,7 @@ def test_a_ring_between_bearing_models_must_be_blocked() -> None:
     with pytest.raises(InputError, match="needs the torques of the films"):
         frbcli.make_plan(frbcli.load_case("floating-ring", settings))
     case = frbcli.load_case("floating-ring", [*settings, "bearing.ring.spin=blocked"])
-    assert len(make_system(case, frbcli.make_plan(case)).films) == 2
+    assert len(make_system(case, frbcli.make_plan(case)).films.loop) == 2
 
 
 def test_a_case_that_was_read_before_its_model_is_told_to_be_read_again() -> None:

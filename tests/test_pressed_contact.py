@@ -24,6 +24,7 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.unknown import unknowns_of
 from frbcli.film.rectangles.film_force import film_force
+from frbcli.film.state import WET
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.runs.march import March
 from frbcli.scene.plan import make_plan
@@ -36,7 +37,7 @@ from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work
 from frbcli.solve.films import make_work
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, FilmMotion, U
-from frbcli.solve.state import FINISHED, RUNNING, WET, Control
+from frbcli.solve.state import FINISHED, RUNNING, Control
 
 Array = NDArray[np.float64]
 BASE = "axial-groove-two-phase"
@@ -127,7 +128,7 @@ def contact_at(eccentricity: float, stiffness: float) -> Control:
 def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float = SOFT) -> Pressed:
     """A film with a shell that gives way, ready for stages with this g; films with cells go on from call to call."""
     system = system_of(kind)
-    data, clearances = system.films, np.array(system.clearances)
+    data, clearances = system.films.loop, np.array(system.clearances)
     if isinstance(data, ElementFilm):
         return _published(system, data, touches, omega, g, stiffness)
     cells = isinstance(data, VolumeFilms)
@@ -151,9 +152,9 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
 def _published(
     system: System, data: ElementFilm, touches: float, omega: float, g: float, stiffness: float
 ) -> Pressed:
-    assert system.published is not None
+    assert system.films.film is not None
     near = films.polar(touches - 0.006, -1.1)
-    start = system.published.steady(Motion((float(near[0]), float(near[1])), (0.0, 0.0), omega)).state
+    start = system.films.film.steady(Motion((float(near[0]), float(near[1])), (0.0, 0.0), omega)).state
     work, clearances = make_element_work(data, 2), np.array(system.clearances)
     work.w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
     work.past[:] = start.fraction / g
@@ -247,7 +248,7 @@ def test_table_and_cells_press_alike(depth: float) -> None:
 @pytest.mark.parametrize("kind", TABULATED)
 @pytest.mark.parametrize("eccentricity", [0.5, 0.9994, 0.9997])
 def test_nothing_is_changed_where_contact_ends_the_run(kind: str, eccentricity: float) -> None:
-    data, d, v = system_of(kind).films, eccentricity * AHEAD, np.array([3.0, -8.0])
+    data, d, v = system_of(kind).films.loop, eccentricity * AHEAD, np.array([3.0, -8.0])
     got = pressed(kind, 0.9999, 600.0, 0.0, stiffness=0.0)(d, v)
     assert tuple(got[FORCE]) == film_force(data[0], *(got[X_0] / system_of(kind).clearances[0]), *v, 600.0)[:2]
 
@@ -275,7 +276,7 @@ def cells_of(*settings: str) -> System:
 def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: bool) -> tuple[int, Array, Array]:
     """(iterations, force, oil fractions) of a film that feels a journal at rest; 24 iterations: it has not settled.
     past: oil at the start over g; leaps: cells may leap over their transition."""
-    data: object = system.films
+    data: object = system.films.loop
     work = make_work(data, np.zeros((4, 1, *w.shape)), 2)
     work.w[0], work.past[0], grid = w, past, work.grids[0]
     force, states, iteration = np.zeros(2), work.states[0], 0
@@ -292,7 +293,7 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
 
 def gaps(system: System, felt: Array) -> Array:
     """(m, 1) the gap of the cells."""
-    ring = system.films.ring[0]  # type: ignore[union-attr]
+    ring = system.films.loop.ring[0]  # type: ignore[union-attr]
     return np.asarray(ring[GAP] + felt[0] * ring[SIN] - felt[1] * ring[COS])[:, None]
 
 
@@ -312,7 +313,7 @@ def test_a_cell_without_oil() -> None:
 def test_cells_of_a_closing_gap_settle() -> None:
     """The narrowest column is to be half full after a very short step, and begins with a huge pressure."""
     system, g = cells_of(), 1e-7
-    ring = system.films.ring[0]  # type: ignore[union-attr]
+    ring = system.films.loop.ring[0]  # type: ignore[union-attr]
     felt = 0.9997 * np.array([-ring[SIN, 14], ring[COS, 14]])
     past = np.repeat(gaps(system, felt) / g, 6, axis=1)
     past[14] *= 0.6
@@ -328,7 +329,7 @@ def test_cells_of_a_closing_gap_settle() -> None:
 def test_the_force_of_cells_has_no_jump_over_the_contact(touches: float) -> None:
     """A journal at rest anywhere from before the contact to deep in the shell, as above but each film for itself."""
     system, g, begins = cells_of(), 2e-5, closes_freely_until(touches)
-    ring = system.films.ring[0]  # type: ignore[union-attr]
+    ring = system.films.loop.ring[0]  # type: ignore[union-attr]
     n = np.array([-ring[SIN, 14], ring[COS, 14]])
     past = np.repeat(gaps(system, (begins - 1.2 * (1.0 - begins)) * n) / g, 6, axis=1)
 

@@ -21,6 +21,7 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import oil_flows, open_area, published_loads
 from frbcli.film.published.moving import oil_held, oil_passing, residual
 from frbcli.film.published.unknown import pressures_of, unknowns_of
+from frbcli.film.state import OIL, W
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_created
 from frbcli.runs.start import first_state, rotor_data
@@ -31,7 +32,7 @@ from frbcli.scene.system import System, make_system
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, ElementWork, make_element_work
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
-from frbcli.solve.state import FINISHED, OIL, RUNNING, Control, State, W, make_output
+from frbcli.solve.state import FINISHED, RUNNING, Control, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
@@ -67,7 +68,7 @@ def run(
     tableau, rotor = METHODS[plan.method].tableau, rotor_data(system, profile)
     while status == RUNNING:
         status, fresh = advance(
-            rotor, system.films, tableau, control or control_of(case, plan), state, budget, output.after(written)
+            rotor, system.films.loop, tableau, control or control_of(case, plan), state, budget, output.after(written)
         )
         written += fresh
     assert status == FINISHED
@@ -80,8 +81,8 @@ def fixed_steps(case: Case, plan: Plan, steps: int) -> Control:
 
 
 def film_of(system: System) -> PublishedFilm:
-    assert system.published is not None
-    return system.published
+    assert system.films.film is not None
+    return system.films.film
 
 
 def test_a_full_film_is_that_of_the_other_forms() -> None:
@@ -127,7 +128,7 @@ def test_a_fed_film_starts_full() -> None:
 
 def stage_of(system: System, d: tuple[float, float]) -> tuple[ElementFilm, PublishedFilm, ElementWork, Array]:
     """A settled film with the unknowns, past and journal's rows of a stage of 0.1 ms."""
-    film, data, g, omega = film_of(system), system.films, 1e-4, 2 * math.pi * 30.0
+    film, data, g, omega = film_of(system), system.films.loop, 1e-4, 2 * math.pi * 30.0
     assert isinstance(data, ElementFilm)
     start = film.steady(Motion(d, (0.0, 0.0), omega)).state
     rows = np.zeros((JOURNAL_ROWS, 2))
@@ -192,7 +193,7 @@ def test_a_stage_holds_both_equations() -> None:
 def test_the_oil_of_the_loop_is_that_of_the_plain_flows(settings: tuple[str, ...]) -> None:
     """What comes in, leaves and is held while the journal moves, with the ends free to air and in an oil bath."""
     _, system = planned(case_of(SOFT, *settings))
-    film, data = film_of(system), system.films
+    film, data = film_of(system), system.films.loop
     assert isinstance(data, ElementFilm)
     motion = Motion((0.1, -0.5), (3.0, -8.0), 2 * math.pi * 30.0)
     start = film.steady(motion).state

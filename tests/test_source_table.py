@@ -23,9 +23,9 @@ from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.scene.films import film_places
+from frbcli.scene.machine_films import source_film
 from frbcli.scene.plan import make_plan
 from frbcli.scene.section import film_section
-from frbcli.scene.system import source_film
 
 READINGS = ("absolute", "dimensionless")
 MESH = Mesh(axial=6, circumferential=48)

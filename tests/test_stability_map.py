@@ -98,7 +98,7 @@ def test_films_with_tables_have_curves_of_folds_as_well() -> None:
     places = {round(point.value, 6): point.speed_Hz for point in fold.points}  # curves begin on the border
     line = CubicSpline(*zip(*sorted(places.items()), strict=True))
     assert float(line(36.2)) == pytest.approx(frbcli.limit_cycles(case).of("fold")[0].speed_Hz, rel=1e-4)
-    tables = [make_system(one, make_plan(one)).films[0].table for one in (case, frbcli.load_case("jeffcott"))]
+    tables = [make_system(one, make_plan(one)).films.loop[0].table for one in (case, frbcli.load_case("jeffcott"))]
     assert tables[0] is tables[1]
 
 

@@ -15,12 +15,12 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
-from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.cell_choice import FEWEST, given_cells
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import make_law
+from frbcli.scene.forms.models import chosen_model, model_decisions
+from frbcli.scene.forms.published import DIFFUSIONS, ELEMENTS
 from frbcli.scene.planned import Decision
-from frbcli.scene.published import DIFFUSIONS, ELEMENTS
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
 

@@ -18,7 +18,7 @@ from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.solution import FilmState, PublishedSolution
-from frbcli.scene.system import published_film
+from frbcli.scene.machine_films import published_film
 
 Array = NDArray[np.float64]
 
@@ -42,8 +42,7 @@ def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: Fil
     solution = film.steady(motion, start)
     error = math.nan
     try:
-        half = max(plan.cells[0] // 2, 3), max(plan.cells[1] // 2, 1)
-        coarse = published_film(case, plan.section, half).steady(motion)
+        coarse = film.coarser().steady(motion)
         error = max(estimate(_pair(solution), _pair(coarse)), solution.unsettled)
     except NotConverged:
         pass

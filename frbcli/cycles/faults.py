@@ -13,8 +13,8 @@ from frbcli.scene.channels import coupled
 from frbcli.scene.film_choice import all_clipped, needs_cells
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
+from frbcli.scene.forms.published import is_published
 from frbcli.scene.keys import cavitation_keys
-from frbcli.scene.published import is_published
 
 
 def check(case: Case, with_oil: bool = False) -> tuple[float, float]:

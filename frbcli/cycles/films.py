@@ -2,32 +2,16 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 import numpy as np
 
-from frbcli.film.cells.data import CENTRIFUGAL, VolumeFilms
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.scene.system import System
 
 
 def smooth_films(system: System) -> tuple[FilmData, ...]:
     """The films of a system; those on cells tabulated as the mean over the angle of their openings."""
-    if not isinstance(system.films, VolumeFilms):
-        return cast(tuple[FilmData, ...], system.films)
-    from frbcli.film.cells.mean_film import mean_film  # with the solver of cells, which takes long to load
-
-    found: list[FilmData] = []
-    for i, film in enumerate(system.volumes):
-        openings = film.section.holes
-        drop = 0.0
-        ring = int(system.bodies[i, 1])
-        centrifugal = float(system.films.numbers[i, CENTRIFUGAL])
-        if openings and ring >= 0 and centrifugal > 0.0 and openings[0].pressure > 0.0:
-            share = _ring_share(system, i, ring)
-            drop = centrifugal * share**2 * film.section.pressure_scale / openings[0].pressure
-        found.append(mean_film(film, len(openings), drop))
-    return tuple(found)
+    outside = (int(body) for body in system.bodies[:, 1])
+    return system.films.smooth([_ring_share(system, i, ring) if ring >= 0 else 0.0 for i, ring in enumerate(outside)])
 
 
 def _ring_share(system: System, film: int, ring: int) -> float:

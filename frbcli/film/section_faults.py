@@ -6,6 +6,7 @@ import itertools
 import math
 from typing import NamedTuple
 
+from frbcli.film.cavitation.law import Law
 from frbcli.film.gap import Hole, Section, smallest_gap
 
 TURN = 2.0 * math.pi
@@ -40,6 +41,14 @@ def no_inflow(section: Section) -> bool:
     edges = {"oil-bath": 0.0, "groove": section.far_pressure}
     highest = max((edges[edge] for edge in (section.near, section.far) if edge in edges), default=-math.inf)
     return section.ambient_pressure + highest <= section.cavitation_pressure
+
+
+def is_unfed(section: Section, law: type[Law]) -> bool:
+    """Whether a film has no pressurised supply. It depends on the law: a film that empties does so in an oil bath,
+    too; a film whose cavities have a pressure below p_cav draws oil from any groove."""
+    if law.empties:
+        return no_inflow(section)
+    return runs_dry(section) if law.keeps_oil and not law.starves else starves(section)
 
 
 def section_faults(section: Section, d: tuple[float, float] = (0.0, 0.0)) -> list[SectionFault]:

@@ -28,7 +28,7 @@ from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
-from frbcli.scene.published import is_published
+from frbcli.scene.forms.published import is_published
 from frbcli.scene.remedies import advised
 
 if TYPE_CHECKING:

@@ -88,7 +88,7 @@ def under_vertical_load(system: System, i: int, eccentricity: float, omega: floa
     near: FilmForce | None = None
     for _ in range(TURNS):
         place = eccentricity * system.clearances[i] * np.array([math.cos(angle), math.sin(angle)])
-        near = system.film_force(i, place, np.zeros(2), omega, near)
+        near = system.films.force(i, place, np.zeros(2), omega, near)
         f_x, f_y = near.force.tolist()
         if f_x == 0.0 and f_y == 0.0:
             raise NotConverged(f"The film carries nothing at an eccentricity of {eccentricity:g}.")

@@ -10,8 +10,6 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.end_flow import EndFlow
-from frbcli.linear.film_heat import end_flows, film_heat
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.film_faults import require_films
@@ -84,7 +82,6 @@ class WarmMachines:
     def __init__(self, case: Case, plan: Plan, system: System) -> None:
         self._case, self._plan, self._system = case, plan, system
         self._heat: Heat = heat_of(case)
-        self._flows: tuple[EndFlow, ...] = end_flows(system)
         self._concentric = case.heat is not None and case.heat.side_flow == "concentric"
 
     def at(self, omega: float, near: WarmMachine | None = None) -> WarmMachine:
@@ -98,7 +95,7 @@ class WarmMachines:
             resting = resting_position(system, omega, resting)
             journals = system.rotor.journals @ resting
             spins = ring_speeds(system, held_rotor(system.rotor), omega, journals)
-            power, flow = film_heat(self._case, system, self._flows, journals, omega, spins)
+            power, flow = _film_heat(system, journals, np.concatenate([[omega], spins]))
             if self._concentric:
                 flow = self._heat.concentric * clearances**3 / viscosities
             return FilmHeat(power, flow, np.concatenate([[omega], spins]))
@@ -125,3 +122,20 @@ class WarmMachines:
             for ring in self._heat.rings
         )
         return WarmMachine(system, resting, found, named, rings)
+
+
+def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, Array]:
+    """Power in W and flow through the ends in m^3/s, (films,) each, of a machine at rest. journals (films, 2) in m;
+    bodies: (1 + rings,) speeds of rotor and rings in rad/s. Raises NotConverged.
+
+    Journal and shell put P = -M_J omega_J - M_S omega_S - F . (v_J - v_S) into a film. With Couette's resistance k to
+    the slip and the force F at the displacement e this is k (omega_J - omega_S)^2 + (e x F)(omega_J + omega_S)/2 -
+    F . e'.
+    """
+    speeds = zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True)
+    found = [
+        system.films.power_and_flow(i, place, total, slip, drag)
+        for i, (place, (total, slip), drag) in enumerate(speeds)
+    ]
+    power, flow = np.array(found).T
+    return power, flow

@@ -70,7 +70,8 @@ def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) 
     Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
     """
     eccentricity = np.linalg.norm(position, axis=1) / np.array(system.clearances)
-    drag = system.sheared * np.array(system.drags) * 2.0 * np.pi / np.sqrt(np.maximum(1.0 - eccentricity**2, 1e-6))
+    sheared = system.films.sheared * np.array(system.drags)
+    drag = sheared * 2.0 * np.pi / np.sqrt(np.maximum(1.0 - eccentricity**2, 1e-6))
     carried = (held.load - held.stiffness @ position.ravel()).reshape(-1, 2) / system.rotor.multiplicity[:, None]
     moment = 0.5 * (position[:, 0] * carried[:, 1] - position[:, 1] * carried[:, 0])
     if system.torque != "all":
@@ -135,7 +136,7 @@ def _balance(
     forces = []
     for i, many in enumerate(system.rotor.multiplicity):
         near = before[i] if before else None
-        force = system.film_force(i, position[i], np.zeros(2), float(omegas[i]), near)
+        force = system.films.force(i, position[i], np.zeros(2), float(omegas[i]), near)
         own = slice(2 * i, 2 * i + 2)
         surplus[own] += many * force.force
         slope[own, own] += many * force.by_displacement

@@ -19,14 +19,13 @@ from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.bearing_models import GIVEN
-from frbcli.scene.film_choice import CELLS as ON_CELLS
 from frbcli.scene.film_choice import DEFAULT_MESH, all_clipped, choose_films, needs_cells
 from frbcli.scene.films import film_places, volume_film
+from frbcli.scene.forms.cells import CELLS as ON_CELLS
+from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.system import System, make_system
-from frbcli.scene.tabulated import SOLUTIONS
 from frbcli.scene.warm import warm_case, warm_system
 
 Array = NDArray[np.float64]
@@ -67,7 +66,7 @@ class StaticFilms:
     @property
     def on_cells(self) -> bool:
         """Whether the films are on cells, the other meshes then being coarser ones."""
-        return bool(self.system.volumes)
+        return bool(self.system.films.volumes)
 
     def warm(self, viscosities: Array, clearances: Array) -> StaticFilms:
         """The same with viscosities in Pa s and clearances in m, (films,) each."""
@@ -80,9 +79,8 @@ class StaticFilms:
 
     def volumes(self) -> tuple[VolumeFilm, ...]:
         """The films on CELLS, for the fields of pressure and flow."""
-        if self.on_cells:
-            return self.system.volumes
-        return tuple(volume_film(self.case, place, CELLS, self.top_Hz) for place in film_places(self.case))
+        places = film_places(self.case)
+        return self.system.films.volumes or tuple(volume_film(self.case, each, CELLS, self.top_Hz) for each in places)
 
 
 def static_films(case: Case, load: float | None = None, top_Hz: float | None = None) -> StaticFilms:
@@ -99,11 +97,10 @@ def static_films(case: Case, load: float | None = None, top_Hz: float | None = N
 
 def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     """Plans of other meshes, with their shares; none for a bearing model, whose error is not known."""
-    if plan.form == GIVEN:
+    if not plan.form.error_known:
         return ()
-    if plan.cells is not None:
-        around = plan.cells[0]
-        return tuple((replace(plan, cells=cells), 1.0 / ((around / cells[0]) ** FRONTS - 1.0)) for cells in COARSER)
+    if plan.form.by_cells:
+        return tuple((replace(plan, cells=cells), 1.0 / ((CELLS[0] / cells[0]) ** FRONTS - 1.0)) for cells in COARSER)
     meshes = [DEFAULT_MESH if plan.theory == "short" else _finer(mesh) for _, mesh in plan.films]
     films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
@@ -122,12 +119,12 @@ def _plan(case: Case) -> Plan:
     else:
         films = choose_films(case, case.accuracy.target)
         plan = _films_alone(case, films.theory, films.form, films.mesh, films.films)
-    if plan.cells is None and plan.form not in (ON_CELLS, SOLUTIONS):
-        return plan
-    return replace(plan, form=ON_CELLS, cells=CELLS)
+    return replace(plan, form=ON_CELLS, cells=CELLS) if plan.form.fine_when_static else plan
 
 
-def _films_alone(case: Case, theory: str, form: str, mesh: Mesh, films: tuple[tuple[str, Mesh], ...]) -> Plan:
+def _films_alone(
+    case: Case, theory: str, form: FilmForm, mesh: Mesh, films: tuple[tuple[FilmForm, Mesh], ...]
+) -> Plan:
     """A plan without a run."""
     return Plan(theory, case.film.cavitation, form, mesh, films, None, math.nan, "", 0.0, math.nan, "", None, ())
 

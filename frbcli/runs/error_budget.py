@@ -24,17 +24,9 @@ from frbcli.scene.turbocharger import all_modes, journals, kept_modes
 from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array, State
 from frbcli.solve.time_loop import NEWTON_SHARE
 
-# Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films (ERROR_MEMORY):
-# that is 2 to 29 times the true error of the journals, where it was measured (docs/accuracy.md); 5 to 14 times with
-# finite-volume films of rotors without rings.
-COUNTED, COUNTED_CELLS = 0.5, 0.25
 # A disk oscillates longer than its journals, which the films damp: its true error is 0.2 to 2.5 times the sum of all
 # local errors.
 LASTING = 3.0
-# A relative error of the force moves the journal by as large a share of the eccentricity; the error of cells on a mesh
-# twice as fine is still a third. For finite-volume films this is too small where errors accumulate: it is used only
-# where the run was not repeated on fewer cells.
-FILM_REACH, CELL_REACH = 2.0, 3.0
 BEFORE_WHIRL = 0.85  # of the time of its event: a whirl grows before it is detected
 PARTING = ("onset", "self-excited", "contact")  # afterwards two runs differ in phase, whatever their accuracy
 
@@ -59,7 +51,7 @@ def error_budget(
     fading, whole = _counted(system) * steps[0], steps[1]
     quiet = samples[times <= until]
     eccentric, displaced = (_reach(system, quiet, parts) for parts in (_journals(system), _points(system)))
-    by_films = (FILM_REACH if plan.cells is None else CELL_REACH) * (films.relative(until) or force or 0.0)
+    by_films = system.films.reach * (films.relative(until) or force or 0.0)
     in_films, in_points = by_films * eccentric, by_films * max(eccentric, displaced)
     cells = None if fewer is None else fewer.error(quiet, system)
     if cells is not None:
@@ -125,7 +117,7 @@ def quick_budget(system: System, state: State, angle: float) -> dict[str, float 
 
 
 def _counted(system: System) -> float:
-    return COUNTED_CELLS if system.volumes and not system.ring_count else COUNTED
+    return system.films.counted_share(system.ring_count)
 
 
 def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:
@@ -159,7 +151,7 @@ def _springs(case: Case, system: System, sample: Array) -> Array:
     q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
     omegas = system.omegas(omega, v[list(system.spins)])
     forces = (
-        system.film_force(i, selection @ q, selection @ v, float(omegas[i]))
+        system.films.force(i, selection @ q, selection @ v, float(omegas[i]))
         for i, selection in enumerate(system.rotor.journals)
     )
     single = (-0.5 * float(np.trace(force.by_displacement)) for force in forces)

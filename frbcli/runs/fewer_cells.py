@@ -14,9 +14,9 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.march import March, Progress
-from frbcli.scene.cell_choice import cell_error, coarser_cells
+from frbcli.scene.cell_choice import cell_error
 from frbcli.scene.films import film_places
-from frbcli.scene.planned import Plan
+from frbcli.scene.forms.cells import cells_of
 from frbcli.scene.system import System
 from frbcli.solve.state import RUNNING
 
@@ -31,8 +31,8 @@ LEAST = 0.5  # of the error that these cells were expected to make, which is 1.3
 def on_fewer_cells(march: March, until: float, observe: Observer | None = None) -> FewerCells | None:
     """The run of `march` from its beginning to a time in s on fewer cells; None for films that have none, too few, or
     that do not begin on fewer. observe: called some times a second."""
-    cells = fewer_cells(march.case, march.plan, march.system)
-    if cells is None or march.plan.cells is None:
+    cells = march.plan.form.fewer_cells(march.case, march.plan)
+    if cells is None:
         return None
     try:
         other = march.again(replace(march.plan, cells=cells))
@@ -43,7 +43,7 @@ def on_fewer_cells(march: March, until: float, observe: Observer | None = None) 
         status, _ = other.chunk()
         if observe is not None:
             observe(other.progress(until))
-    own, others = (cell_error(march.case, found) for found in (march.plan.cells, cells))
+    own, others = (cell_error(march.case, found) for found in (cells_of(march.plan), cells))
     safety = _safety(march.case, march.system)
     return FewerCells(safety * own / (others - own), other.samples, LEAST * own)
 
@@ -54,10 +54,3 @@ def _safety(case: Case, system: System) -> float:
         return SAFETY_OF_GROOVES if grooved else SAFETY
     at_rest = case.speed.start != 0.0 and case.start.position != "resting"
     return SAFETY_OF_RINGS_AT_REST if at_rest else SAFETY_OF_RINGS
-
-
-def fewer_cells(case: Case, plan: Plan, system: System) -> tuple[int, int] | None:
-    """Cells (around, along) that a run is compared on, None if there are no fewer."""
-    if plan.cells is None or not system.volumes:
-        return None
-    return coarser_cells(case, plan.cells)

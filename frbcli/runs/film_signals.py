@@ -6,15 +6,12 @@ is that of the time loop, whatever the film, and in contact the force of the sur
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.cells.data import VolumeFilms
-from frbcli.film.gap import Section, gap_height
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import SpeedProfile
@@ -26,7 +23,6 @@ from frbcli.solve.state import SLIP, SUM, Array, Control
 from frbcli.solve.watched import DRAG, LEAVES, NOTES
 
 OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW)  # they ask for what is known at the ends of the steps alone
-AROUND = 360  # angles at which the gap of lobes is looked at
 
 
 @dataclass(frozen=True)
@@ -53,7 +49,7 @@ def film_signals(
 
     force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
     by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
-    the film through its open ends, m^3/s. ends: the flows of tabulated films (end_flows of linear/film_heat.py), if
+    the film through its open ends, m^3/s. ends: the flows of tabulated films (Films.end_flows), if
     these are asked for their oil; warm: what heat has changed.
     """
     found, films = dict[str, Array](), warm or unchanged(system)
@@ -132,11 +128,7 @@ def _flows(system: System, films: FilmNumbers, samples: Samples) -> Array:
     """(k, films) m^3/s of oil that leaves, as it is noted."""
     n, count = system.rotor.size, len(system.names)
     leaves: Array = samples.noted[:, n + LEAVES * count : n + NOTES * count]
-    if not isinstance(system.films, VolumeFilms):
-        return leaves
-    sections = [film.section for film in system.volumes]
-    areas = np.array([each.copies * each.radius * each.width for each in sections])
-    return np.asarray(leaves * (areas * films.clearances), dtype=np.float64)
+    return np.asarray(leaves * system.films.flow_units(films.clearances), dtype=np.float64)
 
 
 def _thickness(system: System, films: FilmNumbers, control: Control, i: int, q: Array) -> Array:
@@ -145,21 +137,10 @@ def _thickness(system: System, films: FilmNumbers, control: Control, i: int, q: 
     d = q @ system.rotor.journals[i].T / clearance[:, None]
     for sample in _touching(control, d):
         d[sample] = felt_motion(control, d[sample], np.zeros(2))[0]
-    section = system.volumes[i].section if system.volumes else None
-    if section is None or section.lobes is None:
-        return np.asarray(clearance * (1.0 - np.hypot(d[:, 0], d[:, 1])))
-    return clearance * _lobed(section, d)
+    return clearance * system.films.smallest_gap(i, d)
 
 
 def _touching(control: Control, d: Array) -> NDArray[np.int64]:
     """The samples at which the film feels less than its displacement d (k, 2) over the clearance."""
     limits = control.contact_eccentricity, control.contact_stiffness
     return np.flatnonzero([touches(float(each), *limits) for each in np.hypot(d[:, 0], d[:, 1])])
-
-
-def _lobed(section: Section, d: Array) -> Array:
-    """(k,) the smallest gap at displacements d (k, 2), all over the clearance."""
-    phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
-    still = gap_height(section, (0.0, 0.0), phi)
-    height = still + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)
-    return np.asarray(height.min(axis=1))

@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.cavitation.compiled import given_parameters
-from frbcli.film.cells.data import GIVEN_PRESSURE, RESISTANCE, VolumeFilms
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.side_flow import opens_far
-from frbcli.linear.film_heat import end_flows
+from frbcli.film.kinds.contract import Films
 from frbcli.runs.film_numbers import FilmNumbers
 from frbcli.runs.restored import array
-from frbcli.scene.films import FilmPlace, film_places, make_law
+from frbcli.scene.films import film_places
 from frbcli.scene.heat import Heat, heat_of
 from frbcli.scene.planned import Plan
 from frbcli.scene.system import System
 from frbcli.scene.warm import warm_system
-from frbcli.solve.heat import NARROWEST, NO_HEAT, TOLD, CellEnds, LumpedHeat, NoHeat, columns_of
+from frbcli.solve.heat import NARROWEST, NO_HEAT, TOLD, LumpedHeat, NoHeat, columns_of
 from frbcli.solve.state import Array
 from frbcli.thermal.exchange import (
     BOOKS,
@@ -56,12 +50,12 @@ class RunHeat:
         self._heat: Heat | None = None
         self._loop: LumpedHeat | None = None
         self._rows = np.zeros((0, 0))
-        self.films: Any = None
+        self.films: Films | None = None
         self.start = system
         if case.heat is None:
             return
         self._heat = heat_of(case)
-        self._loop, self.films = _lumped(case, system, self._heat), _own(system.films)
+        self._loop, self.films = _lumped(case, system, self._heat), system.films.changeable()
         model, start, still = self._heat.model, self._heat.start, np.zeros(1 + system.ring_count)
         clearances = clearances_at(model, start, still)
         for name, clearance, reference in zip(system.names, clearances, model.reference, strict=True):
@@ -159,18 +153,6 @@ def _signal(form: str, name: str) -> str:
     return form.format(name) if name else form.replace("{}_", "")
 
 
-def _own(films: Any) -> Any:
-    """Films that the loop may change."""
-    if not isinstance(films, VolumeFilms):
-        return films
-    return films._replace(
-        numbers=films.numbers.copy(),
-        cells=films.cells.copy(),
-        feed_holes=films.feed_holes.copy(),
-        channels=films.channels.copy(),
-    )
-
-
 def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
     model, places = heat.model, film_places(case)
     count, n, bodies = len(places), len(heat.start), 1 + system.ring_count
@@ -182,32 +164,8 @@ def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
     by_formula = case.heat is not None and case.heat.side_flow == "concentric"
     return LumpedHeat(
         model=arrays_of(model, viscosity, np.array(system.drags), heat.concentric, by_formula),
-        ends=_cell_ends(case, system) if system.volumes else end_flows(system),
+        ends=system.films.heat_ends(),
         state=state,
         now=now,
         gain=np.zeros(n),
     )
-
-
-def _cell_ends(case: Case, system: System) -> CellEnds:
-    films = system.films
-    assert isinstance(films, VolumeFilms)
-    sections = [film.section for film in system.volumes]
-    return CellEnds(
-        far_open=np.array([opens_far(film) for film in system.volumes], dtype=np.int64),
-        units=np.array([section.copies * section.radius * section.width for section in sections]),
-        numbers=films.numbers.copy(),
-        given=films.cells[:, GIVEN_PRESSURE].copy(),
-        feed_holes=films.feed_holes.copy(),
-        resistance=films.channels[:, RESISTANCE] / case.oil_viscosity,
-        exponents=np.array([_exponents(case, *each) for each in zip(film_places(case), system.volumes, strict=True)]),
-    )
-
-
-def _exponents(case: Case, place: FilmPlace, film: VolumeFilm) -> Array:
-    """(p,) powers of the scale of the pressures that the parameters of a film's law are proportional to."""
-    cavitation, section = case.cavitation(place.geometry), film.section
-    doubled = replace(section, viscosity=2.0 * section.viscosity)
-    first, last = (given_parameters(make_law(case, cavitation, each)) for each in (section, doubled))
-    some = (first != 0.0) & (last != 0.0)
-    return np.where(some, np.log2(np.where(some, last, 1.0) / np.where(some, first, 1.0)), 0.0)

@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.film.cells.side_flow import opens_far
-from frbcli.linear.film_heat import end_flows
 from frbcli.results.store import Run
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.cell_errors import FewerCells
@@ -19,11 +17,9 @@ from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.control import control_of
 from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.error_budget import budget_of_segments, quick_budget, summed
-from frbcli.runs.film_error import sample_count
 from frbcli.runs.film_signals import OF_THE_STEPS, Samples, film_signals
 from frbcli.runs.header import FLOW, named, ring_names
 from frbcli.runs.heat import RunHeat
-from frbcli.runs.oil import no_oil_comes_in, oil_passed
 from frbcli.runs.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.cost import expected_cost
@@ -108,7 +104,7 @@ class March:
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
-        self._sample_every = max(1, int(profile.end / self._control.output_step) // sample_count(plan))
+        self._sample_every = max(1, int(profile.end / self._control.output_step) // system.films.samples)
         warm = 2 * len(system.names) if case.heat is not None else 0
         self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering) + warm))
         self._expected, self._course = expected_cost(case, plan, profile), expected_course(case, plan, profile)
@@ -120,9 +116,9 @@ class March:
         """Make a segment the current one; the time loop sees the profile up to its end."""
         self._current, self._system = number, self._segments[number].system
         ends = [segment.start for segment in self._segments[number + 1 :]]
-        tabulated = self._system.bearings and FLOW in self._case.output.signals
-        self._ends = end_flows(self._system) if tabulated else ()
-        self._far_open = np.array([opens_far(film) for film in self._system.volumes], dtype=np.float64)
+        films = self._system.films
+        self._ends = films.end_flows if FLOW in self._case.output.signals else ()
+        self._far_open = films.far_open
         self._rotor = rotor_data(self._system, self._profile.until(ends[0] if ends else self._profile.end))
 
     def _change(self) -> int:
@@ -153,7 +149,8 @@ class March:
     @property
     def _now(self) -> System:
         """The current machine with the clearances that heat has brought about."""
-        return replace(self._system, clearances=tuple(self._rotor.clearances.tolist()))
+        films = replace(self._system.films, clearances=tuple(self._rotor.clearances.tolist()))
+        return replace(self._system, films=films)
 
     @property
     def samples(self) -> Array:
@@ -169,7 +166,7 @@ class March:
     @property
     def starves(self) -> bool:
         """Whether a film has no inflow, so that a run without solution has starved."""
-        return no_oil_comes_in(self._system)
+        return self._system.films.starving
 
     def compile(self) -> None:
         """Have the time loop compiled, or found in the cache, before the clock starts."""
@@ -178,7 +175,7 @@ class March:
     def _go(self, budget: int) -> tuple[int, int]:
         """At most `budget` steps. Returns (status, rows of the output written)."""
         films = self._heat.films or self._system.films
-        given = self._rotor, films, self._tableau, self._control, self._state, budget
+        given = self._rotor, films.loop, self._tableau, self._control, self._state, budget
         if self._apart:
             return advance_in_turn(*given, self._output)
         if self._watches:
@@ -267,7 +264,7 @@ class March:
             "film_solves": int(numbers[SOLVES]),
             "ms_per_film_solve": 1e3 * self._cpu_s / max(float(numbers[SOLVES]), 1.0),
             "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
-            **oil_passed(self._system, self._state),
+            **self._system.films.oil_passed(self._state.flows),
             **self._heat.passed(),
             **(micro_cost(self._state, self._cpu_s) if self._apart else {}),
         }

@@ -9,37 +9,12 @@ import numpy as np
 
 from frbcli.case.schema import Start
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balances import FLOWS
-from frbcli.film.cells.data import VolumeFilms
-from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.steady_force import steady_solution
-from frbcli.film.published.data import ElementFilm
-from frbcli.film.published.film import PublishedFilm
-from frbcli.film.published.moving import oil_held
-from frbcli.film.published.unknown import unknowns_of
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.system import System
 from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
-from frbcli.solve.element_films import BOOKS, HELD
-from frbcli.solve.state import (
-    ERROR_SPANS,
-    HISTORY,
-    NOW,
-    NUMBERS,
-    OIL,
-    PASSED,
-    RUN_END,
-    STEP,
-    STEP_DONE,
-    W_BEFORE,
-    WET,
-    Array,
-    RotorData,
-    State,
-    W,
-)
+from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
 
@@ -77,7 +52,7 @@ def _factor(system: System) -> int:
     """Reduction of the torque by missing oil."""
     if system.torque == "simple":
         return SIMPLE_FACTOR
-    return {"none": NO_FACTOR, "global": GLOBAL_FACTOR, "local": LOCAL_FACTOR}[system.cavitation_factor]
+    return {"none": NO_FACTOR, "global": GLOBAL_FACTOR, "local": LOCAL_FACTOR}[system.films.cavitation_factor]
 
 
 def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
@@ -100,7 +75,8 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
 
 def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State:
     """The state at the start of a profile with displacements q (n,) in m and velocities v (n,) in m/s."""
-    wet, flows = _films_at(system, profile, q, v)
+    omegas = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
+    wet, flows = system.films.first_state(system.rotor.journals @ q, omegas)
     rotation = profile.rotation(float(profile.times[0]))
     a = accelerations(system, rotation, q, v, settled_forces(system, rotation[1], q, v))
     numbers = np.zeros(NUMBERS)
@@ -113,54 +89,12 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
     return State(numbers, q.copy(), v.copy(), a, past, wet, flows, np.zeros((2, ERROR_SPANS)))
 
 
-def _films_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> tuple[Array, Array]:
-    """The films' own state: settled where that is possible, else full at the ambient pressure. Its oil does not change
-    at first: the journals stand still."""
-    if isinstance(system.films, ElementFilm):
-        assert system.published is not None
-        omega = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
-        return _elements_at(system.published, system.films, system.rotor.journals[0] @ q, float(omega[0]))
-    if not isinstance(system.films, VolumeFilms):
-        return np.zeros((WET, 0, 0, 0)), np.zeros((2, 0, FLOWS))
-    m, k = system.volumes[0].grid.shape
-    wet = np.zeros((WET, len(system.volumes), m, k))
-    omegas = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
-    for i, (film, selection) in enumerate(zip(system.volumes, system.rotor.journals, strict=True)):
-        at = selection @ q / system.clearances[i]
-        motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(omegas[i]))
-        w = film.full()
-        if np.any(at != 0.0) and omegas[i] != 0.0:
-            with contextlib.suppress(NotConverged):
-                w = steady_solution(film, motion).w
-        wet[W, i] = wet[W_BEFORE, i] = w
-        wet[OIL, i] = film.content(motion, w)
-    return wet, np.zeros((2, len(system.volumes), FLOWS))
-
-
-def _elements_at(film: PublishedFilm, data: ElementFilm, displacement: Array, omega: float) -> tuple[Array, Array]:
-    """The same of a film in the published form, its journal at rest at a displacement (2,) in m."""
-    d, state = displacement / film.section.clearance, film.full()
-    moves = bool(np.any(d != 0.0)) and omega != 0.0
-    # Next to an opening of higher pressure a full film at the ambient one is none: its elements would dip below p_cav.
-    fixed = film.elements.fixed.reshape(film.mesh.phi.shape)
-    fed = bool(np.any(film.mesh.fixed_pressure[fixed] > state.pressure.min()))
-    if moves or fed:
-        with contextlib.suppress(NotConverged):
-            motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega if moves else 0.0)
-            state = film.steady(motion).state
-    wet, flows = np.zeros((WET, 1, *film.mesh.nodes.shape)), np.zeros((2, 1, BOOKS))
-    wet[W, 0] = wet[W_BEFORE, 0] = unknowns_of(data.unknowns, data.step, state.pressure.ravel())[film.mesh.nodes]
-    wet[OIL, 0] = state.fraction
-    flows[[PASSED, NOW], 0, HELD] = oil_held(data, float(d[0]), float(d[1]), state.fraction)
-    return wet, flows
-
-
 def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
     """(films, 2) N: forces of the films that have settled where the rotor is, none of those that starve."""
     forces, omegas = np.zeros((len(system.names), 2)), system.omegas(omega, v[list(system.spins)])
     for i, selection in enumerate(system.rotor.journals):
         with contextlib.suppress(NotConverged):
-            forces[i] = system.film_force(i, selection @ q, selection @ v, float(omegas[i])).force
+            forces[i] = system.films.force(i, selection @ q, selection @ v, float(omegas[i])).force
     return forces
 
 

@@ -13,8 +13,8 @@ from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.rectangles.bearing import RectangularBearing
-from frbcli.scene.bearing_models import chosen_model
 from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.forms.models import chosen_model
 from frbcli.scene.keys import film_keys
 from frbcli.scene.section import film_rectangle, film_section
 

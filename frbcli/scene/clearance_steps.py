@@ -14,7 +14,7 @@ from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.films import film_places
-from frbcli.scene.published import is_published
+from frbcli.scene.forms.published import is_published
 
 Film = TypeVar("Film", bound=FilmGeometry)
 

@@ -3,7 +3,7 @@
     CPU time of the loop = film solves x time of a film solve + steps x a large rotor's own share
 
 The numbers of steps and film solves are in course.py. Times of a film solve, the share of a small rotor included, were
-measured on the shipped cases on one machine and are kept in one table here; docs/accuracy.md compares predicted and
+measured on the shipped cases on one machine and stand in forms/; docs/accuracy.md compares predicted and
 real cost. The cost before and after the loop is in preparation.py. No measurement is made before a run: on a busy
 machine its error is larger than the difference between machines.
 """
@@ -15,27 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.film.cavitation.table import law_named
-from frbcli.film.grid import CHAIN_MODES, Mesh
 from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.scene.bearing_models import GIVEN
-from frbcli.scene.cell_choice import USUAL, cells_time
 from frbcli.scene.course import STAGES, Course, expected_course, runs_nearly_dry, whirl_speed
-from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.films import film_places
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import after_s, before_s, memory_B, rotor_size
-from frbcli.scene.published import PUBLISHED
-from frbcli.scene.tabulated import SOLUTIONS
 
 DAY_s = 86_400.0
-# Time of a solve by form of the film; of cells on USUAL ones, of Elrod's law.
-SOLVE_us = {CLOSED_FORM: 0.35, CLIPPED: 14.0, TABLE: 0.35, FIELDS: 10.5, CHAINS: 17.5, CELLS: 20.0, SOLUTIONS: 0.6,
-            PUBLISHED: 1300.0, GIVEN: 1.0}  # fmt: skip
-FIELD_ELEMENTS = 64  # around
-CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
-CELLS_FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
-PUBLISHED_COUNT, PUBLISHED_POWER = 288, 1.4
 GROWING = 0.2  # share of a run with films that run nearly dry until their whirl has grown: 0.05 to 0.3 as measured
 # Of a rotor with n degrees of freedom and m coordinates of its journals beyond those of the shipped ones: ns per n^3 of
 # a step, which needs a new inverse now and then, per n^2 of a stage, and per m^3 of an iteration.
@@ -71,7 +57,7 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     course = expected_course(case, plan, profile)
     steps, solves = float(course.steps[-1]), float(course.solves[-1])
     iterations = solves / max(steps * STAGES[plan.method] * len(film_places(case)), 1e-300)
-    loop_s = 1e-6 * solves * solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
+    loop_s = 1e-6 * solves * plan.form.solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
     samples = profile.end / case.output.step
     before, after = before_s(case, plan), after_s(case, plan, loop_s * _quiet_share(case, profile, course), samples)
     return ExpectedCost(round(steps), round(solves), loop_s, before, after, memory_B(case, plan, samples))
@@ -91,27 +77,6 @@ def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
     inverse, products = n**3 - SMALL_ROTOR**3, n**2 - SMALL_ROTOR**2
     journals = max(0, m**3 - SMALL_ROTOR**3)
     return INVERSE_ns * inverse + stages * (PRODUCTS_ns * products + iterations * JOURNALS_ns * journals)
-
-
-def solve_us(plan: Plan) -> float:
-    """Time of one film solve on the reference machine, us."""
-    us = SOLVE_us[plan.form]
-    if plan.form == FIELDS:  # beside films that are cheap
-        us = float(np.mean([_fields_us(mesh) if form == FIELDS else SOLVE_us[form] for form, mesh in plan.films]))
-    if plan.form == CHAINS:
-        elements = min(plan.mesh.axial, CHAIN_MODES) * plan.mesh.circumferential
-        us *= 1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS
-    if plan.form == PUBLISHED and plan.cells is not None:
-        us *= (plan.cells[0] * plan.cells[1] / PUBLISHED_COUNT) ** PUBLISHED_POWER
-    elif plan.cells is not None:
-        around, along = plan.cells
-        size = cells_time(around, along) / cells_time(*USUAL)
-        us *= law_named(plan.cavitation).cost * (CELLS_FIXED + (1.0 - CELLS_FIXED) * size)
-    return us
-
-
-def _fields_us(mesh: Mesh) -> float:
-    return SOLVE_us[FIELDS] * mesh.circumferential / FIELD_ELEMENTS
 
 
 def clock(seconds: float) -> str:

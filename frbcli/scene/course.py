@@ -23,50 +23,20 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import no_inflow
 from frbcli.rotor.speed_profile import Array, SpeedProfile
-from frbcli.scene.bearing_models import GIVEN
-from frbcli.scene.cell_choice import USUAL
 from frbcli.scene.coupling import APART, SEMI
-from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import shaft_mass
-from frbcli.scene.published import PUBLISHED
 from frbcli.scene.section import film_section
-from frbcli.scene.tabulated import SOLUTIONS
 
 STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
 ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step size in the local error
 
 
-@dataclass(frozen=True)
-class Work:
-    """Of films of a form. crowded: steps over the least number of steps; quiet, whirling: film solves of a stage;
-    pressed: steps and solves of a stage over those of another whirl, where it presses the journal into the shell."""
-
-    crowded: float
-    quiet: float
-    whirling: float
-    pressed: tuple[float, float]
-
-
-WORK = {
-    CLOSED_FORM: Work(1.0, 1.0, 1.6, (1.0, 2.0)),
-    TABLE: Work(1.0, 1.0, 1.6, (1.0, 2.0)),
-    CLIPPED: Work(1.0, 1.0, 2.2, (1.2, 2.5)),
-    FIELDS: Work(1.0, 1.0, 2.2, (1.2, 2.5)),
-    CHAINS: Work(1.0, 1.0, 1.7, (3.3, 2.4)),
-    CELLS: Work(1.2, 1.5, 2.3, (2.0, 1.0)),
-    SOLUTIONS: Work(1.0, 1.0, 1.5, (1.0, 1.0)),
-    PUBLISHED: Work(1.5, 4.0, 4.0, (1.0, 1.0)),
-    GIVEN: Work(1.0, 1.0, 1.6, (1.0, 2.0)),
-}
 RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring
-# Solves of a stage of a film that keeps its oil, whose cells turn with it: at least, and for every cell that passes a
-# front in a step.
-KEEPING_SOLVES, FRONT_SOLVES = 2.2, 0.55
 # Fronts that cross cells make the local error of second order: steps per revolution times the root of the tolerance on
-# USUAL cells, of a rotor whose journals follow at once and of a rigid one; they fall with the size of the cells.
-FRONTS, FRONTS_RIGID, FRONT_ORDER, FRONT_CELLS = 0.55, 0.2, 2.0, 1.0 / 3.0
+# the usual cells, of a rotor whose journals follow at once and of a rigid one.
+FRONTS, FRONTS_RIGID = 0.55, 0.2
 # Steps of a journal that a whirl presses into an elastic shell over those of one that it presses into the oil alone:
 # 1.3 to 3.4.
 ELASTIC = 1.7
@@ -103,7 +73,7 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> Course:
     times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
     omega = np.abs(profile.speed(times))
     turns = omega / (2.0 * math.pi)
-    work, whirls = WORK[plan.form], omega >= whirl_speed(case)
+    work, whirls = plan.form.work, omega >= whirl_speed(case)
     presses = whirls & (omega >= _pressing_speed(case))
     rate = np.maximum(1.0 / longest_step(case, plan), work.crowded * plan.steps_per_revolution * turns)
     rate = np.maximum(rate, _resolving(case, plan, times, omega, whirls))
@@ -170,15 +140,12 @@ def _pressing_speed(case: Case) -> float:
 
 def _solves_of_a_stage(case: Case, plan: Plan, whirls: NDArray[np.bool_], per_turn: Array) -> Array:
     """(n,) of one film. per_turn: steps per revolution."""
-    work = WORK[plan.form]
+    work = plan.form.work
     if turning_rings(case):
         return np.full_like(per_turn, RING_SOLVES)
-    found = np.where(whirls, work.whirling, work.quiet)
-    keeping = plan.form == CELLS and any(turns_with_oil(case, place) for place in film_places(case))
-    if keeping and plan.cells is not None:
-        passed = 0.5 * plan.cells[0] / np.maximum(per_turn, 1.0)
-        found = KEEPING_SOLVES + FRONT_SOLVES * passed
-    return found
+    turning = any(turns_with_oil(case, place) for place in film_places(case))
+    found = plan.form.solves_of_a_stage(plan, per_turn, turning)
+    return np.where(whirls, work.whirling, work.quiet) if found is None else found
 
 
 def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArray[np.bool_]) -> Array:
@@ -202,17 +169,11 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
         natural = math.sqrt(square)
         left = np.exp(-FADING * natural * (times - times[0]))
         rate = np.maximum(rate, steps(natural, rotor.gravity / square * left))
-    if plan.form == CELLS and plan.cells is not None and runs_nearly_dry(case):
-        rate = np.maximum(rate, _at_fronts(case, plan) * omega / (2.0 * math.pi))
+    if runs_nearly_dry(case):
+        fronts = FRONTS_RIGID if rotor.kind == "rigid" else FRONTS
+        fronts *= max(law.fronts for law in _dry_laws(case))
+        rate = np.maximum(rate, plan.form.steps_at_fronts(plan, fronts) * omega / (2.0 * math.pi))
     return rate
-
-
-def _at_fronts(case: Case, plan: Plan) -> float:
-    """Steps per revolution that fronts of oil need which cross cells."""
-    assert plan.cells is not None
-    fronts = FRONTS_RIGID if case.rotor.kind == "rigid" else FRONTS
-    fronts *= max(law.fronts for law in _dry_laws(case))
-    return float(fronts * plan.tolerance ** (-1.0 / FRONT_ORDER) * (USUAL[0] / plan.cells[0]) ** FRONT_CELLS)
 
 
 def _summed(rate: Array, times: Array) -> Array:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from frbcli.scene.bearing_models import GIVEN
-from frbcli.scene.film_choice import CELLS
 from frbcli.scene.planned import Plan
 
 SUMMED = 10.0  # number of local errors that add up: 1 to 13 as measured (docs/accuracy.md)
@@ -23,6 +21,7 @@ class ExpectedError:
 
 def expected_error(plan: Plan) -> ExpectedError:
     """From the tolerance of a step and the known error of the films of a plan."""
-    reach = REACH if plan.cells is None else 1.0
-    force = None if plan.form in (GIVEN, CELLS) else plan.film_error
+    form = plan.form
+    reach = 1.0 if form.by_cells else REACH
+    force = None if form.told_by_eccentricity or not form.error_known else plan.film_error
     return ExpectedError(SUMMED * plan.tolerance + reach * plan.film_error, force)

@@ -12,19 +12,17 @@ from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
-from frbcli.scene.bearing_models import GIVEN, WHY
 from frbcli.scene.cell_choice import FEWEST, cell_error, fewest_cells, given_cells
 from frbcli.scene.films import film_places, turning_rings
-from frbcli.scene.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
-from frbcli.scene.tabulated import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
+from frbcli.scene.forms.cells import CELLS
+from frbcli.scene.forms.form import FilmForm
+from frbcli.scene.forms.models import GIVEN, WHY
+from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
+from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
+from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
 
 MIDDLE = 0.5  # axial position of a circumferential groove between two equal films
 TABULATED = ("none", "circumferential-groove", "axial-grooves")  # supplies of gaps that are rectangles
-
-CLOSED_FORM, CLIPPED = "closed form", "clipped exactly along z, 96 points around"
-TABLE, FIELDS = "table over eccentricity and direction", "tabulated fields, clipped at every call"
-CHAINS, CELLS = "solved between the grooves at every call", "cells"
-MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)
 
 # Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
 # call would cost much more for eccentricities close to 1.
@@ -46,19 +44,19 @@ LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4  # of methods of third and of fourth orde
 
 @dataclass(frozen=True)
 class FilmChoice:
-    """theory: "short" | "finite", or the name of a bearing model; form: how the most expensive film is evaluated, in
-    words, CELLS for cells; mesh: the finest mesh of elements; cells: (around, along) or None; error: expected relative
+    """theory: "short" | "finite", or the name of a bearing model; form: how the most expensive film is computed;
+    mesh: the finest mesh of elements; cells: (around, along) or None; error: expected relative
     error of the forces at the eccentricity up to which the film holds the target, 0 for a bearing model, whose error is
     not known; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements."""
 
     theory: str
-    form: str
+    form: FilmForm
     mesh: Mesh
     cells: tuple[int, int] | None
     error: float
     theory_why: str
     mesh_why: str
-    films: tuple[tuple[str, Mesh], ...] = ()
+    films: tuple[tuple[FilmForm, Mesh], ...] = ()
 
 
 def choose_films(case: Case, target: float) -> FilmChoice:
@@ -135,8 +133,8 @@ def needs_cells(case: Case) -> bool:
     return any(not _rectangular(place.geometry, len(places) > 1) for place in places)
 
 
-def film_form(case: Case, film: FilmGeometry, theory: str) -> str:
-    """How a film without cells will be evaluated, in words."""
+def film_form(case: Case, film: FilmGeometry, theory: str) -> FilmForm:
+    """How a film without cells will be computed."""
     if film.supply.kind == "axial-grooves":
         return CHAINS
     supply = getattr(film.supply, "pressure", case.oil.ambient_pressure)
@@ -161,7 +159,7 @@ def _slenderness(film: FilmGeometry) -> float:
     return film.width / film.diameter / (2 if halves else 1)
 
 
-def _mesh(form: str, slenderness: float, allowed: float) -> tuple[Mesh, float]:
+def _mesh(form: FilmForm, slenderness: float, allowed: float) -> tuple[Mesh, float]:
     """The coarsest mesh whose error is small enough, or below which the error does not fall, and its error."""
     meshes = list(CHAIN_ERROR if form == CHAINS else MESH_ERROR)
     errors = [_mesh_error(form, mesh, slenderness) for mesh in meshes]
@@ -174,7 +172,7 @@ def _size(mesh: Mesh) -> int:
     return mesh.axial * mesh.circumferential
 
 
-def _mesh_error(form: str, mesh: Mesh, slenderness: float) -> float:
+def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
     """Error of any mesh: that of the next coarser one in the tables."""
     table = CHAIN_ERROR if form == CHAINS else MESH_ERROR
     coarser = [known for known in table if known.axial <= mesh.axial and known.circumferential <= mesh.circumferential]

@@ -13,8 +13,8 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import VolumeGrid, volume_grid
-from frbcli.film.gap import Section, ends_at_ambient, graded_ring
+from frbcli.film.cells.grid import run_grid
+from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.grid import Array
 from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film
 from frbcli.scene.section import film_section
@@ -137,11 +137,3 @@ def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: fl
     speed = 2.0 * math.pi * max(top, 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect
     return VolumeFilm(section, run_grid(section, cells), law, reference)
-
-
-def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:
-    """Equal cells, for the narrowest gap moves: (around, along), but for those that a groove's edges cut."""
-    around, along = cells
-    edges = [groove.position + side * 0.5 * groove.opening for groove in section.grooves for side in (-1.0, 1.0)]
-    ring = graded_ring(around, 0.0, 1.0, np.array(edges))
-    return volume_grid(section, ring, np.linspace(0.0, 1.0, along + 1))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.coupling import APART
-from frbcli.scene.published import is_published
+from frbcli.scene.forms.published import is_published
 
 
 def heat_faults(case: Case) -> Iterator[Fault]:

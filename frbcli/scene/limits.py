@@ -9,7 +9,7 @@ from frbcli.case.model import altered
 from frbcli.case.schema import MACRO_STEP, STEPS_PER_REVOLUTION, Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.cost import DAY_s, ExpectedCost, clock, solve_us
+from frbcli.scene.cost import DAY_s, ExpectedCost, clock
 from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import before_s, rotor_size
@@ -73,7 +73,8 @@ def _by_accuracy(case: Case, plan: Plan) -> Iterator[_Asked]:
     given = case.accuracy
     coarser = altered(case, {"accuracy": altered(given, {"mesh": None})})
     usual = make_plan(coarser)
-    solves, tables = solve_us(plan) / solve_us(usual), (1.0 + before_s(case, plan)) / (1.0 + before_s(coarser, usual))
+    solves = plan.form.solve_us(plan) / usual.form.solve_us(usual)
+    tables = (1.0 + before_s(case, plan)) / (1.0 + before_s(coarser, usual))
     yield _Asked(max(solves, tables), "accuracy.mesh", f"{list(given.mesh or ())}", "Take fewer elements.")
     steps = given.steps_per_revolution
     yield _Asked(steps / STEPS_PER_REVOLUTION, "accuracy.steps_per_revolution", f"{steps}", "Take fewer.")

@@ -14,32 +14,20 @@ from frbcli.case.model import altered
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.bearing_models import chosen_model, model_decisions
 from frbcli.scene.cell_choice import KNEE
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.cost import clock, expected_cost
 from frbcli.scene.coupling import plan_coupling
 from frbcli.scene.expected_error import expected_error
-from frbcli.scene.film_choice import (
-    CELLS,
-    CHAINS,
-    FIELDS,
-    FINE_TARGET,
-    LOOSE_TARGET,
-    MIDDLE,
-    FilmChoice,
-    choose_films,
-)
+from frbcli.scene.film_choice import FINE_TARGET, LOOSE_TARGET, MIDDLE, FilmChoice, choose_films
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
+from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.plan_faults import plan_faults
 from frbcli.scene.planned import Decision, Plan
 from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.published import PUBLISHED, published_decisions
 from frbcli.scene.supply import unfed_films
-from frbcli.scene.tabulated import SOLUTIONS
 
 THEORIES = ("short", "finite")
 # Least steps per revolution of finite-volume films, and of films that are solved at every film call. More steps would
@@ -68,7 +56,7 @@ def make_plan(case: Case) -> Plan:
     while budget is not None and _total_s(case, plan) > budget and target < LOOSEST:
         target = min(LOOSER * target, LOOSEST)
         plan = _plan(case, target)
-    if (plan.cells is None or plan.form == PUBLISHED) and budget is None:
+    if not plan.form.chosen_by_target and budget is None:
         return plan
     return replace(plan, decisions=(*plan.decisions, _about_target(case, plan)))
 
@@ -84,18 +72,16 @@ def _about_target(case: Case, plan: Plan) -> Decision:
     told, needs, knee = f"{accuracy.target:g}", "needs", ""
     if needed > REACHED * accuracy.target:
         told, needs = f"{told} is out of reach", "nearest to it"
-        if asked.form == CELLS:
+        if asked.form.chosen_by_target:
             knee = f"; the cheapest cells within {KNEE:g} times the least error that can be had"
     if (plan.cells, plan.mesh, plan.tolerance) == (asked.cells, asked.mesh, asked.tolerance):
         return Decision("target", told, own + knee)
-    mesh = f"{asked.mesh.axial} x {asked.mesh.circumferential} elements"
-    if asked.cells is not None:
-        mesh = f"{asked.cells[0]} x {asked.cells[1]} cells"
     reasons = ["set in the case"] if by_hand else []
     if accuracy.budget is not None and _total_s(case, asked) > accuracy.budget:
         reasons.append(f"budget of {accuracy.budget:g} s")
     why = ", ".join(reasons)
-    needs += f" {mesh} and tolerance {asked.tolerance:.2g}: {needed:.1g}, {clock(_total_s(case, asked))}{knee}"
+    cost = f"{needed:.1g}, {clock(_total_s(case, asked))}{knee}"
+    needs += f" {asked.form.mesh_told(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
     return Decision("target", told, f"{needs}; chosen: {own}; {why}")
 
 
@@ -152,19 +138,8 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Theory and cavitation."""
     decide("theory", films.theory, films.theory_why)
     for told, cavitation, is_set in _cavitations(case):
-        reason = _about_oil(law_named(cavitation), films.form == PUBLISHED)
+        reason = films.form.about_oil(law_named(cavitation))
         decide("cavitation", told, f"{'set in the case' if is_set else 'the default'}; {reason}")
-
-
-def _about_oil(law: type[Law], published: bool) -> str:
-    """What a law makes of the oil."""
-    if published:
-        return "the oil is part of the state, and some is created"
-    if law.keeps_oil:
-        return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
-    if not law.cavitates:
-        return "the film has no state and does not cavitate"
-    return "the film has no state, and oil is not balanced"
 
 
 def _decide_scene(case: Case, decide: Decide) -> None:
@@ -212,27 +187,10 @@ def _coupling_of_films(case: Case, bearing: FloatingRingBearing) -> str:
 
 def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Form and mesh, with the error of the force."""
-    if films.cells is None:
-        reason = "rectangular gap: the force turns with the line of centres"
-        if films.form == CHAINS:
-            reason = "no table: the grooves do not turn with the line of centres"
-        elif films.form == SOLUTIONS:
-            reason = "rectangular gap, no state: the force depends on the motion alone; solved on cells before"
-        decide("film", films.form, reason)
-        kind = "cells" if films.form == SOLUTIONS else "quadratic elements"
-        if films.theory == "finite":
-            meshes = [mesh for _, mesh in films.films] or [films.mesh]
-            meshes = meshes[:1] if len(set(meshes)) == 1 else meshes
-            told = ", ".join(f"{mesh.axial} x {mesh.circumferential}" for mesh in meshes)
-            decide("mesh", told, f"{kind}, axial x around; {films.mesh_why}")
-        return
-    if films.form == PUBLISHED:
-        for decided in published_decisions(case, films.cells, films.mesh_why):
-            decide(*decided)
-        return
-    decide("film", f"{films.cells[0]} x {films.cells[1]} cells", f"finite volumes, around x along; {films.mesh_why}")
+    for decided in films.form.decisions(case, films):
+        decide(*decided)
     with_oil = [place.name for place in film_places(case) if turns_with_oil(case, place)]
-    if with_oil:
+    if with_oil and films.form.turns_cells:
         told = "set in the case" if case.film.grid != "auto" else "no openings, and the film keeps its oil"
         several = len(with_oil) < len(film_places(case))
         which = f"{', '.join(with_oil)}: half-speed" if several else "half-speed"
@@ -241,8 +199,8 @@ def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
 
 def _time_integration(case: Case, films: FilmChoice, target: float, decide: Decide) -> tuple[str, float, float]:
     """Method, tolerance and steps per revolution."""
-    cells = films.cells is not None
-    if cells and target > FINE_TARGET:
+    by_cells = films.form.by_cells
+    if by_cells and target > FINE_TARGET:
         reason = "third order, L-stable: cavity fronts that cross cells limit the order"
         method, share = "esdirk3", LOOSE_SHARE
     elif target > LOOSE_TARGET:
@@ -252,7 +210,7 @@ def _time_integration(case: Case, films: FilmChoice, target: float, decide: Deci
     decide("integrator", method, reason)
     whole = "the target" if target == case.accuracy.target else f"{target:.2g}, the target that the budget pays for"
     tolerance, reason = share * target, f"{share:g} of {whole}, for each step"
-    if cells and films.form != PUBLISHED:
+    if films.form.chosen_by_target:
         tolerance, reason = CELL_SHARE * target, f"{CELL_SHARE:g} of {whole}, for each step"
         if films.error > target:
             tolerance = CELL_SHARE * films.error
@@ -263,9 +221,9 @@ def _time_integration(case: Case, films: FilmChoice, target: float, decide: Deci
     steps, reason = float(case.accuracy.steps_per_revolution), "set in the case"
     if "steps_per_revolution" not in case.accuracy.model_fields_set:
         reason = "at least; more steps raise the cost more than they reduce the error"
-        if cells:
+        if by_cells:
             steps = CELL_STEPS
-        elif films.form in (CHAINS, FIELDS) and target > FINE_TARGET:
+        elif films.form.solved_each_call and target > FINE_TARGET:
             steps = SOLVED_STEPS
         else:
             reason = "at least"

@@ -12,8 +12,8 @@ from frbcli.scene.coupling import APART, chosen_coupling, coupling_fault
 from frbcli.scene.film_choice import all_clipped, needs_cells
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places, is_plain
-from frbcli.scene.published import published_faults
-from frbcli.scene.tabulated import solution_fault
+from frbcli.scene.forms.published import published_faults
+from frbcli.scene.forms.solutions import solution_fault
 
 
 def plan_faults(case: Case) -> list[Fault]:

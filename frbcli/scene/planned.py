@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from frbcli.film.grid import Mesh
 from frbcli.html import html_table
+
+if TYPE_CHECKING:
+    from frbcli.scene.forms.form import FilmForm
 
 
 @dataclass(frozen=True)
@@ -20,7 +24,7 @@ class Decision:
 @dataclass(frozen=True)
 class Plan:
     """What will be modelled. theory: "short" | "finite", or the name of a bearing model; cavitation: of films that name
-    none of their own; form: how the most expensive film is evaluated, in words; mesh: the finest mesh of elements;
+    none of their own; form: how the most expensive film is computed; mesh: the finest mesh of elements;
     films: form and mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for
     other films; film_error: expected relative error of the forces; method: name of a time integration method;
     tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
@@ -28,9 +32,9 @@ class Plan:
 
     theory: str
     cavitation: str
-    form: str
+    form: FilmForm
     mesh: Mesh
-    films: tuple[tuple[str, Mesh], ...]
+    films: tuple[tuple[FilmForm, Mesh], ...]
     cells: tuple[int, int] | None
     film_error: float
     method: str

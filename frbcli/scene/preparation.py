@@ -13,39 +13,19 @@ from collections.abc import Iterable
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.grid import Mesh
 from frbcli.rotor.beam import ELEMENTS
 from frbcli.rotor.reduction import DENSE, MOST, RIGID
-from frbcli.scene.bearing_models import GIVEN
-from frbcli.scene.cell_choice import compared_states
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE, all_clipped, needs_cells
+from frbcli.scene.film_choice import all_clipped, needs_cells
 from frbcli.scene.films import film_places, rings, turning_rings
 from frbcli.scene.planned import Plan
-from frbcli.scene.published import PUBLISHED
-from frbcli.scene.tabulated import SOLUTION_MESH, SOLUTIONS
 
-FINER = 2  # factor of the elements in each direction for the error of the forces
-SAMPLES = 48  # states at which that is done
-TABLE_s, TABLE_MODES = (
-    3.2e-5,
-    14,
-)  # per element around and mode along; modes that cost as much as the evaluation at the lines
-MODES_s = 3e-9  # of the axial modes, per cube of the elements along
-DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
-SOLUTIONS_s = 0.65  # of a table of solutions on cells, on SOLUTION_MESH
-STEADY_s, STEADY_CELLS, STEADY_POWER = 0.012, 1152, 1.1  # of a steady film, a state of its own; its cells
-RESTING = 3.0  # factor for a resting position, found by Newton's method
-PUBLISHED_STATE_s = 3.0  # to settle
-AGAIN = 0.5  # of the loop: the run on fewer cells
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
 # To compile, at the first start: CPU time in s and memory in bytes, for finite-volume films, for tables of solutions on
 # cells, and for other films.
 COMPILE_CELLS, COMPILE_SOLUTIONS, COMPILE_TABLES = (62.0, 5e8), (42.0, 4.2e8), (26.0, 3.6e8)
 PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernels
-BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held at a time, bytes of a cell
-MATRICES = 6  # of the axial elements of the finer mesh, of a rotor, of the modes of a shaft
+MATRICES = 6  # of a rotor, of the modes of a shaft
 SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
 SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how many forms
 KEPT = 2.1  # how often all samples are in memory: in the run, and in the file that it is about to write
@@ -71,55 +51,30 @@ def _compilation(case: Case) -> tuple[float, float]:
 
 def before_s(case: Case, plan: Plan) -> float:
     """CPU time before the first step."""
-    machines, films = 1 + len(step_times(case)), len(film_places(case))
-    found = machines * (films * _table_s(plan) + _reduction_s(case))
-    if plan.form == PUBLISHED:
-        return found + PUBLISHED_STATE_s
-    if plan.cells is not None:
-        resting = case.start.position == "resting" and case.start.displacement is None
-        found += films * (RESTING if resting else 1.0) * _steady_s(plan.cells)
-    return found
+    machines, films, form = 1 + len(step_times(case)), len(film_places(case)), plan.form
+    resting = case.start.position == "resting" and case.start.displacement is None
+    found = machines * (films * form.table_s(plan) + _reduction_s(case))
+    return found + form.first_state_s(plan, films, resting)
 
 
 def after_s(case: Case, plan: Plan, loop_s: float, samples: float) -> float:
     """CPU time after a time loop of loop_s: events and stated error. samples: number that the run writes."""
-    again = AGAIN * loop_s if plan.cells is not None and plan.form != PUBLISHED else 0.0
+    again = plan.form.again_share() * loop_s
     told = SAMPLE_s * samples + (1 + len(step_times(case))) * _reduction_s(case)
     return told + again + film_error_s(case, plan)
 
 
 def film_error_s(case: Case, plan: Plan) -> float:
     """CPU time of the error of the film forces at sampled states."""
-    films = len(film_places(case))
-    if plan.form == PUBLISHED:
-        return 6 * PUBLISHED_STATE_s
-    if plan.cells is not None:
-        fine = plan.cells[0] * FINER, plan.cells[1] * FINER
-        return compared_states(plan.cells) * films * (_steady_s(plan.cells) + _steady_s(fine))
-    if plan.form == GIVEN:
-        return 0.0
-    if plan.form == SOLUTIONS:  # one state in place of a table of thousands
-        return SAMPLES * films * 1e-3 * _table_s(plan)
-    axial, around = FINER * plan.mesh.axial, FINER * plan.mesh.circumferential
-    if plan.form == CHAINS:
-        return (1 + len(step_times(case))) * MODES_s * axial**3 + SAMPLES * films * STATE_s
-    return MODES_s * axial**3 + SAMPLES * films * (STATE_s + DIRECT_s * axial * around)
+    return plan.form.error_s(plan, len(film_places(case)), 1 + len(step_times(case)))
 
 
 def memory_B(case: Case, plan: Plan, samples: float) -> float:
     """Largest memory of the process in bytes. samples: number that the run writes."""
-    films, n = len(film_places(case)), rotor_size(case)
+    n = rotor_size(case)
     found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_freedoms(case)
-    signals = signal_count(case)
-    found += 8.0 * signals * (COPIES * SAMPLES_HELD + KEPT * samples)
-    if plan.cells is not None:
-        around, along = plan.cells
-        return found + films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
-    if plan.form == SOLUTIONS:
-        return found + 8.0 * BLOCKS * plan.mesh.circumferential * plan.mesh.axial**2
-    found += 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
-    rows = -math.log(1.0 - LARGEST_ECCENTRICITY) / 0.1
-    return found + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
+    found += 8.0 * signal_count(case) * (COPIES * SAMPLES_HELD + KEPT * samples)
+    return found + plan.form.memory_B(plan, len(film_places(case)))
 
 
 def signal_count(case: Case) -> int:
@@ -132,11 +87,6 @@ def signal_count(case: Case) -> int:
     if case.heat is not None:
         found += HEAT_SIGNALS * len(places) + WALL_SIGNALS * (1 + len(floating))
     return found
-
-
-def along_factor(along: int) -> float:
-    """Factor of the time of a solve by the cells along the axis, which are eliminated as full blocks."""
-    return 0.37 + 0.03 * along + 0.01065 * along**2 + 3.09e-4 * float(along) ** 3
 
 
 def rotor_size(case: Case) -> int:
@@ -180,26 +130,3 @@ def shaft_mass(case: Case) -> float:
 def _reduction_s(case: Case) -> float:
     freedoms = shaft_freedoms(case)
     return SPARSE_s * freedoms if freedoms > DENSE else DENSE_s * (freedoms / DENSE) ** 3
-
-
-def _table_s(plan: Plan) -> float:
-    """Of one film."""
-    if plan.form == SOLUTIONS:
-        size = plan.mesh.circumferential / SOLUTION_MESH.circumferential
-        return SOLUTIONS_s * size * along_factor(_half(plan.mesh)) / along_factor(_half(SOLUTION_MESH))
-    if plan.cells is not None or plan.theory == "short" or plan.form == GIVEN:
-        return 0.0
-    modes = MODES_s * plan.mesh.axial**3
-    if plan.form == CHAINS:
-        return modes
-    assert plan.form in (TABLE, FIELDS)
-    lines = TABLE_MODES if plan.form == TABLE else 0
-    return modes + TABLE_s * plan.mesh.circumferential * (plan.mesh.axial + lines)
-
-
-def _half(mesh: Mesh) -> int:
-    return max(2, (mesh.axial + 1) // 2)
-
-
-def _steady_s(cells: tuple[int, int]) -> float:
-    return STEADY_s * math.pow(cells[0] * cells[1] / STEADY_CELLS, STEADY_POWER)

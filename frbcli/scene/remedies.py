@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved, NotConverged
-from frbcli.scene.published import is_published
+from frbcli.scene.forms.published import is_published
 from frbcli.scene.supply import unfed_films
 
 GENTLE = 0.9  # x_1 of a step that is not steep

@@ -14,11 +14,10 @@ from frbcli.case.bearing import FilmGeometry
 from frbcli.case.oil import Oil
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.gap import Section
-from frbcli.film.section_faults import no_inflow, runs_dry, starves
+from frbcli.film.section_faults import is_unfed
 from frbcli.scene.films import film_places
+from frbcli.scene.forms.published import is_published
 from frbcli.scene.keys import film_keys
-from frbcli.scene.published import is_published
 from frbcli.scene.section import film_section
 from frbcli.units import display
 
@@ -49,15 +48,6 @@ class UnfedFilm:
         return f"Note: {film} has no pressurised supply. {self.reason[0].upper()}{self.reason[1:]}. {self.remedy}"
 
 
-def is_unfed(section: Section, cavitation: str) -> bool:
-    """Whether a film has no pressurised supply. It depends on the law: a film that empties does so in an oil bath,
-    too; a film whose cavities have a pressure below p_cav draws oil from any groove."""
-    law = law_named(cavitation)
-    if law.empties:
-        return no_inflow(section)
-    return runs_dry(section) if law.keeps_oil and not law.starves else starves(section)
-
-
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
     """The films of a case without a pressurised supply; none for a bearing model, whose oil is not known."""
     found: list[UnfedFilm] = []
@@ -66,7 +56,7 @@ def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film, cavitation = place.geometry, case.cavitation(place.geometry)
         section = film_section(case, film, place.feed_holes)
-        if is_unfed(section, cavitation):
+        if is_unfed(section, law_named(cavitation)):
             keeps = law_named(cavitation).keeps_oil and not is_published(case)
             cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)
             found.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))

@@ -21,17 +21,13 @@ from frbcli.scene.system import System, make_system
 
 def warm_system(case: Case, plan: Plan, system: System, viscosities: Array, clearances: Array) -> System:
     """The system of a case with viscosities in Pa s and clearances in m, (films,) each."""
-    if system.volumes:
-        return make_system(warm_case(case, viscosities, clearances), plan)
     places = [place.geometry for place in film_places(case)]
     thicker = viscosities / [case.viscosity(film) for film in places]
     wider = clearances / system.clearances
-    return replace(
-        system,
-        clearances=tuple(clearances.tolist()),
-        drags=tuple((np.array(system.drags) * thicker / wider).tolist()),
-        scales=tuple((thicker / wider**2).tolist()),
-    )
+    films = system.films.scaled(thicker / wider**2, clearances)
+    if films is None:
+        return make_system(warm_case(case, viscosities, clearances), plan)
+    return replace(system, films=films, drags=tuple((np.array(system.drags) * thicker / wider).tolist()))
 
 
 def warm_case(case: Case, viscosities: Array, clearances: Array) -> Case:

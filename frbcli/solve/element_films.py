@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.published.data import RIGHTS, ElementFilm, Room, make_room
+from frbcli.film.published.data import CAME, HELD, LEFT, RIGHTS, ElementFilm, Room, make_room
 from frbcli.film.published.moving import (
     force,
     mean_oil_fraction,
@@ -28,11 +28,10 @@ from frbcli.film.published.moving import (
     set_pressures,
     solve,
 )
+from frbcli.film.state import NOW, OIL, PASSED, RATE, W_BEFORE, W
 from frbcli.solve.cell_films import GRIDS
 from frbcli.solve.stage import CORRECTION, U
-from frbcli.solve.state import NOW, OIL, PASSED, RATE, W_BEFORE, Array, W
-
-CAME, LEFT, HELD, BOOKS = range(4)  # oil through the film in m^3, or now in m^3/s; in it at the start of a run, or now
+from frbcli.solve.state import Array
 
 MOST_CORRECTIONS = 20
 MOST_ITERATIONS = 120  # trials of shortened corrections counted

@@ -24,6 +24,7 @@ from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import REMEMBERS, SLOT, VolumeFilms
 from frbcli.film.cells.states import STATES
 from frbcli.film.published.data import ElementFilm
+from frbcli.film.state import NOW, OIL, PASSED, RATE, W_BEFORE, W
 from frbcli.solve.cell_films import GRIDS, guess_unknowns, oil_fraction
 from frbcli.solve.element_films import (
     MOST_ITERATIONS,
@@ -33,7 +34,7 @@ from frbcli.solve.element_films import (
     make_element_work,
     write_element_oil,
 )
-from frbcli.solve.state import NOW, OIL, PASSED, RATE, W_BEFORE, Array, W
+from frbcli.solve.state import Array
 
 NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
 CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer

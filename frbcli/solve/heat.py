@@ -16,7 +16,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from frbcli.compiled import Array, Indices, compiled
+from frbcli.compiled import Array, compiled
 from frbcli.film.cells.data import (
     AMBIENT,
     CAVITY,
@@ -34,13 +34,15 @@ from frbcli.film.cells.data import (
     VolumeFilms,
 )
 from frbcli.film.cells.side_flow import side_flow
+from frbcli.film.kinds.cells import CellEnds
 from frbcli.film.rectangles.end_flow import end_flow
+from frbcli.film.state import OIL, RATE
 from frbcli.solve.cell_films import GRID_X, GRID_Y, oil_fraction
 from frbcli.solve.contact import feel
 from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.films import have_cells
 from frbcli.solve.stage import FORCE, OMEGA, X_0, U
-from frbcli.solve.state import OIL, OVERHEATED, RATE, RUNNING, SLIP, RotorData
+from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData
 from frbcli.thermal.exchange import (
     BOOKS,
     BY_FORMULA,
@@ -70,20 +72,6 @@ class NoHeat(NamedTuple):
     """A machine that keeps its temperatures. now: empty."""
 
     now: Array
-
-
-class CellEnds(NamedTuple):
-    """Films on cells as they were made. far_open (F,); units (F,) m^2: a flow of 1 over the clearance; numbers,
-    feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance (channels,) over the viscosity;
-    exponents (F, p): by which the parameters of the laws follow the scale of the pressures."""
-
-    far_open: Indices
-    units: Array
-    numbers: Array
-    given: Array
-    feed_holes: Array
-    resistance: Array
-    exponents: Array
 
 
 class LumpedHeat(NamedTuple):

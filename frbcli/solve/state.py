@@ -58,9 +58,6 @@ class Control(NamedTuple):
  INVERSE_G, INVERSE_SPEED, STEP_BEFORE, STEP_DONE, RUN_END, NUMBERS) = range(18)
 ERRORS_LARGEST, ERRORS_SUM = range(2)
 ERROR_SPANS = 256  # equal ones of the time of a run
-# Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate.
-W, W_BEFORE, OIL, RATE, WET = range(5)
-PASSED, NOW = range(2)  # layers of their oil: what has passed so far, and passes now
 HISTORY = 3  # points of the step before that help to predict the stages of the next
 
 

@@ -13,11 +13,12 @@ from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.cells.side_flow import side_flow
+from frbcli.film.published.data import LEFT
+from frbcli.film.state import NOW
 from frbcli.solve.cell_films import GRID_X, GRID_Y
-from frbcli.solve.element_films import LEFT
 from frbcli.solve.film_forces import drag_integral
 from frbcli.solve.films import have_cells, have_elements
-from frbcli.solve.state import NOW, OUTPUTS, RUNNING, TIME, Array, Control, Output, RotorData, State
+from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Array, Control, Output, RotorData, State
 from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import Space, _advance, make_space
 

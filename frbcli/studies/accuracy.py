@@ -18,7 +18,6 @@ from frbcli.linear.stability import default_speeds, stability
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
-from frbcli.scene.cost import solve_us
 from frbcli.scene.coupling import COUPLINGS
 from frbcli.scene.film_choice import DEFAULT_MESH
 from frbcli.scene.film_faults import require_films
@@ -99,7 +98,7 @@ def accuracy(
 
 def planned_rung(plan: Plan) -> Rung:
     """What the plan of a case chooses."""
-    mesh = (plan.mesh.axial, plan.mesh.circumferential) if plan.cells is None else (plan.cells[1], plan.cells[0])
+    mesh = plan.form.mesh_of(plan)
     return Rung(plan.theory, plan.cavitation, mesh if plan.theory == "finite" else None, plan.tolerance, plan.coupling)
 
 
@@ -135,7 +134,8 @@ def _result(
     force = (forces_of or run).error["film_force_relative"]
     onset = onset_speed(run) - onset_speed(reference)
     error = RungError(apart.largest, apart.rms, apart.until_s, onset, math.nan if force is None else float(force))
-    work = 1e-6 * float(run.cost["film_solves"]) * solve_us(make_plan(load_case_text(run.case_text)))
+    plan = make_plan(load_case_text(run.case_text))
+    work = 1e-6 * float(run.cost["film_solves"]) * plan.form.solve_us(plan)
     march = float(run.cost["cpu_s"])
     return RungResult(rung, run.status, cpu_s + march, error, planned, apart.signals, run.error, work)
 

@@ -109,8 +109,9 @@ def _changes(case: Case, plan: Plan, onset: float, disturbed_from: float) -> Ite
     steps = math.ceil(2.0 * plan.steps_per_revolution)
     finer = (f"accuracy.tolerance={FINER_STEPS * plan.tolerance!r}", f"accuracy.steps_per_revolution={steps}")
     yield "shorter steps", end, (*ramp(start), *finer)
-    if plan.cells is not None:
-        around, along = (max(least, round(OTHER_CELLS * n)) for n, least in zip(plan.cells, (4, 2), strict=True))
+    if plan.form.by_cells:
+        sizes = zip(plan.form.mesh_of(plan), (2, 4), strict=True)
+        along, around = (max(least, round(OTHER_CELLS * n)) for n, least in sizes)
         yield f"{around} x {along} cells", end, (*ramp(start), f"accuracy.mesh=[{along},{around}]")
     yield f"started at {disturbed_from:.4g} Hz", end, (*ramp(disturbed_from), "start.position=resting")
 

@@ -14,7 +14,7 @@ from scipy.linalg import eigh, null_space
 
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
-from frbcli.film.rectangles.film import evaluate
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.rectangles.untabulated import largest_pressure
 from frbcli.linear.stability import Stability, stability
@@ -22,7 +22,7 @@ from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.plan import make_plan
 from frbcli.scene.rotors import make_rotor
-from frbcli.scene.system import make_system, planned_film
+from frbcli.scene.system import make_system
 
 DATA = Path(__file__).parent.parent / "data"
 
@@ -82,7 +82,7 @@ def eccentricity_at_1s(folder: Path, name: str, settings: Sequence[str] = ()) ->
 def film_pressure(case: Case, eccentricity: float, speed_Hz: float) -> float:
     """Largest absolute pressure in bar with the journal held still at an eccentricity."""
     plan = make_plan(case)
-    bearing = make_system(case, plan).bearings[0]
+    bearing = make_system(case, plan).films.bearings[0]
     held = np.array([eccentricity * bearing.clearance, 0.0])
     return largest_pressure(bearing, plan.mesh, held, np.zeros(2), 2 * math.pi * speed_Hz) / 1e5
 
@@ -162,11 +162,11 @@ def worst_film_force(supply: str) -> float:
     case = load_case("jeffcott-table-4-1")
     plan = make_plan(case)
     sections = {"none": 1, "circumferential-groove": 2}[supply]
-    like = replace(make_system(case, plan).bearings[0], sections=sections)
+    like = replace(make_system(case, plan).films.bearings[0], sections=sections)
     rows = [row for row in _rows("film-forces.csv") if row["supply"] == supply]
     pressures = {row["supply_pressure_bar"] for row in rows}
     bearings = {bar: replace(like, supply_pressure=float(bar) * 1e5 if sections == 2 else None) for bar in pressures}
-    films = {bar: planned_film(plan, bearing, plan.cavitation, plan.mesh) for bar, bearing in bearings.items()}
+    films = {bar: make_film(bearing, plan.theory, plan.cavitation, plan.mesh) for bar, bearing in bearings.items()}
     return max(_force_error(films[row["supply_pressure_bar"]], like.clearance, row) for row in rows)
 
 

@@ -20,6 +20,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SIN, UNKNOWN, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.state import OIL, RATE, W_BEFORE, WET, W
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
 from frbcli.runs.start import rotor_data, state_at
@@ -31,18 +32,13 @@ from frbcli.solve.state import (
     GRID,
     HISTORY,
     NUMBERS,
-    OIL,
-    RATE,
     RUN_END,
     RUNNING,
     STEP,
     STEP_DONE,
-    W_BEFORE,
-    WET,
     Array,
     Control,
     State,
-    W,
     make_output,
 )
 from frbcli.solve.tableau import METHODS, Tableau
@@ -112,7 +108,7 @@ class PeriodMap:
         q[kept] = x[:m] * self.scale
         v = x[m : m + n] / self._slow(np.ones(n), omega)
         theta[self.held] = x[m + n :] * math.sqrt(np.count_nonzero(self.held))
-        w = [unknown_at(*each) for each in zip(self.system.volumes, theta, near.theta, near.w, strict=True)]
+        w = [unknown_at(*each) for each in zip(self.system.films.volumes, theta, near.theta, near.w, strict=True)]
         return replace(near, q=q, v=v, theta=theta, w=np.stack(w))
 
     def lying(self, share: float) -> PeriodMap:
@@ -208,8 +204,7 @@ def period_map(case: Case) -> PeriodMap:
     """The map of a case whose films are all on cells."""
     plan = replace(make_plan(case), tolerance=TOLERANCE)
     system = make_system(case, plan)
-    films = system.films
-    assert isinstance(films, VolumeFilms)
+    films = system.films.loop
     tableau = METHODS[plan.method].tableau
     return PeriodMap(
         system=system,

@@ -153,3 +153,11 @@ def _to_edge(opening: Opening, around: Array, along: Array, phi: Array, z: Array
     beyond = np.maximum(opening.along, NEAREST * np.diff(z))
     reach = np.where(inside[:, :-1], beyond[:, 1:], beyond[:, :-1])
     return around, np.where(inside[:, :-1] ^ inside[:, 1:], reach, along)
+
+
+def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:
+    """Equal cells, for the narrowest gap moves: (around, along), but for those that a groove's edges cut."""
+    around, along = cells
+    edges = [groove.position + side * 0.5 * groove.opening for groove in section.grooves for side in (-1.0, 1.0)]
+    ring = graded_ring(around, 0.0, 1.0, np.array(edges))
+    return volume_grid(section, ring, np.linspace(0.0, 1.0, along + 1))

@@ -15,6 +15,7 @@ from frbcli.film.published.newton import REFERENCES
 from frbcli.film.published.unknown import Unknowns, make_unknowns
 
 PRESSURE, BY_W, RESIDUAL = range(3)
+CAME, LEFT, HELD, BOOKS = range(4)  # oil through the film in m^3, or now in m^3/s; in it at the start of a run, or now
 RIGHTS = 3  # what is missing, and its derivatives by both velocities
 
 

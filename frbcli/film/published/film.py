@@ -40,7 +40,7 @@ class PublishedFilm:
         along: int = ALONG,
     ) -> None:
         """around (>= 3), along: elements."""
-        self.section, self.law = section, law
+        self.section, self.law, self._diffusion = section, law, diffusion
         self.mesh = quadratic_mesh(section, around, along)
         self.ambient = section.ambient_pressure / section.pressure_scale
         self.cavitation = (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale
@@ -51,6 +51,11 @@ class PublishedFilm:
         self.weights = scale * force_weights(self.mesh)
         self.step_law = self._step(law.steepness)
         self._newton = Newton(self.mesh, self.elements, self.step_law)
+
+    def coarser(self) -> PublishedFilm:
+        """The same film on half as many elements each way, as far as there are so many."""
+        elements = max(3, self.mesh.around // 2), max(1, self.mesh.along // 2)
+        return PublishedFilm(self.section, self.law, self._diffusion, *elements)
 
     def full(self) -> FilmState:
         """A full film at the ambient pressure, or p_cav if that is higher."""

@@ -1,19 +1,61 @@
-"""Which films that are not mass-conserving are tabulated before a run, and why others are solved on cells during it."""
+"""Films that are not mass-conserving, tabulated from solutions on cells before a run: their cost, and why others are
+solved on cells during it."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, is_plain
+from frbcli.scene.forms.form import BLOCKS, SAMPLES, FilmForm, Work
 
-SOLUTIONS = "table over eccentricity, direction and speed"
+if TYPE_CHECKING:
+    from frbcli.scene.planned import Plan
+
 SOLUTION_MESH = Mesh(axial=6, circumferential=48)  # cells
 # 90 % of the forces up to an eccentricity of 0.95 have a smaller error, from interpolation and cells together.
 SOLUTION_ERROR = 6e-3
 TABLE_TARGET = 5e-4  # the smallest target for which splines through some thousand solutions are sufficient
+TABULATING_s = 0.65  # of a table, on SOLUTION_MESH
+ONE_STATE = 1e-3  # one state in place of a table of thousands
 TURNING = "openings or lobes do not turn with the line of centres"
+
+
+@dataclass(frozen=True)
+class SolutionForm(FilmForm):
+    """Tables of solutions on cells."""
+
+    fine_when_static: ClassVar[bool] = True
+    why: ClassVar[str] = (
+        "rectangular gap, no state: the force depends on the motion alone; solved on cells before"
+    )
+    elements: ClassVar[str] = "cells"
+
+    def table_s(self, plan: Plan) -> float:
+        """See FilmForm."""
+        size = plan.mesh.circumferential / SOLUTION_MESH.circumferential
+        return TABULATING_s * size * _along_factor(plan.mesh) / _along_factor(SOLUTION_MESH)
+
+    def error_s(self, plan: Plan, films: int, machines: int) -> float:
+        """See FilmForm."""
+        return SAMPLES * films * ONE_STATE * self.table_s(plan)
+
+    def memory_B(self, plan: Plan, films: int) -> float:
+        """See FilmForm."""
+        return 8.0 * BLOCKS * plan.mesh.circumferential * plan.mesh.axial**2
+
+
+def _along_factor(mesh: Mesh) -> float:
+    """Factor of the time of a solve by the cells along half of the axis, which are eliminated as full blocks."""
+    along = max(2, (mesh.axial + 1) // 2)
+    return 0.37 + 0.03 * along + 0.01065 * along**2 + 3.09e-4 * float(along) ** 3
+
+
+SOLUTIONS = SolutionForm("table over eccentricity, direction and speed", Work(1.0, 1.0, 1.5, (1.0, 1.0)), 0.6)
 
 
 def table_obstacle(case: Case) -> str:

@@ -1,16 +1,26 @@
-"""The two-phase model in its published form (4.31) in run-ups: which cases can have it, its elements."""
+"""Films on quadratic elements with the two-phase model in its published form (4.31): its cost, and which cases can
+have it in run-ups."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
+from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.scene.cell_choice import given_cells
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
+from frbcli.scene.forms.cells import cells_of
+from frbcli.scene.forms.form import FilmForm, Work, cells_B
 
-PUBLISHED = "quadratic elements, two-phase model as published"  # the form of such a film
+if TYPE_CHECKING:
+    from frbcli.scene.film_choice import FilmChoice
+    from frbcli.scene.planned import Plan
+
 PUBLISHED_ERROR = 2e-2  # of the force, on the published elements: its change on half of them, over 3
 ELEMENTS = (20, 10)  # of a section, around and along, figure 6.2
 FEWEST = (8, 2)
@@ -20,6 +30,67 @@ DIFFUSIONS = {
     "streamline": "artificial (4.42), around only",
     "none": "no artificial diffusion: a steep step may prevent convergence",
 }
+
+
+STATE_s = 3.0  # to settle
+COMPARED = 6  # states of a run
+COUNT, POWER = 288, 1.4  # elements that the time of a solve is told for, and its power of them
+
+
+@dataclass(frozen=True)
+class PublishedForm(FilmForm):
+    """Quadratic elements, as many as published."""
+
+    by_cells: ClassVar[bool] = True
+    fine_when_static: ClassVar[bool] = True
+    creates_oil: ClassVar[bool] = True
+
+    def solve_us(self, plan: Plan) -> float:
+        """See FilmForm."""
+        around, along = cells_of(plan)
+        return self.us * float((around * along / COUNT) ** POWER)
+
+    def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
+        """See FilmForm."""
+        return STATE_s
+
+    def error_s(self, plan: Plan, films: int, machines: int) -> float:
+        """See FilmForm."""
+        return COMPARED * STATE_s
+
+    def memory_B(self, plan: Plan, films: int) -> float:
+        """See FilmForm."""
+        return cells_B(cells_of(plan), films)
+
+    def about_oil(self, law: type[Law]) -> str:
+        """See FilmForm."""
+        return "the oil is part of the state, and some is created"
+
+    def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
+        """See FilmForm."""
+        assert films.cells is not None
+        around, along = films.cells
+        kind = case.film.two_phase.diffusion
+        reason = "two-phase in its published form (4.31): creates oil where it cavitates; the run states how much"
+        return (
+            ("film", f"{around} x {along} elements", f"quadratic, around x along of a section; {films.mesh_why}"),
+            ("form", "published", reason),
+            ("diffusion", kind, DIFFUSIONS[kind]),
+        )
+
+    def mesh_of(self, plan: Plan) -> tuple[int, int]:
+        """See FilmForm."""
+        around, along = cells_of(plan)
+        return along, around
+
+    def mesh_told(self, plan: Plan) -> str:
+        """See FilmForm."""
+        return "{} x {} cells".format(*cells_of(plan))
+
+
+PUBLISHED = PublishedForm(
+    "quadratic elements, two-phase model as published", Work(1.5, 4.0, 4.0, (1.0, 1.0)), 1300.0
+)
 
 
 def is_published(case: Case) -> bool:
@@ -53,14 +124,3 @@ def published_elements(case: Case) -> tuple[tuple[int, int], str]:
     if case.accuracy.mesh is None:
         return ELEMENTS, "as published"
     return given_cells(case.accuracy.mesh, FEWEST)
-
-
-def published_decisions(case: Case, elements: tuple[int, int], why: str) -> tuple[tuple[str, str, str], ...]:
-    """The decisions about the film: choice, value, reason."""
-    kind = case.film.two_phase.diffusion
-    reason = "two-phase in its published form (4.31): creates oil where it cavitates; the run states how much"
-    return (
-        ("film", f"{elements[0]} x {elements[1]} elements", f"quadratic, around x along of a section; {why}"),
-        ("form", "published", reason),
-        ("diffusion", kind, DIFFUSIONS[kind]),
-    )

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import ClassVar
+
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.bearing_model.table import model_named
+from frbcli.scene.forms.form import FilmForm, Work
 
-GIVEN = "force of a bearing model"  # the form of such a film
 WHY = "set in the case; added from Python"
 TOLD = "the whole bearing by one function of displacement, velocity and speed; derivatives by {}"
+
+
+@dataclass(frozen=True)
+class ModelForm(FilmForm):
+    """The force of a bearing model, which has no mesh."""
+
+    error_known: ClassVar[bool] = False
+
+
+GIVEN: FilmForm = ModelForm("force of a bearing model", Work(1.0, 1.0, 1.6, (1.0, 2.0)), 1.0)
 
 
 def chosen_model(case: Case) -> BearingModel | None:
@@ -31,5 +44,5 @@ def model_decisions(model: BearingModel) -> tuple[tuple[str, str, str], ...]:
     return (
         ("theory", model.name, f"{model.label}: {WHY}"),
         ("cavitation", "in the model", "film.cavitation and bearing.ends have no effect"),
-        ("film", GIVEN, TOLD.format(by)),
+        ("film", str(GIVEN), TOLD.format(by)),
     )

@@ -1,0 +1,258 @@
+"""Films on finite volumes, all of a machine beside each other."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from frbcli.compiled import Indices
+from frbcli.errors import NotConverged
+from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.data import CENTRIFUGAL, GIVEN_PRESSURE, REMEMBERS, RESISTANCE, SHEARED, VolumeFilms
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.grid import run_grid
+from frbcli.film.cells.loads import CavitationFactor, force, loads
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.refilled import refilled
+from frbcli.film.cells.side_flow import opens_far, outflow
+from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
+from frbcli.film.gap import gap_height
+from frbcli.film.grid import Array
+from frbcli.film.kinds.contract import FINER, Compared, Films
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.section_faults import is_unfed
+from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
+
+AROUND = 360  # angles at which the gap of lobes is looked at
+
+
+class CellEnds(NamedTuple):
+    """Films on cells as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1 over
+    the clearance; numbers, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
+    (channels,) over the viscosity; exponents (F, p): by which the parameters of the laws follow the scale of the
+    pressures."""
+
+    far_open: Indices
+    units: Array
+    numbers: Array
+    given: Array
+    feed_holes: Array
+    resistance: Array
+    exponents: Array
+
+
+@dataclass(frozen=True)
+class CellFilms(Films):
+    """own: the films; data: the same for the time loop; cells: (around, along); factor: cavitation factor of Couette's
+    torque; states: at which forces are compared, of a run; viscosity: of the oil in the channels in Pa s; exponents:
+    see CellEnds."""
+
+    own: tuple[VolumeFilm, ...]
+    data: VolumeFilms
+    cells: tuple[int, int]
+    factor: CavitationFactor
+    states: int
+    viscosity: float
+    exponents: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    samples: ClassVar[int] = 192
+    counted: ClassVar[float] = 0.25  # 5 to 14 times the true error, of rotors without rings
+    # On a mesh twice as fine the error is still a third. Too little where errors accumulate: it is used only where the
+    # run was not repeated on fewer cells.
+    reach: ClassVar[float] = 3.0
+
+    @property
+    def loop(self) -> Any:
+        """The films as the time loop takes them."""
+        return self.data
+
+    @property
+    def volumes(self) -> tuple[VolumeFilm, ...]:
+        """See Films.volumes."""
+        return self.own
+
+    @property
+    def cavitation_factor(self) -> str:  # type: ignore[override]
+        """See Films."""
+        return self.factor
+
+    @property
+    def remembering(self) -> tuple[bool, ...]:
+        """See Films.remembering."""
+        return tuple(bool(number != 0.0) for number in self.data.numbers[:, REMEMBERS])
+
+    @property
+    def sheared(self) -> Array:
+        """See Films.sheared."""
+        return np.asarray(self.data.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * math.pi))
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        """See Films.force."""
+        start = None if near is None or self.remembering[i] else near.field
+        return steady_force(self.own[i], place, rate, total, start)
+
+    @property
+    def compared_states(self) -> int:
+        """See Films.compared_states."""
+        return self.states
+
+    def compared(self) -> Compared:
+        """See Films.compared: in the steady state on twice the cells each way."""
+        finer = FINER * self.cells[0], FINER * self.cells[1]
+        grids = [run_grid(film.section, finer) for film in self.own]
+        fine = [
+            VolumeFilm(film.section, grid, film.law, film.scales.reference)
+            for film, grid in zip(self.own, grids, strict=True)
+        ]
+
+        def settled(film: VolumeFilm, place: Array, rate: Array, total: float) -> Array:
+            d, v = place / film.section.clearance, rate / film.section.clearance
+            motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), total)
+            return np.array(force(film, film.mean_pressure(steady_solution(film, motion).state)))
+
+        def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
+            return settled(fine[i], place, rate, total), settled(self.own[i], place, rate, total)
+
+        return forces
+
+    def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
+        """See Films.first_state. The oil does not change at first: the journals stand still."""
+        wet = np.zeros((WET, self.count, *self.own[0].grid.shape))
+        for i, film in enumerate(self.own):
+            at = places[i] / self.clearances[i]
+            motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(totals[i]))
+            w = film.full()
+            if np.any(at != 0.0) and totals[i] != 0.0:
+                with contextlib.suppress(NotConverged):
+                    w = steady_solution(film, motion).w
+            wet[W, i] = wet[W_BEFORE, i] = w
+            wet[OIL, i] = film.content(motion, w)
+        return wet, np.zeros((2, self.count, FLOWS))
+
+    def refill(
+        self, i: int, before: Films, d: tuple[float, float], wet: Array, flows: Array
+    ) -> tuple[float, float] | None:
+        """See Films.refill."""
+        if not self.remembering[i]:
+            return None
+        film, old = self.own[i], before.volumes[i]
+        w, oil = refilled(old, film, d, wet[OIL, i], wet[W, i])
+        wet[W, i] = wet[W_BEFORE, i] = w
+        wet[OIL, i] = film.content(Motion(d, (0.0, 0.0), 0.0), w)
+        flows[:, i] *= old.section.clearance / film.section.clearance
+        spilled = float((film.grid.area * (oil - wet[OIL, i]))[~film.grid.fixed].sum())
+        for flow in (OUTFLOW, ENDS_NET):
+            flows[PASSED, i, flow] += spilled
+        return force(film, film.mean_pressure(film.cells(w)))
+
+    def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
+        """Oil in the cells that their unknowns do not account for, over what has passed through.
+
+        The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with
+        the pressures and oil fractions."""
+        if not any(self.remembering):
+            return None
+        worst = 0.0
+        for i, film in enumerate(self.own):
+            if not self.remembering[i]:
+                continue
+            now = film.content(Motion(displacements[i], (0.0, 0.0), 0.0), wet[W, i])
+            free = ~film.grid.fixed
+            passed = max(flows[PASSED, i, INFLOW], flows[PASSED, i, OUTFLOW])
+            area = film.grid.area[free]
+            # per turnover of the film's own oil, if less than that has passed so far
+            passed = max(float(passed), float((area * now[free]).sum()))
+            worst = max(worst, abs(float((area * (now - wet[OIL, i])[free]).sum())) / passed)
+        return worst
+
+    def oil_passed(self, flows: Array) -> dict[str, float]:
+        """See Films.oil_passed."""
+        if not any(self.remembering):
+            return {}
+        size = [
+            keeps * film.section.copies * film.section.radius * film.section.width * film.section.clearance
+            for film, keeps in zip(self.own, self.remembering, strict=True)
+        ]
+        came, left = (np.asarray(size) @ flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
+        return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
+
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        """See Films.power_and_flow."""
+        film, d = self.own[i], place / self.clearances[i]
+        motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
+        solution, at = steady_solution(film, motion), film_at(film, math.hypot(*d), total)
+        found = loads(at, motion, solution, slip, self.factor)
+        moment = float(place[0] * found.force[1] - place[1] * found.force[0])
+        power = -found.torque.couette * slip + 0.5 * moment * total
+        return power, outflow(at, motion.d, at.pressure(solution.state))
+
+    def heat_ends(self) -> Any:
+        """See Films.heat_ends."""
+        return CellEnds(
+            far_open=np.array([opens_far(film) for film in self.own], dtype=np.int64),
+            units=self._areas,
+            numbers=self.data.numbers.copy(),
+            given=self.data.cells[:, GIVEN_PRESSURE].copy(),
+            feed_holes=self.data.feed_holes.copy(),
+            resistance=self.data.channels[:, RESISTANCE] / self.viscosity,
+            exponents=self.exponents,
+        )
+
+    @property
+    def far_open(self) -> Array:
+        """See Films.far_open."""
+        return np.array([opens_far(film) for film in self.own], dtype=np.float64)
+
+    def flow_units(self, clearances: Array) -> Array:
+        """See Films.flow_units."""
+        return np.asarray(self._areas * clearances)
+
+    @property
+    def _areas(self) -> Array:
+        sections = [film.section for film in self.own]
+        return np.array([each.copies * each.radius * each.width for each in sections])
+
+    def smallest_gap(self, i: int, d: Array) -> Array:
+        """See Films.smallest_gap."""
+        section = self.own[i].section
+        if section.lobes is None:
+            return super().smallest_gap(i, d)
+        phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
+        height = gap_height(section, (0.0, 0.0), phi) + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)
+        return np.asarray(height.min(axis=1))
+
+    @property
+    def starving(self) -> bool:
+        """See Films.starving."""
+        films = zip(self.own, self.remembering, strict=True)
+        return any(keeps and is_unfed(film.section, type(film.law)) for film, keeps in films)
+
+    def changeable(self) -> Self:
+        """See Films.changeable."""
+        data = self.data
+        own = data._replace(
+            numbers=data.numbers.copy(),
+            cells=data.cells.copy(),
+            feed_holes=data.feed_holes.copy(),
+            channels=data.channels.copy(),
+        )
+        return replace(self, data=own)
+
+    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
+        """See Films.smooth: as the mean over the angle of openings that turn."""
+        from frbcli.film.cells.mean_film import mean_film  # with the solver of cells, which takes long to load
+
+        found: list[FilmData] = []
+        for i, film in enumerate(self.own):
+            openings, drop = film.section.holes, 0.0
+            centrifugal = float(self.data.numbers[i, CENTRIFUGAL])
+            if openings and ring_shares[i] > 0.0 and centrifugal > 0.0 and openings[0].pressure > 0.0:
+                drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
+            found.append(mean_film(film, len(openings), drop))
+        return tuple(found)

@@ -1,0 +1,161 @@
+"""What all kinds of films answer: a machine is asked by these functions alone, whatever its films are.
+
+Film i has a journal whose displacement `place` (2,) in m and velocity `rate` (2,) in m/s are relative to its shell;
+`total` is omega_J + omega_S, `slip` omega_J - omega_S, in rad/s. Forces act on the journal, by a whole bearing.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from frbcli.film.cells.balances import FLOWS
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.grid import Array
+from frbcli.film.rectangles.end_flow import EndFlow
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.state import WET
+
+FINER = 2  # times the elements or cells each way, for the error of a force
+# (i, place, rate, total) -> force of a better film, and of the film, (2,) N each. Raises NotConverged.
+Compared = Callable[[int, Array, Array, float], tuple[Array, Array]]
+
+
+@dataclass(frozen=True)
+class Films(ABC):
+    """All films of a machine, made once. clearances: (films,) m."""
+
+    clearances: tuple[float, ...]
+
+    samples: ClassVar[int] = 48  # states of a run that are kept for the error of its forces
+    # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films: that is 2
+    # to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
+    counted: ClassVar[float] = 0.5
+    # A relative error of the force moves the journal by as large a share of the eccentricity.
+    reach: ClassVar[float] = 2.0
+    cavitation_factor: ClassVar[str] = "none"  # "global" | "local" | "none": torque of missing oil, see FilmModel
+
+    @property
+    def count(self) -> int:
+        """Number of films."""
+        return len(self.clearances)
+
+    @property
+    @abstractmethod
+    def loop(self) -> Any:
+        """The films as the time loop takes them."""
+
+    @abstractmethod
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        """Force and derivatives of film i; of a film that keeps oil, when this has settled. near: of the same film in a
+        motion near by, from which it may be sought. Raises NotConverged."""
+
+    @property
+    def remembering(self) -> tuple[bool, ...]:
+        """Which films keep oil of their own, so that their force does not follow from the motion alone."""
+        return (False,) * self.count
+
+    @property
+    def sheared(self) -> Array:
+        """(films,) share of each gap in which oil is sheared: all but its feed holes and grooves."""
+        return np.ones(self.count)
+
+    def compared(self) -> Compared | None:
+        """The force beside that of a better film, None where there is no better one to be had."""
+        return None
+
+    @property
+    def compared_states(self) -> int | None:
+        """At how many of the samples of a run that is done, where it takes long; None: at all."""
+        return None
+
+    def counted_share(self, ring_count: int) -> float:
+        """Share of the sum of the local errors of a run that counts as its error. ring_count: of rings that turn."""
+        return self.counted if ring_count == 0 else Films.counted
+
+    def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
+        """wet (WET, films, m, k) and flows (2, films, q) that a run begins with, journals at rest at places (films, 2):
+        settled where that is possible, else full at the ambient pressure."""
+        return np.zeros((WET, 0, 0, 0)), np.zeros((2, 0, FLOWS))
+
+    def refill(
+        self, i: int, before: Films, d: tuple[float, float], wet: Array, flows: Array
+    ) -> tuple[float, float] | None:
+        """Film i takes over the oil of the same film with another clearance; wet and flows are changed. d: over
+        the clearance, in the frame of its openings. The force in N of the oil that it then holds, None where it keeps
+        none."""
+        return None
+
+    def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
+        """Oil that is not accounted for, over what has passed through; the largest of all films, None if none keeps
+        oil. displacements: over the clearance, in the frame of their openings."""
+        return None
+
+    def oil_passed(self, flows: Array) -> dict[str, float]:
+        """Oil in m^3 that came into all films that keep theirs, left them, and was created; empty if there are none."""
+        return {}
+
+    @abstractmethod
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        """Power in W that a film at rest dissipates, and flow in m^3/s through its open ends. drag: eta R^3 B / C of
+        the bearing in N m s. Raises NotConverged."""
+
+    @abstractmethod
+    def heat_ends(self) -> Any:
+        """What the heat of the time loop takes to know the oil that leaves."""
+
+    @property
+    def end_flows(self) -> tuple[EndFlow, ...]:
+        """The oil that leaves as it follows from the motion; empty where the films tell it themselves."""
+        return ()
+
+    @property
+    def far_open(self) -> Array:
+        """(films,) 1 where the far end of a section on cells is open; empty for other films."""
+        return np.zeros(0)
+
+    def flow_units(self, clearances: Array) -> Array:
+        """(k, films) m^3/s: the unit of the flow that the time loop notes, clearances (k, films) m."""
+        return np.ones_like(clearances)
+
+    def smallest_gap(self, i: int, d: Array) -> Array:
+        """(k,) least H of film i at displacements d (k, 2) over the clearance."""
+        return np.asarray(1.0 - np.hypot(d[:, 0], d[:, 1]))
+
+    @property
+    def starving(self) -> bool:
+        """Whether a film keeps its oil and has no pressurised supply, so that its force decays."""
+        return False
+
+    def changeable(self) -> Self:
+        """A copy whose arrays the time loop may change."""
+        return self
+
+    def scaled(self, scales: Array, clearances: Array) -> Self | None:
+        """The same films with other clearances (films,) in m, and with tables that serve when velocities are multiplied
+        by scales (films,); None where they have to be made anew."""
+        return None
+
+    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
+        """The films as forces that follow smoothly from the motion alone. ring_shares: (films,) speed of the ring
+        outside of each film over its total, 0 without one that turns."""
+        raise NotImplementedError
+
+    @property
+    def volumes(self) -> tuple[VolumeFilm, ...]:
+        """The films as finite volumes; empty for films of other kinds."""
+        return ()
+
+
+def couette_power(place: Array, clearance: float, force: Array, total: float, slip: float, drag: float) -> float:
+    """Power in W of a full film at rest: Couette's resistance to the slip, and the moment of the force about the middle
+    of the shell, which turns with half of the total."""
+    d = place / clearance
+    resistance = drag * 2.0 * math.pi / math.sqrt(1.0 - float(d @ d))
+    return resistance * slip**2 + 0.5 * float(place[0] * force[1] - place[1] * force[0]) * total

@@ -1,0 +1,115 @@
+"""Films whose force follows from the motion alone: closed forms, tables, chains between axial grooves, solutions that
+were tabulated before, and bearing models."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from frbcli.film.grid import Array, Mesh
+from frbcli.film.kinds.contract import FINER, Compared, Films, couette_power
+from frbcli.film.penalty_table.film import SourceFilm
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow
+from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
+from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.rectangles.untabulated import direct_force
+
+
+@dataclass(frozen=True)
+class TableFilms(Films):
+    """data: of each film; bearings: their dimensions; scales: None, or by what the velocities of each film have to be
+    multiplied for its table, see Films.scaled."""
+
+    data: tuple[FilmData, ...]
+    bearings: tuple[RectangularBearing, ...]
+    scales: tuple[float, ...] | None = field(default=None, kw_only=True)
+
+    @property
+    def loop(self) -> Any:
+        """The films as the time loop takes them."""
+        return self.data
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        """See Films.force."""
+        if self.scales is None:
+            return evaluate(self.data[i], self.clearances[i], place, rate, total)
+        s = self.scales[i]
+        found = evaluate(self.data[i], self.clearances[i], place, s * np.asarray(rate), s * total)
+        return FilmForce(found.force, found.by_displacement, s * found.by_velocity)
+
+    @cached_property
+    def end_flows(self) -> tuple[EndFlow, ...]:
+        """See Films.end_flows."""
+        return tuple(make_end_flow(bearing, film) for bearing, film in zip(self.bearings, self.data, strict=True))
+
+    def heat_ends(self) -> Any:
+        """See Films.heat_ends."""
+        return self.end_flows
+
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        """See Films.power_and_flow."""
+        d, c = place / self.clearances[i], self.clearances[i]
+        power = couette_power(place, c, self.force(i, place, np.zeros(2), total).force, total, slip, drag)
+        scale = 1.0 if self.scales is None else self.scales[i]
+        w = 0.5 * total * np.array([d[1], -d[0]])
+        leaving = end_flow(self.end_flows[i], float(d[0]), float(d[1]), float(w[0]), float(w[1]), scale)
+        return power, c * leaving
+
+    def scaled(self, scales: Array, clearances: Array) -> Self | None:
+        """See Films.scaled."""
+        return replace(self, clearances=tuple(clearances.tolist()), scales=tuple(scales.tolist()))
+
+    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
+        """See Films.smooth."""
+        return self.data
+
+
+@dataclass(frozen=True)
+class RectangleFilms(TableFilms):
+    """Gaps made of rectangles. laws: of the films; theory: "short" | "finite"; mesh: the finest of the films'."""
+
+    laws: tuple[str, ...]
+    theory: str
+    mesh: Mesh
+
+    def compared(self) -> Compared:
+        """See Films.compared: against the film of finite length, of the short bearing the error of the theory."""
+        finer = Mesh(FINER * self.mesh.axial, FINER * self.mesh.circumferential)
+        # Films between axial grooves have no table: the same film on the finer mesh is the reference.
+        fine = [
+            make_film(bearing, self.theory, law, finer) if bearing.grooves else None
+            for bearing, law in zip(self.bearings, self.laws, strict=True)
+        ]
+
+        def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
+            bearing, better = self.bearings[i], fine[i]
+            if better is None:
+                exact = direct_force(bearing, self.laws[i], finer, place, rate, total)
+            else:
+                exact = evaluate(better, bearing.clearance, place, rate, total).force
+            return exact, self.force(i, place, rate, total).force
+
+        return forces
+
+
+@dataclass(frozen=True)
+class SolutionFilms(TableFilms):
+    """Films tabulated from solutions on cells. solved: what the tables are made of; mesh: cells."""
+
+    solved: tuple[SourceFilm, ...]
+    mesh: Mesh
+
+    def compared(self) -> Compared:
+        """See Films.compared."""
+        finer = Mesh(FINER * self.mesh.axial, FINER * self.mesh.circumferential)
+        fine = [replace(film, mesh=finer) for film in self.solved]
+
+        def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
+            return fine[i].force(place, rate, total), self.force(i, place, rate, total).force
+
+        return forces

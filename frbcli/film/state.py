@@ -1,0 +1,7 @@
+"""Where the time loop finds what the films of a machine carry along: positions in their arrays."""
+
+from __future__ import annotations
+
+# Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate.
+W, W_BEFORE, OIL, RATE, WET = range(5)
+PASSED, NOW = range(2)  # layers of their oil: what has passed so far, and passes now

@@ -1,0 +1,107 @@
+"""Films on finite volumes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from frbcli.film.cavitation.table import law_named
+from frbcli.film.grid import Array
+from frbcli.scene.cell_choice import USUAL, cells_time, coarser_cells, compared_states
+from frbcli.scene.forms.form import FINER, FilmForm, Work, cells_B
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.scene.film_choice import FilmChoice
+    from frbcli.scene.planned import Plan
+
+STEADY_s, STEADY_CELLS, STEADY_POWER = 0.012, 1152, 1.1  # of a steady film, a state of its own; its cells
+RESTING = 3.0  # factor for a resting position, found by Newton's method
+AGAIN = 0.5  # of the loop: the run on fewer cells
+FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
+# Solves of a stage of a film that keeps its oil, whose cells turn with it: at least, and for every cell that passes a
+# front in a step.
+KEEPING_SOLVES, FRONT_SOLVES = 2.2, 0.55
+# Fronts that cross cells make the local error of second order; the steps fall with the size of the cells.
+FRONT_ORDER, FRONT_CELLS = 2.0, 1.0 / 3.0
+
+
+@dataclass(frozen=True)
+class CellForm(FilmForm):
+    """Finite volumes, their number chosen by the target."""
+
+    by_cells: ClassVar[bool] = True
+    chosen_by_target: ClassVar[bool] = True
+    fine_when_static: ClassVar[bool] = True
+    told_by_eccentricity: ClassVar[bool] = True
+    turns_cells: ClassVar[bool] = True
+
+    def solve_us(self, plan: Plan) -> float:
+        """See FilmForm."""
+        size = cells_time(*cells_of(plan)) / cells_time(*USUAL)
+        return self.us * (law_named(plan.cavitation).cost * (FIXED + (1.0 - FIXED) * size))
+
+    def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
+        """See FilmForm."""
+        return films * (RESTING if resting else 1.0) * _steady_s(cells_of(plan))
+
+    def again_share(self) -> float:
+        """See FilmForm."""
+        return AGAIN
+
+    def error_s(self, plan: Plan, films: int, machines: int) -> float:
+        """See FilmForm."""
+        cells = cells_of(plan)
+        fine = cells[0] * FINER, cells[1] * FINER
+        return compared_states(cells) * films * (_steady_s(cells) + _steady_s(fine))
+
+    def memory_B(self, plan: Plan, films: int) -> float:
+        """See FilmForm."""
+        return cells_B(cells_of(plan), films)
+
+    def solves_of_a_stage(self, plan: Plan, per_turn: Array, turning: bool) -> Array | None:
+        """See FilmForm."""
+        if not turning:
+            return None
+        passed = 0.5 * cells_of(plan)[0] / np.maximum(per_turn, 1.0)
+        return np.asarray(KEEPING_SOLVES + FRONT_SOLVES * passed)
+
+    def steps_at_fronts(self, plan: Plan, fronts: float) -> float:
+        """See FilmForm."""
+        coarse = USUAL[0] / cells_of(plan)[0]
+        return float(fronts * plan.tolerance ** (-1.0 / FRONT_ORDER) * coarse**FRONT_CELLS)
+
+    def fewer_cells(self, case: Case, plan: Plan) -> tuple[int, int] | None:
+        """See FilmForm."""
+        return coarser_cells(case, cells_of(plan))
+
+    def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
+        """See FilmForm."""
+        assert films.cells is not None
+        around, along = films.cells
+        return (("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}"),)
+
+    def mesh_of(self, plan: Plan) -> tuple[int, int]:
+        """See FilmForm."""
+        around, along = cells_of(plan)
+        return along, around
+
+    def mesh_told(self, plan: Plan) -> str:
+        """See FilmForm."""
+        return "{} x {} cells".format(*cells_of(plan))
+
+
+def cells_of(plan: Plan) -> tuple[int, int]:
+    """(around, along) of a plan that has them."""
+    assert plan.cells is not None
+    return plan.cells
+
+
+def _steady_s(cells: tuple[int, int]) -> float:
+    return STEADY_s * math.pow(cells[0] * cells[1] / STEADY_CELLS, STEADY_POWER)
+
+
+CELLS = CellForm("cells", Work(1.2, 1.5, 2.3, (2.0, 1.0)), 20.0)

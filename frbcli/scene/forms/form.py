@@ -1,0 +1,137 @@
+"""The contract of a form of films: what plans, costs, errors and static results ask of it.
+
+Times are CPU seconds of the reference machine of scene/cost.py, measured on the shipped cases.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from frbcli.film.cavitation.law import Law
+from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.grid import Array, Mesh
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.scene.film_choice import FilmChoice
+    from frbcli.scene.planned import Plan
+
+SAMPLES = 48  # states of a run at which the force is compared with that on a finer mesh
+FINER = 2  # factor of the elements in each direction for that
+MATRICES = 6  # of the axial elements of the finer mesh, held at a time
+BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held at a time, bytes of a cell
+
+
+@dataclass(frozen=True)
+class Work:
+    """Of films of a form. crowded: steps over the least number of steps; quiet, whirling: film solves of a stage;
+    pressed: steps and solves of a stage over those of another whirl, where it presses the journal into the shell."""
+
+    crowded: float
+    quiet: float
+    whirling: float
+    pressed: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class FilmForm:
+    """A form of films. name: in words; work: see Work; us: time of a solve in us, of the usual mesh."""
+
+    name: str
+    work: Work
+    us: float
+
+    by_cells: ClassVar[bool] = False  # whether it has cells or elements whose number a plan may choose
+    chosen_by_target: ClassVar[bool] = False  # whether a plan takes as many of them as the target needs
+    fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
+    told_by_eccentricity: ClassVar[bool] = False  # whether its error is that of eccentricities, not of forces
+    error_known: ClassVar[bool] = True  # whether it has a mesh, and so an error
+    solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
+    turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
+    why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
+    elements: ClassVar[str] = "quadratic elements"
+    creates_oil: ClassVar[bool] = False  # whether oil is part of the state, and some is created
+
+    def __str__(self) -> str:
+        """Its name."""
+        return self.name
+
+    def solve_us(self, plan: Plan) -> float:
+        """Time of one film solve, us."""
+        return self.us
+
+    def table_s(self, plan: Plan) -> float:
+        """To tabulate one film before a run."""
+        return 0.0
+
+    def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
+        """The first state of a run. resting: whether a resting position is sought."""
+        return 0.0
+
+    def again_share(self) -> float:
+        """Of the time loop, for the run on fewer cells."""
+        return 0.0
+
+    def error_s(self, plan: Plan, films: int, machines: int) -> float:
+        """The error of the forces at sampled states. machines: segments of the run with tables of their own."""
+        return 0.0
+
+    def memory_B(self, plan: Plan, films: int) -> float:
+        """Bytes that the films take, of tables the finer ones for the error, too."""
+        found = 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
+        rows = -math.log(1.0 - LARGEST_ECCENTRICITY) / 0.1
+        return found + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
+
+    def solves_of_a_stage(self, plan: Plan, per_turn: Array, turning: bool) -> Array | None:
+        """(n,) film solves, where they do not follow from `work`. per_turn (n,): steps per revolution; turning: whether
+        cells turn with the oil that a film keeps."""
+        return None
+
+    def steps_at_fronts(self, plan: Plan, fronts: float) -> float:
+        """Least steps per revolution for fronts of oil that cross cells. fronts: of the laws and the rotor."""
+        return 0.0
+
+    def fewer_cells(self, case: Case, plan: Plan) -> tuple[int, int] | None:
+        """Cells (around, along) that a run is repeated on for its error, None where it is not."""
+        return None
+
+    def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
+        """What a plan says of the films: choice, value, reason."""
+        told = [("film", self.name, self.why)]
+        if films.theory == "finite":
+            meshes = [mesh for _, mesh in films.films] or [films.mesh]
+            meshes = meshes[:1] if len(set(meshes)) == 1 else meshes
+            sizes = ", ".join(f"{mesh.axial} x {mesh.circumferential}" for mesh in meshes)
+            told.append(("mesh", sizes, f"{self.elements}, axial x around; {films.mesh_why}"))
+        return tuple(told)
+
+    def about_oil(self, law: type[Law]) -> str:
+        """What a law makes of the oil."""
+        if law.keeps_oil:
+            return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
+        if not law.cavitates:
+            return "the film has no state and does not cavitate"
+        return "the film has no state, and oil is not balanced"
+
+    def mesh_of(self, plan: Plan) -> tuple[int, int]:
+        """Elements or cells (along, around) of a plan, as accuracy.mesh has them."""
+        return plan.mesh.axial, plan.mesh.circumferential
+
+    def mesh_told(self, plan: Plan) -> str:
+        """The same in words."""
+        return f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
+
+
+def cells_B(cells: tuple[int, int], films: int) -> float:
+    """Bytes of films on cells or elements (around, along)."""
+    around, along = cells
+    return films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
+
+
+def mean_us(forms: tuple[tuple[FilmForm, Mesh], ...], own: FilmForm, by_mesh: float) -> float:
+    """Mean time of a solve of films of several forms; by_mesh: of the form `own`, per element around."""
+    return float(np.mean([by_mesh * mesh.circumferential if form == own else form.us for form, mesh in forms]))

@@ -1,0 +1,80 @@
+"""Films of gaps that are made of rectangles: closed forms, tables, fields, and chains between axial grooves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from frbcli.film.grid import CHAIN_MODES
+from frbcli.scene.forms.form import FINER, SAMPLES, FilmForm, Work, mean_us
+
+if TYPE_CHECKING:
+    from frbcli.scene.planned import Plan
+
+TABLE_s, TABLE_MODES = 3.2e-5, 14  # per element around and mode along; modes that cost as much as the lines
+MODES_s = 3e-9  # of the axial modes, per cube of the elements along
+DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
+FIELD_ELEMENTS = 64  # around
+CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
+
+
+@dataclass(frozen=True)
+class TableForm(FilmForm):
+    """lines: modes that cost as much as the evaluation of the table at its lines."""
+
+    lines: int = 0
+
+    def table_s(self, plan: Plan) -> float:
+        """See FilmForm."""
+        if plan.theory == "short":
+            return 0.0
+        return _modes_s(plan) + TABLE_s * plan.mesh.circumferential * (plan.mesh.axial + self.lines)
+
+    def error_s(self, plan: Plan, films: int, machines: int) -> float:
+        """See FilmForm."""
+        axial, around = FINER * plan.mesh.axial, FINER * plan.mesh.circumferential
+        return MODES_s * axial**3 + SAMPLES * films * (STATE_s + DIRECT_s * axial * around)
+
+
+@dataclass(frozen=True)
+class FieldsForm(TableForm):
+    """Fields that are clipped at every call."""
+
+    solved_each_call: ClassVar[bool] = True
+
+    def solve_us(self, plan: Plan) -> float:
+        """See FilmForm: beside films that are cheap."""
+        return mean_us(plan.films, self, self.us / FIELD_ELEMENTS)
+
+
+@dataclass(frozen=True)
+class ChainForm(FilmForm):
+    """Films between axial grooves, solved at every call."""
+
+    solved_each_call: ClassVar[bool] = True
+    why: ClassVar[str] = "no table: the grooves do not turn with the line of centres"
+
+    def solve_us(self, plan: Plan) -> float:
+        """See FilmForm."""
+        elements = min(plan.mesh.axial, CHAIN_MODES) * plan.mesh.circumferential
+        return self.us * (1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS)
+
+    def table_s(self, plan: Plan) -> float:
+        """See FilmForm."""
+        return _modes_s(plan)
+
+    def error_s(self, plan: Plan, films: int, machines: int) -> float:
+        """See FilmForm."""
+        return machines * MODES_s * (FINER * plan.mesh.axial) ** 3 + SAMPLES * films * STATE_s
+
+
+def _modes_s(plan: Plan) -> float:
+    return MODES_s * plan.mesh.axial**3
+
+
+CLOSED_FORM = TableForm("closed form", Work(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35)
+CLIPPED = TableForm("clipped exactly along z, 96 points around", Work(1.0, 1.0, 2.2, (1.2, 2.5)), 14.0)
+TABLE = TableForm("table over eccentricity and direction", Work(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35, TABLE_MODES)
+FIELDS = FieldsForm("tabulated fields, clipped at every call", Work(1.0, 1.0, 2.2, (1.2, 2.5)), 10.5)
+CHAINS = ChainForm("solved between the grooves at every call", Work(1.0, 1.0, 1.7, (3.3, 2.4)), 17.5)
+MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)
