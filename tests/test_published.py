@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,8 +12,10 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
-from frbcli.bearing_tests.kinematic import KinematicResult, rotation
+from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest, rotation, squeeze, whirl
+from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.load import load_case
+from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.two_phase import TwoPhase
@@ -262,11 +265,43 @@ def test_diffusion_along_the_stream_only_creates_less(tmp_path: Path) -> None:
     assert streamline.oil_fraction < isotropic.oil_fraction - 0.05
 
 
-def test_moved_journals_are_refused(tmp_path: Path) -> None:
-    from frbcli.bearing_tests.plan import kinematic_plan
-
-    path = tmp_path / "case.toml"
+def moved(path: Path, *settings: str) -> Case:
     path.write_text(CASE, encoding="utf-8")
-    case = load_case(path, ("motion={eccentricity=0.6, frequency='10 Hz'}",))
-    with pytest.raises(InputError, match=r"film\.two-phase\.form"):
-        kinematic_plan(case, None, "squeeze")
+    given = ("motion={eccentricity=0.3, frequency='10 Hz', periods=1}", "film.two-phase.steepness=0.9", *settings)
+    return load_case(path, given)
+
+
+@pytest.mark.parametrize("test", [squeeze, whirl])
+def test_a_full_film_follows_a_moved_journal_as_sommerfelds_does(
+    tmp_path: Path, test: Callable[[Case, Sequence[str]], KinematicTest]
+) -> None:
+    """Far above the cavitation pressure the film stays full, and its equation (3.9) is linear. The law lets the density
+    of the full film rise with its pressure, here to a uniform theta, which the moving walls carry: so does the force."""
+    pressures = [f"{key}=40 bar" for key in ("oil.ambient_pressure", "bearing.supply.pressure")]
+    case = moved(tmp_path / "case.toml", "bearing.ends=oil-bath", *pressures)
+    full, linear = test(case, ["two-phase", "sommerfeld"]).results
+    assert full.history is not None
+    assert linear.history is not None
+    times, largest = full.history.time_s, np.hypot(*linear.history.force.T).max()
+    expected = np.column_stack([np.interp(times, linear.history.time_s, each) for each in linear.history.force.T])
+    assert full.loads is not None
+    theta = full.loads.oil_fraction
+    np.testing.assert_allclose(full.history.force[5:-5], theta * expected[5:-5], atol=2e-3 * largest)
+    assert theta == pytest.approx(1.039, abs=1e-3)
+    assert full.force_error < 4e-2  # of a whirl whose force falls from the first step on
+
+
+def test_a_squeeze_of_the_published_form_is_symmetric(tmp_path: Path) -> None:
+    """The journal moves along y only; and it returns what the film has kept."""
+    result = squeeze(moved(tmp_path / "case.toml")).results[0]
+    assert result.history is not None
+    assert result.loads is not None
+    across, along = np.abs(result.history.force).max(axis=0)
+    assert across < 1e-9 * along
+    assert 0.5 < result.loads.oil_fraction < 1.0
+    assert result.status == "ok"
+
+
+def test_a_ramp_of_the_supply_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"bearing\.supply\.ramp"):
+        kinematic_plan(moved(tmp_path / "case.toml", "bearing.supply.ramp=0.01 s"), None, "squeeze")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -55,16 +55,29 @@ class Course:
 
 
 @dataclass(frozen=True)
-class _Moment:
-    """motion: seen from the surface that the supply is in, as the solution is; displacement, loads: in the lab."""
+class MovedFilm:
+    """A moved film at a time in s: displacement over the clearance, loads, pressure in Pa and gap at the probe, all in
+    the lab; iterations of the step."""
 
     time: float
-    motion: Motion
     displacement: tuple[float, float]
-    solution: VolumeSolution
     loads: Loads
     probe: float
     gap: float
+    iterations: int
+
+    @property
+    def size(self) -> float:
+        """Of the force, N."""
+        return math.hypot(*self.loads.force)
+
+
+@dataclass(frozen=True)
+class _Moment(MovedFilm):
+    """motion: seen from the surface that the supply is in, as the solution is."""
+
+    motion: Motion
+    solution: VolumeSolution
 
 
 def film_course(
@@ -78,18 +91,18 @@ def film_course(
     path = path_seen_from(path, plan.turning)
     film = _film(case, plan, path, times)
     moments, problem = _moments(case, plan, film, path, times, observe)
-    worst = max(moments, key=_size)
+    worst = max(moments, key=lambda moment: moment.size)
     if plan.remembers:
         error, spent = _error_of_course(case, plan, path, times[: len(moments) + 1], moments)
     else:
         error, spent = _error_of_moment(case, plan, path, times, worst)
     return Course(
-        history=_history(moments),
+        history=history_of(moments),
         field=_field(plan, film, worst),
         loads=worst.loads,
         force_error=error,
         unknowns=int(np.count_nonzero(~film.grid.fixed)),
-        iterations=spent + sum(moment.solution.iterations for moment in moments),
+        iterations=spent + sum(moment.iterations for moment in moments),
         problem=problem,
     )
 
@@ -120,17 +133,20 @@ def _error_of_course(
     coarser = _coarser(plan)
     film = _film(case, coarser, path, times)
     try:
-        coarse, problem = _moments(case, coarser, film, path, _every_second(times))
+        coarse, problem = _moments(case, coarser, film, path, every_second(times))
     except NotConverged:
         return math.nan, 0
-    spent = sum(moment.solution.iterations for moment in coarse)
-    if problem:
-        return math.nan, spent
+    spent = sum(moment.iterations for moment in coarse)
+    return math.nan if problem else peak_error(case, times, moments, coarse), spent
+
+
+def peak_error(case: Case, times: Array, moments: Sequence[MovedFilm], coarse: Sequence[MovedFilm]) -> float:
+    """Of the largest forces of the periods, the worst over the largest of all, from a course of half the resolution:
+    of first order, since the steps keep the oil as Euler's do."""
     fine_peaks, coarse_peaks = _peaks(case, times, moments), _peaks(case, times, coarse)
     largest = max(fine_peaks.values())
-    pairs = [(peak, coarse_peaks[n]) for n, peak in fine_peaks.items() if n in coarse_peaks]
-    worst = max(abs(fine - less) for fine, less in pairs)  # first order: the steps keep the oil as Euler's do
-    return (worst / largest if largest > 0.0 else math.nan), spent
+    worst = max(abs(peak - coarse_peaks[n]) for n, peak in fine_peaks.items() if n in coarse_peaks)
+    return worst / largest if largest > 0.0 else math.nan
 
 
 def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, worst: _Moment) -> tuple[float, int]:
@@ -153,23 +169,20 @@ def _coarser(plan: KinematicPlan) -> KinematicPlan:
     return replace(plan, cells=(around // 2, max(along // 2, 2)))
 
 
-def _every_second(times: Array) -> Array:
+def every_second(times: Array) -> Array:
+    """The times with every second step left out, the last one kept."""
     return np.append(times[:-1:2], times[-1])
 
 
-def _peaks(case: Case, times: Array, moments: list[_Moment]) -> dict[int, float]:
+def _peaks(case: Case, times: Array, moments: Sequence[MovedFilm]) -> dict[int, float]:
     """The largest force in N of each period."""
     assert case.motion is not None
     assert case.motion.frequency is not None
     peaks: dict[int, float] = {}
     for moment in moments:
         period = math.floor((moment.time - times[0]) * case.motion.frequency)
-        peaks[period] = max(peaks.get(period, 0.0), _size(moment))
+        peaks[period] = max(peaks.get(period, 0.0), moment.size)
     return peaks
-
-
-def _size(moment: _Moment) -> float:
-    return math.hypot(*moment.loads.force)
 
 
 def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFilm:
@@ -201,7 +214,9 @@ def _moment(case: Case, plan: KinematicPlan, film: VolumeFilm, moment: Moment) -
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
     probe = pressure_at(film_field(film, motion, solution), PROBE - angle, place)
     gap = float(film.gap(motion.d, np.array([PROBE - angle]))[0])
-    return _Moment(moment.time, motion, turned(motion.d, angle), solution, found, probe, gap)
+    return _Moment(
+        moment.time, turned(motion.d, angle), found, probe, gap, solution.iterations, motion, solution
+    )
 
 
 def _field(plan: KinematicPlan, film: VolumeFilm, moment: _Moment) -> FilmField:
@@ -210,7 +225,8 @@ def _field(plan: KinematicPlan, film: VolumeFilm, moment: _Moment) -> FilmField:
     return replace(field, phi=field.phi + plan.turning * moment.time)
 
 
-def _history(moments: list[_Moment]) -> History:
+def history_of(moments: Sequence[MovedFilm]) -> History:
+    """The history of a moved film."""
     return History(
         time_s=np.array([moment.time for moment in moments]),
         displacement=np.array([moment.displacement for moment in moments]),

@@ -14,7 +14,7 @@ from frbcli.bearing_tests.bearing_model import model_course, model_moment
 from frbcli.bearing_tests.history import History, film_course
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
 from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan, with_model
-from frbcli.bearing_tests.published import published_moment, resting_in_published
+from frbcli.bearing_tests.published import published_course, published_moment, resting_in_published
 from frbcli.bearing_tests.resting import resting_displacement
 from frbcli.bearing_tests.steady_film import FilmField, film_moment
 from frbcli.bearing_tests.warm import warm_film
@@ -225,6 +225,8 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
         with advised(with_model(case, plan.cavitation)):
             if plan.model is not None:
                 course = model_course(case, plan, path, times)
+            elif plan.published:
+                course = published_course(case, plan, path, times, tell)
             else:
                 course = film_course(case, plan, path, times, tell)
     except NotConverged as problem:

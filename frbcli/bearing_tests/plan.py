@@ -207,14 +207,14 @@ def _film_decision(law: type[Law], rectangular: bool) -> Decision:
 
 
 def _refuse(case: Case, cavitation: str, test: str) -> None:
-    faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation, test)]
+    faults = [*motion_faults(case.motion, test), *_model_faults(case, cavitation)]
     faults += bearing_faults(case, test)
     faults += film_faults(with_model(case, cavitation) if cavitation in names() else case)
     if faults:
         raise InputError(case.name or "case", tuple(faults))
 
 
-def _model_faults(case: Case, cavitation: str, test: str) -> list[Fault]:
+def _model_faults(case: Case, cavitation: str) -> list[Fault]:
     faults = []
     known = cavitation in names()
     if not known:
@@ -222,7 +222,8 @@ def _model_faults(case: Case, cavitation: str, test: str) -> list[Fault]:
     if case.film.theory == "short":
         problem = "is not for kinematic tests, which solve the whole film."
         faults.append(Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".'))
-    if test != "rotation" and known and _is_published(case, law_named(cavitation)):
-        problem = f"is not modelled for a {test} in this version."
-        faults.append(Fault(f"film.{cavitation}.form", "published", None, problem, 'Write form = "conservative".'))
+    ramp = getattr(case.bearings[0].supply, "ramp", 0.0) if isinstance(case.bearings[0], SingleFilmBearing) else 0.0
+    if ramp > 0.0 and known and _is_published(case, law_named(cavitation)):
+        problem = "is a ramp of the pressure, which the elements of the published form do not follow."
+        faults.append(Fault("bearing.supply.ramp", f"{ramp:g} s", None, problem, "Write 0 s."))
     return faults

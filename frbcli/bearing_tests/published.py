@@ -1,17 +1,31 @@
-"""Kinematic tests of a film in the published two-phase form: one moment of it, and where a journal rests in it."""
+"""Kinematic tests of a film in the published two-phase form: a moment, where a journal rests, a course."""
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.bearing_tests.history import (
+    PROBE,
+    PROBE_WIDTH,
+    Course,
+    MovedFilm,
+    every_second,
+    history_of,
+    peak_error,
+)
+from frbcli.bearing_tests.journal_path import Path
 from frbcli.bearing_tests.plan import KinematicPlan
-from frbcli.bearing_tests.steady_film import FilmField, FilmMoment
+from frbcli.bearing_tests.steady_film import FilmField, FilmMoment, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.frame import path_seen_from, turned
 from frbcli.film.cells.loads import estimate
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_height
@@ -69,6 +83,71 @@ def resting_in_published(case: Case, plan: KinematicPlan, load: float, omega: fl
         f"no resting position under {load:g} N from {len(STARTS)} starts; the last one: {problem.rstrip('.')}. "
         'Give a higher speed or more viscosity, width or supply, a less steep model, or form = "conservative".'
     )
+
+
+def published_course(
+    case: Case, plan: KinematicPlan, path: Path, times: Array, observe: Callable[[int], None] | None = None
+) -> Course:
+    """The film along a path from a full one at times[0], see film_course; its error from half as many elements each way
+    in half the steps. Raises NotConverged if it does not converge at once."""
+    film, path = published_film(case, plan.section, plan.cells), path_seen_from(path, plan.turning)
+    moments, solutions, problem = _moments(case, plan, film, path, times, observe)
+    worst = max(range(len(moments)), key=lambda n: moments[n].size)
+    passed, error, spent = times[: len(moments) + 1], math.nan, 0
+    try:
+        coarse, _, unsolved = _moments(case, plan, film.coarser(), path, every_second(passed))
+        spent = sum(moment.iterations for moment in coarse)
+        error = math.nan if unsolved else peak_error(case, passed, moments, coarse)
+    except NotConverged:
+        pass
+    field = _field(film, solutions[worst])
+    return Course(
+        history=history_of(moments),
+        field=replace(field, phi=field.phi + plan.turning * moments[worst].time),
+        loads=moments[worst].loads,
+        force_error=error,
+        unknowns=int(np.count_nonzero(~film.elements.fixed)),
+        iterations=spent + sum(moment.iterations for moment in moments),
+        problem=problem,
+    )
+
+
+def _moments(
+    case: Case, plan: KinematicPlan, film: PublishedFilm, path: Path, times: Array,
+    observe: Callable[[int], None] | None = None,
+) -> tuple[list[MovedFilm], list[PublishedSolution], str]:  # fmt: skip
+    """Those until the film does not converge, with its solutions, and why it does not. Raises NotConverged if there are
+    none."""
+    moments: list[MovedFilm] = []
+    solutions: list[PublishedSolution] = []
+    state, problem = film.full(), ""
+    for begin, time in itertools.pairwise(times.tolist()):
+        try:
+            solution = film.step(path, state, begin, time - begin)
+        except NotConverged as failure:
+            if not moments:
+                raise
+            problem = f"stopped at {begin:.4g} s: {failure}"
+            break
+        state = solution.state
+        moments.append(_moment(case, plan, film, time, solution))
+        solutions.append(solution)
+        if observe is not None:
+            observe(len(moments))
+    return moments, solutions, problem
+
+
+def _moment(
+    case: Case, plan: KinematicPlan, film: PublishedFilm, time: float, solution: PublishedSolution
+) -> MovedFilm:
+    """As seen in the lab."""
+    motion, angle = solution.motion, plan.turning * time
+    found = published_loads(film, solution, motion.omega + 2.0 * plan.turning, case.film.cavitation_factor)
+    found = replace(found, force=turned(found.force, angle))
+    place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
+    probe = pressure_at(_field(film, solution), PROBE - angle, place)
+    gap = float(gap_height(plan.section, motion.d, np.array([PROBE - angle]))[0])
+    return MovedFilm(time, turned(motion.d, angle), found, probe, gap, solution.iterations)
 
 
 def _rest(film: PublishedFilm, load: float, omega: float, position: Array) -> tuple[Array, FilmState]:
