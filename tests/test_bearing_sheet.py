@@ -172,7 +172,7 @@ def test_the_command_writes_table_picture_and_coefficients(
     assert max(map(len, said.err.splitlines())) <= 80
     assert (tmp_path / "jeffcott-bearing.png").read_bytes().startswith(b"\x89PNG")
     table = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
-    assert float(table[1]["k_xy_N_m"]) == pytest.approx(second["stiffness_N_m"][0][1])
+    assert float(table[1]["stiffness_xy_N_m"]) == pytest.approx(second["stiffness_N_m"][0][1])
     (element,) = tomllib.loads((tmp_path / "t.toml").read_text(encoding="utf-8")).values()
     assert element["frequency"] == pytest.approx([100.0 * math.pi, 200.0 * math.pi])
     assert element["cyx"][0] == pytest.approx(first["damping_N_s_m"][1][0])
@@ -196,7 +196,7 @@ def ross_of(case: str, folder: Path, *films: str, speeds: tuple[str, ...] = ("50
     rows = list(csv.DictReader((folder / "t.csv").read_text(encoding="utf-8").splitlines()))
     for film, path in paths.items():
         (element,) = tomllib.loads(path.read_text(encoding="utf-8")).values()
-        for name, column in (("kyx", "k_yx_N_m"), ("cxy", "c_xy_Ns_m")):
+        for name, column in (("kyx", "stiffness_yx_N_m"), ("cxy", "damping_xy_N_s_m")):
             assert element[name] == [float(row[column]) for row in rows if row["film"] == film]
     return paths
 

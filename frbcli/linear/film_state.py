@@ -32,17 +32,10 @@ SAMPLES = 720  # angles at which the smallest gap is looked for
 
 @dataclass(frozen=True)
 class FilmState:
-    """One film in its resting position, SI units.
+    """One film in its resting position, SI units: the fields are those of SHEET in film_columns.py,
+    which tells what they are.
 
-    speed_Hz: of the rotor; journal_speed_Hz, shell_speed_Hz: of the two bodies of the film; load: (2,) N on the journal
-    by one bearing; displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the
-    displacement, positive counter-clockwise; film_thickness_min in m; stiffness, damping: (2, 2) N/m and N s/m, -dF/dD
-    and -dF/dD', of films that keep oil when this has settled; error: of both, see RestingFilm; sommerfeld_number:
-    (3.14), with omega_J + omega_S; torque: on the journal, N m; power: that journal and shell put into the film, W;
-    side_flow: what leaves at the open ends, m^3/s, without what flows back into a groove; p_max: absolute, Pa;
-    temperature_rise: of the oil that leaves, K, if it took all of the power; force_error: estimated, relative;
-    viscosity: Pa s; clearance: m; temperature: of the film, K, NaN without heat; problem: why there is no state, then
-    the numbers are NaN.
+    error: of stiffness and damping, see RestingFilm; problem: why there is no state, then the numbers are NaN.
     """
 
     film: str
@@ -72,6 +65,11 @@ class FilmState:
     def eccentricity(self) -> float:
         """Relative eccentricity of the journal."""
         return math.hypot(*self.displacement)
+
+    @property
+    def status(self) -> str:
+        """ "resting" | "not-converged"."""
+        return "not-converged" if self.problem else "resting"
 
 
 def heat_capacity(case: Case) -> float:

@@ -1,0 +1,31 @@
+"""Writes the tables of columns into the pages of the documents: `cd tests && python -m column_tables`.
+
+A table stands on a page below its mark, a comment `<!-- columns: NAME -->`.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from frbcli.columns import Columns, page_table
+from frbcli.linear.film_columns import SHEET
+
+DOCS = Path(__file__).parent.parent / "docs"
+TABLES: dict[str, Columns] = {"bearing sheet": SHEET}
+MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
+
+
+def marked(page: Path) -> list[str]:
+    """The names of the tables on a page."""
+    return [name for _, name, _ in MARKED.findall(page.read_text(encoding="utf-8"))]
+
+
+def with_tables(page: Path) -> str:
+    """The page with its tables as they are declared."""
+    return MARKED.sub(lambda found: found[1] + page_table(TABLES[found[2]]), page.read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    for each in DOCS.glob("*.md"):
+        each.write_text(with_tables(each), encoding="utf-8")
