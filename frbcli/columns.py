@@ -172,6 +172,11 @@ def named(columns: Columns, of: str, value: Callable[[Any], Any]) -> tuple[Colum
     return tuple(replace(column, of=of, value=_after(value, column.value_of)) for column in columns)
 
 
+def keys(columns: Columns) -> list[str]:
+    """Of their object in JSON."""
+    return list(dict.fromkeys((column.name if column.key is None else column.key).split(".")[0] for column in columns))
+
+
 def heads(columns: Columns, table: str = "") -> tuple[str, ...]:
     """Of a table of the terminal."""
     return tuple(head for column in columns for shown in _in(column, table) for head in shown.heads)

@@ -9,10 +9,15 @@ import re
 from pathlib import Path
 
 from frbcli.columns import Columns, page_table
-from frbcli.linear.film_columns import SHEET
+from frbcli.linear.columns import FILM, MODES, POINT, RESPONSE_POINTS, SHEET
 
 DOCS = Path(__file__).parent.parent / "docs"
-TABLES: dict[str, Columns] = {"bearing sheet": SHEET}
+TABLES: dict[str, Columns] = {
+    "bearing sheet": SHEET,
+    "stability": (*POINT[:2], *FILM, *POINT[2:]),
+    "modes": MODES,
+    "response": RESPONSE_POINTS,
+}
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
 
 

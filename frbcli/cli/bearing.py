@@ -128,7 +128,7 @@ def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Pat
 def _tell(terminal: Terminal, found: BearingSheet) -> None:
     from frbcli.columns import heads, legend, table_of
     from frbcli.film.cavitation.table import law_named
-    from frbcli.linear.film_columns import FILMS, MATRICES, SHEET, WARM
+    from frbcli.linear.columns import FILMS, MATRICES, SHEET, WARM
     from frbcli.linear.film_state import heat_capacity
 
     for film, law in zip(found.films, found.laws, strict=True):

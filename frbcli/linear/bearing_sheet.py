@@ -21,7 +21,7 @@ from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.coefficients import RestingFilm, coefficient_error, resting_film
-from frbcli.linear.film_columns import SHEET
+from frbcli.linear.columns import SHEET
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.linear.resting import ring_speeds
 from frbcli.linear.static_films import StaticFilms, static_films

@@ -32,7 +32,7 @@ SAMPLES = 720  # angles at which the smallest gap is looked for
 
 @dataclass(frozen=True)
 class FilmState:
-    """One film in its resting position, SI units: the fields are those of SHEET in film_columns.py,
+    """One film in its resting position, SI units: the fields are those of SHEET in columns.py,
     which tells what they are.
 
     error: of stiffness and damping, see RestingFilm; problem: why there is no state, then the numbers are NaN.
