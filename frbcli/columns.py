@@ -186,7 +186,9 @@ def legend(columns: Columns, table: str = "") -> str:
     """The heads of a table of the terminal with meaning and unit."""
     told = ((column, shown) for column in columns for shown in _in(column, table))
     return "; ".join(
-        f"{', '.join(shown.heads)}: {column.meaning}{_with(', ', shown, column.unit)}" for column, shown in told
+        f"{', '.join(shown.heads)}: {column.meaning}{_with(', ', shown, column.unit)}"
+        for column, shown in told
+        if column.meaning
     )
 
 
@@ -194,12 +196,14 @@ def page_table(columns: Columns) -> str:
     """The table of a page of the documents, in Markdown."""
     rows = ["| pandas, CSV | JSON | unit | terminal | meaning |", "|" + " --- |" * 5]
     for column in columns:
+        if not column.meaning:  # what begins a row of the terminal
+            continue
         flat = " to ".join(f"`{name}`" for name in dict.fromkeys((column.names[0], column.names[-1])))
         key = column.name if column.key is None else column.key
         told = dict.fromkeys(f"`{'`, `'.join(shown.heads)}`{_with(' in ', shown)}" for shown in column.shown)
         meaning = ": ".join(filter(None, (column.meaning, column.more)))
         cells = (flat if column.flat else "", f"`{key}`" if key else "", column.unit, ", ".join(told), meaning)
-        rows.append("|".join(["", *(f" {cell} " if cell else " " for cell in cells), ""]))
+        rows.append("|".join(["", *(f" {cell} ".replace("|", "\\|") if cell else " " for cell in cells), ""]))
     return "\n".join(rows) + "\n"
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from frbcli.bearing_tests.columns import MOMENTS, RESULT
 from frbcli.columns import Columns, page_table
 from frbcli.linear.columns import FILM, MODES, POINT, RESPONSE_POINTS, SHEET
 
@@ -17,6 +18,8 @@ TABLES: dict[str, Columns] = {
     "stability": (*POINT[:2], *FILM, *POINT[2:]),
     "modes": MODES,
     "response": RESPONSE_POINTS,
+    "kinematic tests": RESULT,
+    "moments": MOMENTS,
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
 
