@@ -11,6 +11,7 @@ from pathlib import Path
 from frbcli.bearing_tests.columns import MOMENTS, RESULT
 from frbcli.columns import Columns, page_table
 from frbcli.linear.columns import FILM, MODES, POINT, RESPONSE_POINTS, SHEET
+from frbcli.studies.ladder_columns import LADDER
 
 DOCS = Path(__file__).parent.parent / "docs"
 TABLES: dict[str, Columns] = {
@@ -20,6 +21,7 @@ TABLES: dict[str, Columns] = {
     "response": RESPONSE_POINTS,
     "kinematic tests": RESULT,
     "moments": MOMENTS,
+    "accuracy": LADDER,
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
 
