@@ -60,6 +60,8 @@ SHEET = (
     Column("film_thickness_min", "m", "smallest film thickness", shown=(Shown("h", ".3g", "um", FILMS),)),
     Column("p_max", "Pa", "largest absolute pressure", shown=(Shown("p", ".3g", "bar", FILMS),)),
     Column("torque", "N m", "torque on the journal"),
+    Column("friction_coefficient", "", "coefficient of friction of the journal", more="`mu = |T| / (R F)`"),
+    Column("friction_variable", "", "`mu R / C`", more="`pi / So` of a journal in the middle of a shell at rest"),
     Column("power", "W", "power that journal and shell put into the film", shown=(Shown("loss", ".4g", table=FILMS),),
            more="their torques times their speeds"),
     Column("side_flow", "m^3/s", "oil that leaves at the open ends", shown=(Shown("flow", ".4g", "mm^3/s", FILMS),),

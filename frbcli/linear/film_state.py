@@ -17,7 +17,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
-from frbcli.film.operating import sommerfeld_number
+from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.linear.coefficients import RestingFilm, force_error, settled_force
 from frbcli.linear.static_films import StaticFilms
@@ -51,6 +51,8 @@ class FilmState:
     error: float = math.nan
     sommerfeld_number: float = math.nan
     torque: float = math.nan
+    friction_coefficient: float = math.nan
+    friction_variable: float = math.nan
     power: float = math.nan
     side_flow: float = math.nan
     p_max: float = math.nan
@@ -113,6 +115,7 @@ def film_state(
     flow = outflow(at, motion.d, at.pressure(solution.state))
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
+    friction = friction_coefficient(found.torque.journal, size, section.radius)
     return FilmState(
         film=system.names[i],
         speed_Hz=float(bodies[0]) / (2.0 * math.pi),
@@ -127,6 +130,8 @@ def film_state(
         error=at_rest.error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
         torque=found.torque.journal,
+        friction_coefficient=friction,
+        friction_variable=friction * section.radius / c,
         power=power,
         side_flow=flow,
         p_max=found.p_max,
