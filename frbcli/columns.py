@@ -91,6 +91,11 @@ class Column:
         return _joined(self.quantity, self.unit, self.of)
 
     @property
+    def path(self) -> str:
+        """In JSON."""
+        return self.name if self.key is None else self.key
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Of all entries: stiffness_xx_N_m, stiffness_xy_N_m, ..."""
         entries = map("".join, itertools.product(AXES, repeat=len(self.shape)))
@@ -138,7 +143,7 @@ class Table:
         for row in self.rows:
             document: dict[str, Any] = {}
             for column, value in zip(self.columns, row, strict=True):
-                *path, last = (column.name if column.key is None else column.key).split(".")
+                *path, last = column.path.split(".")
                 place = document
                 for key in path:
                     place = place.setdefault(key, {})
@@ -174,7 +179,7 @@ def named(columns: Columns, of: str, value: Callable[[Any], Any]) -> tuple[Colum
 
 def keys(columns: Columns) -> list[str]:
     """Of their object in JSON."""
-    return list(dict.fromkeys((column.name if column.key is None else column.key).split(".")[0] for column in columns))
+    return list(dict.fromkeys(column.path.split(".")[0] for column in columns if column.path))
 
 
 def heads(columns: Columns, table: str = "") -> tuple[str, ...]:
@@ -199,10 +204,9 @@ def page_table(columns: Columns) -> str:
         if not column.meaning:  # what begins a row of the terminal
             continue
         flat = " to ".join(f"`{name}`" for name in dict.fromkeys((column.names[0], column.names[-1])))
-        key = column.name if column.key is None else column.key
         told = dict.fromkeys(f"`{'`, `'.join(shown.heads)}`{_with(' in ', shown)}" for shown in column.shown)
         meaning = ": ".join(filter(None, (column.meaning, column.more)))
-        cells = (flat if column.flat else "", f"`{key}`" if key else "", column.unit, ", ".join(told), meaning)
+        cells = (flat if column.flat else "", f"`{column.path}`" if column.path else "", column.unit, ", ".join(told), meaning)
         rows.append("|".join(["", *(f" {cell} ".replace("|", "\\|") if cell else " " for cell in cells), ""]))
     return "\n".join(rows) + "\n"
 
