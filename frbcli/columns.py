@@ -206,7 +206,8 @@ def page_table(columns: Columns) -> str:
         flat = " to ".join(f"`{name}`" for name in dict.fromkeys((column.names[0], column.names[-1])))
         told = dict.fromkeys(f"`{'`, `'.join(shown.heads)}`{_with(' in ', shown)}" for shown in column.shown)
         meaning = ": ".join(filter(None, (column.meaning, column.more)))
-        cells = (flat if column.flat else "", f"`{column.path}`" if column.path else "", column.unit, ", ".join(told), meaning)
+        names = flat if column.flat else "", f"`{column.path}`" if column.path else ""
+        cells = (*names, column.unit, ", ".join(told), meaning)
         rows.append("|".join(["", *(f" {cell} ".replace("|", "\\|") if cell else " " for cell in cells), ""]))
     return "\n".join(rows) + "\n"
 
