@@ -10,7 +10,8 @@ from pathlib import Path
 
 from frbcli.bearing_tests.columns import MOMENTS, RESULT
 from frbcli.columns import Columns, page_table
-from frbcli.linear.columns import FILM, MODES, POINT, RESPONSE_POINTS, SHEET
+from frbcli.linear.columns import DAMPED_MODES, FILM, MODES, POINT, RESPONSE_POINTS, SHEET
+from frbcli.studies.comparison_columns import VARIANT
 from frbcli.studies.ladder_columns import LADDER
 
 DOCS = Path(__file__).parent.parent / "docs"
@@ -18,10 +19,12 @@ TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
     "stability": (*POINT[:2], *FILM, *POINT[2:]),
     "modes": MODES,
+    "damped modes": DAMPED_MODES,
     "response": RESPONSE_POINTS,
     "kinematic tests": RESULT,
     "moments": MOMENTS,
     "accuracy": LADDER,
+    "comparison": VARIANT,
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
 

@@ -105,6 +105,16 @@ def _size(motion: Any) -> Any:
     return np.hypot(motion.real, motion.imag)
 
 
+# Of a DampedMode
+DAMPED_MODES = (
+    Column("frequency", "Hz", "frequency", shown=(Shown("Hz", ".5g"),)),
+    Column("direction", "", "`forward` or `backward`", shown=(Shown("whirl"),)),
+    Column("growth", "1/s", "real part of the eigenvalue", attrgetter("eigenvalue.real"),
+           shown=(Shown("growth, 1/s", ".4g"),)),
+    Column("damping_ratio", "", "share of the critical damping", shown=(Shown("damping", ".3g"),)),
+    Column("logarithmic_decrement", "", "logarithmic decrement", shown=(Shown("log. decrement", ".3g"),)),
+)  # fmt: skip
+
 _SPEEDS = replace(SPEED, value=lambda found: found.speeds_Hz[:, None])
 
 # Of a Response, over speeds and points
