@@ -1,7 +1,7 @@
 """Columns of results: each is declared once, with its name, unit, shape and meaning, and how the terminal shows it.
 
-Tables for pandas and CSV, the objects of a JSON document, the cells and the legend of a table of the terminal and the
-table of a page of the documents are all made from the declarations.
+Tables for pandas and CSV, the objects of a JSON document, and the cells and the legend of a table of the terminal are
+made from the declarations, and so are the tables of columns in the documents.
 """
 
 from __future__ import annotations
@@ -40,6 +40,11 @@ class Shown:
     def heads(self) -> tuple[str, ...]:
         """Of its cells."""
         return (self.head,) if isinstance(self.head, str) else self.head
+
+    def unit_beside(self, unit: str = "") -> tuple[str, ...]:
+        """The shown unit, else this one, unless there is none or the head names it."""
+        told = self.unit or unit
+        return (told,) if told and not self.heads[0].endswith(told) else ()
 
     def cells(self, value: Any) -> tuple[str, ...]:
         """"-" for a number that is not known."""
@@ -189,27 +194,11 @@ def heads(columns: Columns, table: str = "") -> tuple[str, ...]:
 
 def legend(columns: Columns, table: str = "") -> str:
     """The heads of a table of the terminal with meaning and unit."""
-    told = ((column, shown) for column in columns for shown in _in(column, table))
+    told = ((column, shown) for column in columns if column.meaning for shown in _in(column, table))
     return "; ".join(
-        f"{', '.join(shown.heads)}: {column.meaning}{_with(', ', shown, column.unit)}"
+        ", ".join((*shown.heads[:-1], f"{shown.heads[-1]}: {column.meaning}", *shown.unit_beside(column.unit)))
         for column, shown in told
-        if column.meaning
     )
-
-
-def page_table(columns: Columns) -> str:
-    """The table of a page of the documents, in Markdown."""
-    rows = ["| pandas, CSV | JSON | unit | terminal | meaning |", "|" + " --- |" * 5]
-    for column in columns:
-        if not column.meaning:  # what begins a row of the terminal
-            continue
-        flat = " to ".join(f"`{name}`" for name in dict.fromkeys((column.names[0], column.names[-1])))
-        told = dict.fromkeys(f"`{'`, `'.join(shown.heads)}`{_with(' in ', shown)}" for shown in column.shown)
-        meaning = ": ".join(filter(None, (column.meaning, column.more)))
-        names = flat if column.flat else "", f"`{column.path}`" if column.path else ""
-        cells = (*names, column.unit, ", ".join(told), meaning)
-        rows.append("|".join(["", *(f" {cell} ".replace("|", "\\|") if cell else " " for cell in cells), ""]))
-    return "\n".join(rows) + "\n"
 
 
 def short_number(value: float | None) -> str:
@@ -233,9 +222,3 @@ def _after(first: Callable[[Any], Any], then: Callable[[Any], Any]) -> Callable[
         return None if part is None else then(part)
 
     return value
-
-
-def _with(word: str, shown: Shown, unit: str = "") -> str:
-    """The shown unit, or else this one, behind a word, unless the head names it."""
-    unit = shown.unit or unit
-    return f"{word}{unit}" if unit and not shown.heads[0].endswith(unit) else ""

@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 
 from frbcli.bearing_tests.columns import MOMENTS, RESULT
-from frbcli.columns import Columns, page_table
+from frbcli.columns import Column, Columns
 from frbcli.linear.columns import DAMPED_MODES, FILM, MODES, POINT, RESPONSE_POINTS, SHEET
 from frbcli.studies.comparison_columns import VARIANT
 from frbcli.studies.ladder_columns import LADDER
@@ -27,6 +27,30 @@ TABLES: dict[str, Columns] = {
     "comparison": VARIANT,
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
+
+
+def page_table(columns: Columns) -> str:
+    """The table of columns in Markdown, without what only begins a row of the terminal."""
+    rows = ["| pandas, CSV | JSON | unit | terminal | meaning |", "|" + " --- |" * 5]
+    for column in (column for column in columns if column.meaning):
+        cells = map(_escaped, (_flat(column), f"`{column.path}`" if column.path else "", column.unit, _told(column),
+                               ": ".join(filter(None, (column.meaning, column.more)))))  # fmt: skip
+        rows.append("|".join(["", *(f" {cell} " if cell else " " for cell in cells), ""]))
+    return "\n".join(rows) + "\n"
+
+
+def _flat(column: Column) -> str:
+    first_and_last = dict.fromkeys((column.names[0], column.names[-1]))
+    return " to ".join(f"`{name}`" for name in first_and_last) if column.flat else ""
+
+
+def _told(column: Column) -> str:
+    heads = ((", ".join(f"`{head}`" for head in shown.heads), *shown.unit_beside()) for shown in column.shown)
+    return ", ".join(dict.fromkeys(map(" in ".join, heads)))
+
+
+def _escaped(cell: str) -> str:
+    return cell.replace("|", "\\|")
 
 
 def marked(page: Path) -> list[str]:

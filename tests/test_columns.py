@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, page_table, spread_table, table_of
+from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
 
 COLUMNS = (
     Column("speed", "Hz", "rotor speed", shown=(Shown("Hz", ".3g"), Shown("Hz", ".4g", table="stiffness"))),
@@ -69,7 +69,7 @@ def test_the_terminal_shows_numbers_in_their_units() -> None:
 
 
 def test_a_page_tells_names_units_and_meaning() -> None:
-    rows = page_table(COLUMNS).splitlines()
+    rows = column_tables.page_table(COLUMNS).splitlines()
     assert len(rows) == 2 + len(COLUMNS)
     assert rows[4] == "| `p_max_Pa` | `p_max_Pa` | Pa | `p` in bar | largest pressure: absolute |"
     assert rows[5].startswith("| `stiffness_xx_N_m` to `stiffness_yy_N_m` | `stiffness_N_m` | N/m |")
