@@ -4,19 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING
 
+from frbcli.columns import Table
 from frbcli.errors import printable
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MOST_ROWS = 60  # of a table; the rest is told by their number
 
 
 class Tabular:
-    """A result that a notebook shows as its table: one with `to_pandas`, and a case that it is of."""
+    """A result that a notebook shows as its table: one with `table` or a `to_pandas` of its own, and a case that it is
+    of."""
+
+    def table(self) -> Table:
+        """The declared columns of the result with their values."""
+        raise NotImplementedError
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The rows of the table, units in the names of the columns."""
+        return self.table().to_pandas()
 
     def _repr_html_(self) -> str:
-        result: Any = self
-        frame, case = result.to_pandas(), getattr(self, "case", None)
+        frame, case = self.to_pandas(), getattr(self, "case", None)
         title = "" if case is None else case.title or case.name
         words = ": ".join(word for word in (title, type(self).__name__) if word)
         return html_table(words, list(frame.columns), frame.itertuples(index=False), len(frame))

@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from textwrap import fill
 
-from frbcli.cli.common import short_number
 from frbcli.cli.hard import cause_of
+from frbcli.columns import short_number
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 
 PAGE = Path(__file__).parents[1] / "docs" / "hard-cases.md"

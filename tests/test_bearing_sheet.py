@@ -17,6 +17,7 @@ from frbcli.case.load import load_case, load_case_text
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.linear.bearing_sheet import BearingSheet, bearing_sheet, sommerfeld_chart
+from frbcli.linear.film_state import FilmState
 from frbcli.linear.heat import warm_machine
 from frbcli.linear.stability import stability
 
@@ -114,6 +115,38 @@ def test_a_nearly_centred_journal_has_the_torque_of_petroff(plain: BearingSheet)
     assert state.film_thickness_min == pytest.approx(0.99 * 20e-6, rel=1e-6)
 
 
+def test_friction_of_a_nearly_centred_journal_is_petroff_s(plain: BearingSheet) -> None:
+    """T = 2 pi eta omega R^3 B / C over R F, and in terms of So = F (C / R)^2 / (2 R B eta omega)."""
+    state = plain.points[0]
+    force = math.pi * 0.01 * OMEGA * 2.0 * 0.01**2 * 0.01 / 20e-6 / state.friction_coefficient
+    assert force == pytest.approx(np.hypot(*state.load), rel=1e-3)
+    assert state.friction_variable == pytest.approx(math.pi / state.sommerfeld_number, rel=1e-3)
+
+
+@pytest.mark.parametrize("eccentricity", [0.2, 0.5, 0.8])
+def test_friction_of_sommerfeld_s_film(eccentricity: float) -> None:
+    """mu R / C = (1 + 2 eps^2) / (3 eps) of an infinitely long film full of oil: what twice the width adds to torque
+    and load, in which the ends do not count. Cells 5 mm and 10 mm wide leave 0.3 %."""
+    short, long = (_sommerfeld_s_film(width, eccentricity) for width in (200, 400))
+    friction, load = np.array([[state.friction_variable, np.hypot(*state.load)] for state in (short, long)]).T
+    added = np.diff(friction * load)[0] / np.diff(load)[0]
+    assert added == pytest.approx((1.0 + 2.0 * eccentricity**2) / (3.0 * eccentricity), rel=5e-3)
+
+
+def _sommerfeld_s_film(width: float, eccentricity: float) -> FilmState:
+    text = CASE.format(viscosity=10, width=width, diameter=20, clearance=20, supply=NO_SUPPLY, load=30)
+    case = load_case_text(text.replace('"reynolds"', '"sommerfeld"'), name="long")
+    return sommerfeld_chart(case, [eccentricity], 50.0).points[0]
+
+
+def test_without_a_load_there_is_no_coefficient_of_friction(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["bearing", "jeffcott", "--set", "rotor.gravity=0", "--speed", "50 Hz", "--no-picture", "--json"]
+    assert frb(words) == 0
+    (point,) = json.loads(capsys.readouterr().out)["points"]
+    assert point["torque_N_m"] < 0.0
+    assert (point["friction_coefficient"], point["friction_variable"]) == (None, None)
+
+
 def test_damping_is_symmetric_and_the_load_is_carried(plain: BearingSheet) -> None:
     for state in plain.points:
         assert state.damping is not None
@@ -172,7 +205,7 @@ def test_the_command_writes_table_picture_and_coefficients(
     assert max(map(len, said.err.splitlines())) <= 80
     assert (tmp_path / "jeffcott-bearing.png").read_bytes().startswith(b"\x89PNG")
     table = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
-    assert float(table[1]["k_xy_N_m"]) == pytest.approx(second["stiffness_N_m"][0][1])
+    assert float(table[1]["stiffness_xy_N_m"]) == pytest.approx(second["stiffness_N_m"][0][1])
     (element,) = tomllib.loads((tmp_path / "t.toml").read_text(encoding="utf-8")).values()
     assert element["frequency"] == pytest.approx([100.0 * math.pi, 200.0 * math.pi])
     assert element["cyx"][0] == pytest.approx(first["damping_N_s_m"][1][0])
@@ -196,7 +229,7 @@ def ross_of(case: str, folder: Path, *films: str, speeds: tuple[str, ...] = ("50
     rows = list(csv.DictReader((folder / "t.csv").read_text(encoding="utf-8").splitlines()))
     for film, path in paths.items():
         (element,) = tomllib.loads(path.read_text(encoding="utf-8")).values()
-        for name, column in (("kyx", "k_yx_N_m"), ("cxy", "c_xy_Ns_m")):
+        for name, column in (("kyx", "stiffness_yx_N_m"), ("cxy", "damping_xy_N_s_m")):
             assert element[name] == [float(row[column]) for row in rows if row["film"] == film]
     return paths
 

@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 import case_reference
+import column_tables
 import hard_cases_page
 import pytest
 
@@ -30,6 +31,16 @@ def test_case_file_page_is_what_the_schema_says() -> None:
     assert case_reference.PAGE.read_text(encoding="utf-8") == case_reference.page(), (
         "run `cd tests && python -m case_reference`"
     )
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_tables_of_columns_are_as_they_are_declared(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert text == column_tables.with_tables(page), "run `cd tests && python -m column_tables`"
+
+
+def test_every_declared_table_of_columns_is_on_one_page() -> None:
+    assert sorted(name for page in PAGES for name in column_tables.marked(page)) == sorted(column_tables.TABLES)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=named)

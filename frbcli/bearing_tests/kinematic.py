@@ -6,11 +6,11 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from frbcli.bearing_tests.bearing_model import model_course, model_moment
+from frbcli.bearing_tests.columns import MOMENTS, RESULT
 from frbcli.bearing_tests.history import History, film_course
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
 from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan, with_model
@@ -19,6 +19,7 @@ from frbcli.bearing_tests.resting import resting_displacement
 from frbcli.bearing_tests.steady_film import FilmField, film_moment
 from frbcli.bearing_tests.warm import warm_film
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import Loads
 from frbcli.film.cells.motion import Motion
@@ -27,9 +28,6 @@ from frbcli.film.published.solution import FilmState
 from frbcli.html import Tabular
 from frbcli.scene.remedies import advised, film_advice
 from frbcli.thermal.steady import SteadyHeat
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Observer = Callable[[int, int], None]
 
@@ -85,13 +83,12 @@ class KinematicTest(Tabular):
     results: tuple[KinematicResult, ...]
     complete: bool = True
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per model for a rotation; for a squeeze or a whirl one per model and moment."""
-        import pandas as pd
-
         if self.test == "rotation":
-            return pd.DataFrame([_row(result) for result in self.results])
-        return pd.concat([_table(result) for result in self.results], ignore_index=True)
+            return table_of(RESULT, self.results)
+        moments = ((each, 1 if each.history is None else len(each.history.time_s)) for each in self.results)
+        return table_of(MOMENTS, ((result, moment) for result, count in moments for moment in range(count)))
 
 
 def rotation(
@@ -262,50 +259,3 @@ def _sommerfeld_number(plan: KinematicPlan, loads: Loads, omega: float) -> float
     section = plan.section
     force, width = math.hypot(*loads.force), section.bearing_width
     return sommerfeld_number(force, width, section.radius, section.clearance, section.viscosity, omega)
-
-
-def _head(result: KinematicResult) -> dict[str, Any]:
-    model = {"cavitation": result.cavitation} if result.cavitation else {"theory": result.theory}
-    return {**model, "status": result.status}
-
-
-def _row(result: KinematicResult) -> dict[str, Any]:
-    row: dict[str, Any] = _head(result)
-    row |= {"displacement_x": result.displacement[0], "displacement_y": result.displacement[1]}
-    loads = result.loads
-    if loads is not None:
-        row |= {
-            "force_x_N": loads.force[0],
-            "force_y_N": loads.force[1],
-            "sommerfeld_number": result.sommerfeld_number,
-            "torque_journal_N_m": loads.torque.journal,
-            "torque_shell_N_m": loads.torque.shell,
-            "p_max_Pa": loads.p_max,
-            "p_min_Pa": loads.p_min,
-            "oil_fraction": loads.oil_fraction,
-            "oil_defect_relative": loads.oil.defect_relative,
-            "force_error_relative": result.force_error,
-        }
-    if result.heat is not None:
-        row |= {"temperature_K": float(result.heat.temperatures[0]), "viscosity_Pa_s": result.plan.section.viscosity}
-    return row | {"cpu_s": result.cpu_s}
-
-
-def _table(result: KinematicResult) -> pd.DataFrame:
-    import pandas as pd
-
-    history = result.history
-    if history is None:
-        return pd.DataFrame([_head(result)])
-    return pd.DataFrame(
-        {
-            **_head(result),
-            "time_s": history.time_s,
-            "displacement_x": history.displacement[:, 0],
-            "displacement_y": history.displacement[:, 1],
-            "force_x_N": history.force[:, 0],
-            "force_y_N": history.force[:, 1],
-            "probe_pressure_Pa": history.probe_pressure,
-            "gap_ratio": history.gap_ratio,
-        }
-    )

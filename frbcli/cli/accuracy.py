@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.common import Names, Terminal, case_argument, output_options, short_number
+from frbcli.cli.common import Names, Terminal, case_argument, output_options
 from frbcli.cli.compiling import compilation_shown
 from frbcli.cli.files import OUTPUT, check_outputs, here
 from frbcli.cli.live import live_lines, of_runs
 from frbcli.cli.picture_options import picture_options
 from frbcli.cli.pictures import draw
 from frbcli.cli.quantities import TIME_OPTION
+from frbcli.columns import short_number
 from frbcli.errors import INTERRUPTED
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
+    from frbcli.columns import Columns
+    from frbcli.studies.ladder import AccuracyLadder, RungResult
 
-COLUMNS = ("", "film", "tol.", "CPU", "max", "rms", "onset", "thr.", "force")
-EXPLANATION = (
-    "* choice of the plan, + on Pareto's front; film: short bearing, or elements of a\n"
-    "finite one; tol.: local error of a step; CPU: time in s; max, rms: error of the\n"
-    "eccentricity; onset: error of the rotor speed at the onset of whirl, in Hz;\n"
-    "thr.: error of the linear threshold, in Hz; force: relative error of the\n"
-    "film forces."
-)
-RESOLVED = 0.01  # Hz; resolution of the table
+EXPLANATION = "* choice of the plan, + on Pareto's front; {}."
+WIDTH = 80
 
 
 @click.command()
@@ -52,6 +48,7 @@ def command(
 ) -> int:
     """Run CASE up on a ladder of theories, meshes and tolerances against a fine reference: error over cost."""
     from frbcli.studies.accuracy import accuracy
+    from frbcli.studies.ladder_columns import RESULT, RUNG
 
     target = output or here(case.name, "-accuracy.png")
     check_outputs(picture=target if picture else None)
@@ -59,16 +56,19 @@ def command(
         tell = of_runs(terminal, show)
         found = accuracy(case, until, theory, coupling, lambda rung, *rest: tell(rung.name, *rest))
     _report(found, terminal)
-    reference = _document(found.reference) | {"compared_with": _rung(found.coarser)}
-    reference["change"] = reference.pop("error")
+    (coarser,), (reference,) = _documents(RUNG, [found.coarser]), _documents(RESULT, [found.reference])
+    reference |= _stated(found.reference) | {"compared_with": coarser, "change": reference.pop("error")}
+    rungs = zip(found.table().documents(), found.ladder, strict=True)
+    ended = zip(_documents(RUNG, [rung for rung, _ in found.failed]), found.failed, strict=True)
+    failed = [document | {"message": problem} for document, (_, problem) in ended]
     terminal.emit({
         "command": "accuracy",
         "case": case.name,
         **({} if found.complete else {"status": "interrupted"}),
         "until_s": found.until_s,
         "reference": reference,
-        "ladder": [_document(item) | {"planned": item.planned, "pareto": item in found.front} for item in found.ladder],
-        **({"failed": [_rung(rung) | {"message": problem} for rung, problem in found.failed]} if found.failed else {}),
+        "ladder": [document | _stated(item) for document, item in rungs],
+        **({"failed": failed} if found.failed else {}),
     })
     if picture and found.ladder:
         from frbcli.plot.accuracy import accuracy_figure
@@ -78,13 +78,15 @@ def command(
 
 
 def _report(found: AccuracyLadder, terminal: Terminal) -> None:
-    several = len({item.rung.coupling for item in found.ladder}) > 1
-    rows = [
-        _cells(item, several, ("*" if item.planned else "") + ("+" if item in found.front else ""))
-        for item in found.ladder
-    ]
-    terminal.table(f"{found.case.title or found.case.name}, first {found.until_s:g} s", COLUMNS, rows)
-    terminal.result(EXPLANATION)
+    from frbcli.columns import heads, legend
+    from frbcli.studies.ladder_columns import LADDER
+
+    rows = found.table().cells()
+    if len({item.rung.coupling for item in found.ladder}) > 1:
+        rows = [(mark, "\n".join((film, item.rung.coupling.replace("-", "-\n"))), *rest)
+                for item, (mark, film, *rest) in zip(found.ladder, rows, strict=True)]  # fmt: skip
+    terminal.table(f"{found.case.title or found.case.name}, first {found.until_s:g} s", heads(LADDER), rows)
+    terminal.result(fill(EXPLANATION.format(legend(LADDER)), WIDTH))
     reference, change = found.reference.rung, found.reference.error
     terminal.result(
         f"reference: {reference.name}; on a coarser mesh and with\n"
@@ -107,49 +109,11 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
         terminal.result(f"Interrupted: {len(found.ladder)} rungs are done, without thresholds.")
 
 
-def _cells(item: RungResult, several: bool, mark: str) -> tuple[str, ...]:
-    rung, error = item.rung, item.error
-    film = rung.theory if rung.mesh is None else f"{rung.mesh[0]}x{rung.mesh[1]}"
-    return (
-        mark,
-        "\n".join((film, rung.coupling.replace("-", "-\n"))) if several else film,
-        short_number(rung.tolerance).replace(".0e", "e"),
-        f"{item.cpu_s:.3g}",
-        short_number(error.eccentricity_largest),
-        short_number(error.eccentricity_rms),
-        _difference(error.onset_Hz),
-        _difference(error.threshold_Hz),
-        short_number(error.force_relative),
-    )
+def _documents(columns: Columns, items: Sequence[object]) -> list[dict[str, Any]]:
+    from frbcli.columns import table_of
+
+    return table_of(columns, items).documents()
 
 
-def _difference(value: float) -> str:
-    if math.isnan(value) or abs(value) >= RESOLVED:
-        return "-" if math.isnan(value) else f"{value:+.2f}"
-    return short_number(value)
-
-
-def _rung(rung: Rung) -> dict[str, Any]:
-    return {
-        "theory": rung.theory,
-        "cavitation": rung.cavitation,
-        "mesh": rung.mesh,
-        "tolerance": rung.tolerance,
-        "coupling": rung.coupling,
-    }
-
-
-def _document(item: RungResult) -> dict[str, Any]:
-    stated = {"stated": dict(item.stated)} if item.stated else {}
-    return _rung(item.rung) | {"status": item.status, "cpu_s": item.cpu_s, "error": _error(item.error)} | stated
-
-
-def _error(error: RungError) -> dict[str, Any]:
-    return {
-        "eccentricity_largest": error.eccentricity_largest,
-        "eccentricity_rms": error.eccentricity_rms,
-        "window_s": [0.0, error.until_s],
-        "onset_speed_Hz": error.onset_Hz,
-        "threshold_Hz": error.threshold_Hz,
-        "film_force_relative": error.force_relative,
-    }
+def _stated(item: RungResult) -> dict[str, Any]:
+    return {"stated": dict(item.stated)} if item.stated else {}

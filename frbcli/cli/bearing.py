@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -20,19 +19,11 @@ from frbcli.cli.quantities import LOAD_OPTION, SPEED_OPTION
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.linear.bearing_sheet import BearingSheet
-    from frbcli.linear.film_state import Array as Matrix
-    from frbcli.linear.film_state import FilmState
 
-COLUMNS = 80
-NUMBERS = ("Hz", "eps", "att.", "So", "h", "p", "loss", "flow", "rise", "err.")
-HEAT = ("Hz", "eps", "temperature, degC", "viscosity, mPa s", "clearance, um")
-ZERO_CELSIUS = 273.15
-COEFFICIENTS = ("Hz", "eps", "xx", "xy", "yx", "yy", "err.")
+WIDTH = 80
 EXPLANATION = (
-    "att.: attitude angle; So: Sommerfeld number (3.14); h: smallest film thickness, um; p: largest pressure, "
-    "bar, absolute; loss: power, W; flow: oil that leaves at the ends, mm^3/s; rise: of its temperature if it took all "
-    "of the power, with {density:.4g} kg/m^3 and {capacity:.4g} J/(kg K), K; err.: relative error of the force, and of "
-    "stiffness and damping over their largest entry, from other meshes. All per bearing."
+    "{}. Errors of stiffness and damping are over their largest entry. The rise is with {:.4g} kg/m^3 and "
+    "{:.4g} J/(kg K). All per bearing."
 )
 SETTLED = "Coefficients of mass-conserving films are of oil that has settled; they do not determine stability."
 
@@ -95,7 +86,7 @@ def command(
             "over": over,
             "oil_density_kg_m3": case.oil.density,
             "oil_heat_capacity_J_kg_K": heat_capacity(case),
-            "points": [_point(point) for point in found.points],
+            "points": found.table().documents(),
             "picture": picture,
             "csv": csv,
             "ross": list(elements.values()) or None,
@@ -135,87 +126,22 @@ def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Pat
 
 
 def _tell(terminal: Terminal, found: BearingSheet) -> None:
+    from frbcli.columns import heads, legend, table_of
     from frbcli.film.cavitation.table import law_named
+    from frbcli.linear.columns import FILMS, MATRICES, SHEET, WARM
     from frbcli.linear.film_state import heat_capacity
 
     for film, law in zip(found.films, found.laws, strict=True):
-        states = found.of(film)
         name = " ".join(filter(None, (found.case.title or found.case.name, film)))
-        terminal.table(f"{name}, {law_named(law).label}", NUMBERS, map(_numbers, states))
-        if found.case.heat is not None:
-            terminal.table("film when everything is warm", HEAT, map(_heat, states))
-        terminal.table("stiffness in N/um", COEFFICIENTS, (_entries(state, state.stiffness, 1e-6) for state in states))
-        terminal.table("damping in N s/mm", COEFFICIENTS, (_entries(state, state.damping, 1e-3) for state in states))
-    told = EXPLANATION.format(density=found.case.oil.density, capacity=heat_capacity(found.case))
-    terminal.result(fill(told, COLUMNS, break_long_words=False))
+        warm = {} if found.case.heat is None else {WARM: "film when everything is warm"}
+        matrices = zip(MATRICES, ("stiffness in N/um", "damping in N s/mm"), strict=True)
+        states = table_of(SHEET, found.of(film))
+        for table, title in ({FILMS: f"{name}, {law_named(law).label}"} | warm | dict(matrices)).items():
+            terminal.table(title, heads(SHEET, table), states.cells(table))
+    told = EXPLANATION.format(legend(SHEET, FILMS), found.case.oil.density, heat_capacity(found.case))
+    terminal.result(fill(told, WIDTH, break_long_words=False))
     if any(law_named(law).keeps_oil for law in found.laws):
-        terminal.result(fill(SETTLED, COLUMNS))
+        terminal.result(fill(SETTLED, WIDTH))
     problems = [point for point in found.points if point.problem]
     if problems:
         terminal.result(f"No state at {len(problems)} of {len(found.points)} points. The first: {problems[0].problem}")
-
-
-def _numbers(state: FilmState) -> tuple[str, ...]:
-    return (
-        f"{state.speed_Hz:.3g}",
-        f"{state.eccentricity:.3f}",
-        _told(state.attitude_deg, ".1f"),
-        _told(state.sommerfeld_number, ".3g"),
-        f"{1e6 * state.film_thickness_min:.3g}",
-        f"{1e-5 * state.p_max:.3g}",
-        f"{state.power:.4g}",
-        f"{1e9 * state.side_flow:.4g}",
-        _told(state.temperature_rise, ".3g"),
-        _error(state.force_error),
-    )
-
-
-def _heat(state: FilmState) -> tuple[str, ...]:
-    return (
-        f"{state.speed_Hz:.3g}",
-        f"{state.eccentricity:.3f}",
-        f"{state.temperature - ZERO_CELSIUS:.2f}",
-        f"{1e3 * state.viscosity:.4g}",
-        f"{1e6 * state.clearance:.4g}",
-    )
-
-
-def _error(value: float) -> str:
-    return _told(value, ".0e").replace("e-0", "e-")
-
-
-def _told(value: float, form: str) -> str:
-    return "-" if math.isnan(value) else format(value, form)
-
-
-def _entries(state: FilmState, matrix: Matrix | None, scale: float) -> tuple[str, ...]:
-    values = () if matrix is None else (f"{scale * value:.4g}" for value in matrix.ravel())
-    return (f"{state.speed_Hz:.4g}", f"{state.eccentricity:.3f}", *values, _error(state.error))
-
-
-def _point(state: FilmState) -> dict[str, object]:
-    return {
-        "film": state.film,
-        "status": "not-converged" if state.problem else "resting",
-        "problem": state.problem,
-        "speed_Hz": state.speed_Hz,
-        "journal_speed_Hz": state.journal_speed_Hz,
-        "shell_speed_Hz": state.shell_speed_Hz,
-        "load_N": state.load,
-        "displacement": state.displacement,
-        "eccentricity": state.eccentricity,
-        "attitude_deg": state.attitude_deg,
-        "sommerfeld_number": state.sommerfeld_number,
-        "film_thickness_min_m": state.film_thickness_min,
-        "stiffness_N_m": state.stiffness,
-        "damping_N_s_m": state.damping,
-        "torque_N_m": state.torque,
-        "power_W": state.power,
-        "side_flow_m3_s": state.side_flow,
-        "p_max_Pa": state.p_max,
-        "temperature_rise_K": state.temperature_rise,
-        "viscosity_Pa_s": state.viscosity,
-        "clearance_m": state.clearance,
-        "temperature_K": state.temperature,
-        "error": {"force_relative": state.force_error, "coefficients_relative": state.error},
-    }

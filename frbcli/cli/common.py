@@ -171,13 +171,6 @@ def _console(stream: TextIO) -> Console:
     )
 
 
-def short_number(value: float | None) -> str:
-    """Two digits for a narrow column, e.g. 4.2e-3; "-" where there is none."""
-    if value is None or math.isnan(value):
-        return "-"
-    return f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
-
-
 class Names(click.ParamType[tuple[str, ...]]):
     """Names separated by commas."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -26,20 +27,7 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.studies.compare import Comparison, VariantResult
 
-COLUMNS = ("films", "crit.", "onset", "ratio", "max", "rms", "err.", "CPU")
-COUPLING_COLUMNS = ("coupling", "onset", "max", "ms/step", "micro", "ms/h", "CPU")
-COUPLING_EXPLANATION = (
-    "onset: rotor speed in Hz at the onset of whirl; max: largest deviation of the\n"
-    "eccentricity from the first row before a whirl; ms/step: CPU time of a step, of\n"
-    "a micro step in a co-simulation; micro: micro steps per macro step; ms/h:\n"
-    "simulated time per hour; CPU: time in s."
-)
-EXPLANATION = (
-    "crit., onset: rotor speed in Hz at resonance and at the onset of whirl; ratio:\n"
-    "whirl ratio; max, rms: deviation of the eccentricity from the first row before\n"
-    "a whirl; err.: stated error of the eccentricity before a whirl, as a share of\n"
-    "the clearance like max and rms; CPU: time in s."
-)
+WIDTH = 80
 
 
 @dataclass(frozen=True)
@@ -109,7 +97,8 @@ def command(
     _report(found, bool(models.coupling), terminal)
     if models.thermal:
         _report_heat(found, terminal)
-    results = [_document(result) for result in found.results]
+    results = [document | (_heat(result) if result.variant.thermal else {})
+               for document, result in zip(found.table().documents(), found.results, strict=True)]  # fmt: skip
     whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
     terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results})
     if picture and all(len(result.run) > 1 for result in found.results):
@@ -141,14 +130,17 @@ def _kinematic(case: Case, test: str, wanted: Models, target: Path, picture: boo
 
 
 def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
+    from frbcli.columns import heads, legend
+    from frbcli.studies.comparison_columns import COUPLINGS, MODELS, VARIANT
+
     title = found.case.title or found.case.name
-    if couplings:
-        several = len({(result.variant.cavitation, result.variant.theory) for result in found.results}) > 1
-        terminal.table(title, COUPLING_COLUMNS, (_coupling_cells(result, several) for result in found.results))
-        terminal.result(COUPLING_EXPLANATION)
-    else:
-        terminal.table(title, COLUMNS, map(_cells, found.results))
-        terminal.result(EXPLANATION)
+    table = COUPLINGS if couplings else MODELS
+    rows = found.table().cells(table)
+    if couplings and len({(result.variant.cavitation, result.variant.theory) for result in found.results}) > 1:
+        rows = [(f"{result.variant.cavitation}\n{result.variant.theory}\n{name}", *rest)
+                for result, (name, *rest) in zip(found.results, rows, strict=True)]  # fmt: skip
+    terminal.table(title, heads(VARIANT, table), rows)
+    terminal.result(fill(f"{legend(VARIANT, table)}.", WIDTH))
     for result in found.results:
         if result.run.status != "finished":
             terminal.result(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
@@ -184,53 +176,3 @@ def _hottest(result: VariantResult) -> list[float]:
     names = [name.replace("flow", "temperature").removesuffix("_m3_s") + "_K" for name in result.run.signals
              if name.startswith("flow")]  # fmt: skip
     return [float(result.run[name][-1]) - 273.15 for name in names]
-
-
-def _cells(result: VariantResult) -> tuple[str, ...]:
-    critical, onset = result.first("critical-speed"), result.first("onset")
-    error = result.run.error.get("eccentricity")
-    return (
-        result.variant.name,
-        "-" if critical is None else f"{critical['speed_Hz']:.1f}",
-        "-" if onset is None else f"{onset['speed_Hz']:.1f}",
-        "-" if onset is None else f"{onset['frequency_ratio']:.3f}",
-        f"{result.deviation.largest:.3f}",
-        f"{result.deviation.rms:.3f}",
-        "-" if error is None else f"{error:.0e}".replace("e-0", "e-").replace("e+0", "e+"),
-        f"{result.run.cost['cpu_s']:.2f}",
-    )
-
-
-def _coupling_cells(result: VariantResult, several: bool) -> tuple[str, ...]:
-    """several: whether the models differ, too."""
-    name = result.variant.coupled.replace("-semi", "-\nsemi")
-    onset, cost = result.first("onset"), result.run.cost
-    micro = cost.get("micro_steps_per_macro_step")
-    return (
-        f"{result.variant.cavitation}\n{result.variant.theory}\n{name}" if several else name,
-        "-" if onset is None else f"{onset['speed_Hz']:.1f}",
-        f"{result.deviation.largest:.1e}".replace("e-0", "e-"),
-        f"{result.ms_per_step:.2g}",
-        "-" if micro is None else f"{micro:.2f}",
-        f"{cost['simulated_ms_per_hour']:.2g}",
-        f"{cost['cpu_s']:.3g}",
-    )
-
-
-def _document(result: VariantResult) -> dict[str, Any]:
-    deviation = result.deviation
-    return {
-        "cavitation": result.variant.cavitation,
-        "theory": result.variant.theory,
-        "coupling": result.variant.coupled,
-        **(_heat(result) if result.variant.thermal else {}),
-        "status": result.run.status,
-        "events": result.run.events,
-        "deviation": {
-            "eccentricity_largest": deviation.largest,
-            "eccentricity_rms": deviation.rms,
-            "until_s": deviation.until_s,
-        },
-        "cost": result.run.cost,
-        "error": result.run.error,
-    }

@@ -7,8 +7,9 @@ from textwrap import fill
 from typing import Any
 
 from frbcli.case.hard import HardCase, hard_cases
-from frbcli.cli.common import Terminal, short_number
+from frbcli.cli.common import Terminal
 from frbcli.cli.live import live_lines
+from frbcli.columns import short_number
 from frbcli.errors import INTERRUPTED
 from frbcli.studies.hard.cases import HardResult, run_hard_cases
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from operator import attrgetter
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -21,16 +22,7 @@ if TYPE_CHECKING:
     from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
     from frbcli.case.schema import Case
 
-BAR = 1e5
-FORCES = ("films", "eps", "Fx", "Fy", "|F|", "So", "angle", "p_max", "err.")
-OIL = ("cavitation", "p_min", "torque", "oil", "in", "out", "balance", "CPU")
-EXPLANATION = (
-    "Forces of the whole bearing on the journal in N; angle: of the force from the\n"
-    "x-axis; So: Sommerfeld number (3.14); p: absolute, in bar; err.: error of the\n"
-    "force, from half the cells, over the largest |F| of the table; torque: on the\n"
-    "journal, N m; oil: mean oil fraction; in, out: flow in mm^3/s; balance: oil\n"
-    "that is lost, or created (negative), over the flow; CPU: time in s."
-)
+WIDTH = 80
 LARGEST = "Values are those of the moment of the largest force."
 
 
@@ -94,11 +86,20 @@ def draw_test(found: KinematicTest, target: Path, terminal: Terminal) -> None:
 
 def report(found: KinematicTest, terminal: Terminal) -> None:
     """Two tables: forces and oil."""
+    from frbcli.bearing_tests.columns import FORCES, OIL, RESULT, error_column, force_size
+    from frbcli.columns import heads, legend, table_of
+
     title = found.case.title or found.case.name
-    largest = max((_size(result) for result in found.results), default=0.0)
-    terminal.table(f"{title}: {found.test}", FORCES, [_forces(result, largest) for result in found.results])
-    terminal.table("", OIL, map(_oil, found.results))
-    terminal.result(EXPLANATION)
+    columns = (*RESULT, error_column(max(map(force_size, found.results), default=0.0)))
+    table = table_of(columns, found.results)
+    rows: dict[str, list[Sequence[str]]] = {FORCES: [], OIL: []}
+    for result, forces, oil in zip(found.results, table.cells(FORCES), table.cells(OIL), strict=True):
+        solved = result.loads is not None
+        rows[FORCES].append(forces if solved else (forces[0], "none", *[""] * (len(forces) - 2)))
+        rows[OIL].append(oil if solved else (oil[0], *[""] * (len(oil) - 2), oil[-1]))
+    for name, heading in ((FORCES, f"{title}: {found.test}"), (OIL, "")):
+        terminal.table(heading, heads(columns, name), rows[name])
+    terminal.result(fill(f"{legend(columns, FORCES)}; {legend(columns, OIL)}.", WIDTH))
     for result in found.results:
         if result.heat is not None:
             tell_film(terminal, result.heat, f"{result.name}: the film when it is warm")
@@ -111,93 +112,11 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
         terminal.result("Interrupted: the other models were not computed.")
 
 
-def _size(result: KinematicResult) -> float:
-    """The force in N, 0 without a solution."""
-    return 0.0 if result.loads is None else math.hypot(*result.loads.force)
-
-
-def _forces(result: KinematicResult, largest: float) -> tuple[str, ...]:
-    """largest: force in N of all results, which their errors refer to: one that nearly vanishes has a large error of
-    its own, which is of no meaning beside the others."""
-    loads = result.loads
-    if loads is None:
-        return (result.name, "none", *[""] * (len(FORCES) - 2))
-    (x, y), size = loads.force, _size(result)
-    error = result.force_error * size / largest if largest > 0.0 else math.nan
-    return (
-        result.name,
-        f"{math.hypot(*result.displacement):.3f}",
-        _number(x, size),
-        _number(y, size),
-        _number(size, size),
-        _told(result.sommerfeld_number, ".3g"),
-        f"{math.degrees(math.atan2(y, x)):.0f}°",
-        _told(loads.p_max / BAR, ".4g"),
-        _told(error, ".0e").replace("e-0", "e-"),
-    )
-
-
-def _told(value: float, form: str) -> str:
-    """A number in a form; "-" for an unknown one."""
-    return "-" if math.isnan(value) else format(value, form)
-
-
-def _number(value: float, size: float) -> str:
-    """With the decimals that suit numbers of this size."""
-    decimals = max(0, 2 - math.floor(math.log10(size))) if size > 0.0 else 0
-    return f"{value:.{min(decimals, 6)}f}"
-
-
-def _oil(result: KinematicResult) -> tuple[str, ...]:
-    loads = result.loads
-    if loads is None:
-        return (result.name, *[""] * (len(OIL) - 2), f"{result.cpu_s:.1f}")
-    return (
-        result.name,
-        _told(loads.p_min / BAR, ".4g"),
-        _told(loads.torque.journal, ".3g"),
-        _told(loads.oil_fraction, ".3f"),
-        _told(loads.oil.in_m3_s * 1e9, ".4g"),
-        _told(loads.oil.out_m3_s * 1e9, ".4g"),
-        _told(loads.oil.defect_relative, ".0e").replace("e-0", "e-"),
-        f"{result.cpu_s:.1f}",
-    )
-
-
 def result_document(result: KinematicResult) -> dict[str, Any]:
     """A result in JSON; null where there is no solution."""
-    loads, history = result.loads, result.history
-    oil = None if loads is None else loads.oil
-    document: dict[str, Any] = {
-        "cavitation": result.cavitation or None,
-        "theory": result.theory,
-        "status": result.status,
-        "displacement": result.displacement,
-        "force_N": None if loads is None else loads.force,
-        "torque_journal_N_m": None if loads is None else loads.torque.journal,
-        "torque_shell_N_m": None if loads is None else loads.torque.shell,
-        "p_max_Pa": None if loads is None else loads.p_max,
-        "p_min_Pa": None if loads is None else loads.p_min,
-        "oil_fraction": None if loads is None else loads.oil_fraction,
-        "oil_balance": {
-            "in_m3_s": None if oil is None else oil.in_m3_s,
-            "out_m3_s": None if oil is None else oil.out_m3_s,
-            "defect_relative": None if oil is None else oil.defect_relative,
-        },
-        "error": {"force_relative": result.force_error},
-        "cost": {
-            "cpu_s": result.cpu_s,
-            "unknowns": result.unknowns,
-            "newton_iterations": result.newton_iterations,
-        },
-    }
-    if result.heat is not None:
-        document["thermal"] = film_document(result.heat)
-    if result.plan.test != "rotation":
-        document |= {
-            "t_s": None if history is None else history.time_s,
-            "force_history_N": None if history is None else history.force,
-            "probe_pressure_Pa": None if history is None else history.probe_pressure,
-            "gap_ratio": None if history is None else history.gap_ratio,
-        }
-    return document
+    from frbcli.bearing_tests.columns import HISTORY, RESULT
+    from frbcli.columns import named, table_of
+
+    history = () if result.plan.test == "rotation" else named(HISTORY, "", attrgetter("history"))
+    (document,) = table_of((*RESULT, *history), [result]).documents()
+    return document if result.heat is None else document | {"thermal": film_document(result.heat)}

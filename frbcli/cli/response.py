@@ -60,6 +60,8 @@ def command(
     terminal: Terminal,
 ) -> None:
     """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping."""
+    from frbcli.columns import spread_table, table_of
+    from frbcli.linear.columns import RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
     from frbcli.linear.response import response
     from frbcli.results.kinds import TABLES
     from frbcli.results.store import read_run
@@ -80,14 +82,15 @@ def command(
         terminal.result(f"table: {csv}")
     if picture is not None:
         picture = draw(terminal, lambda: _figure(found, tracks, as_map), picture)
+    films = ((point, film) for point in found.resting for film in point.films)
     terminal.emit(
         {
             "command": "response",
             "case": case.name,
-            "points": _points(found),
-            "forces": _forces(found),
-            "films": _films(found),
-            "coefficients": _coefficients(found),
+            "points": found.table().documents(),
+            "forces": spread_table(RESPONSE_FORCES, found).documents(),
+            "films": spread_table(RESPONSE_FILMS, found).documents(),
+            "coefficients": table_of(RESPONSE_COEFFICIENTS, films).documents(),
             "critical_speeds_Hz": found.critical_speeds_Hz,
             "picture": picture,
             "csv": csv,
@@ -123,19 +126,16 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
 
 
 def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
+    from frbcli.linear.columns import RESPONSE
+
     shown = found.points[:MOST_POINTS]
     every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
-    amplitude, phase = 1e6 * found.amplitude, found.phase_deg
-    eccentricity, validity = found.eccentricity_max.max(axis=1), found.validity
-    rows = [
-        (
-            f"{found.speeds_Hz[i]:.4g}",
-            *(f"{amplitude[i, j]:.3g} {phase[i, j]:.0f}°" for j in range(len(shown))),
-            f"{found.growth[i]:.3g}",
-            f"{eccentricity[i]:.3g}{MARKS[validity[i]]}",
-        )
-        for i in range(every - 1, len(found.speeds_Hz), every)
-    ]
+    count, validity, cells = len(found.points), found.validity, found.table().cells(RESPONSE)
+    rows = []
+    for i in range(every - 1, len(found.speeds_Hz), every):
+        speed, _, _, growth, eccentricity = cells[i * count]
+        motions = (f"{amplitude} {phase}" for _, amplitude, phase, *_ in cells[i * count : i * count + len(shown)])
+        rows.append((speed, *motions, growth, f"{eccentricity}{MARKS[validity[i]]}"))
     named = [name.replace("_", " ") for name in shown]
     columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", "eps")
     terminal.table(found.case.title or found.case.name, columns, rows)
@@ -176,53 +176,3 @@ def _among(some: list[float], speeds: Array) -> str:
     if len(some) == 1:
         return f"{some[0]:.4g} Hz"
     return f"{len(some)} of {len(speeds)} speeds, {min(some):.4g} to {max(some):.4g} Hz"
-
-
-def _films(found: Response) -> list[dict[str, object]]:
-    share, eccentricity = found.gap_share, found.eccentricity_max
-    return [
-        {"speed_Hz": speed, "film": film, "gap_share": share[i, j], "eccentricity_max": eccentricity[i, j]}
-        for i, speed in enumerate(found.speeds_Hz)
-        for j, film in enumerate(found.films)
-    ]
-
-
-def _points(found: Response) -> list[dict[str, object]]:
-    amplitude, phase, forward, backward = found.amplitude, found.phase_deg, abs(found.forward), abs(found.backward)
-    validity = found.validity
-    return [
-        {
-            "speed_Hz": speed,
-            "node": name,
-            "amplitude_m": amplitude[i, j],
-            "phase_deg": phase[i, j],
-            "forward_m": forward[i, j],
-            "backward_m": backward[i, j],
-            "growth_1_s": found.growth[i],
-            "validity": validity[i],
-        }
-        for i, speed in enumerate(found.speeds_Hz)
-        for j, name in enumerate(found.points)
-    ]
-
-
-def _forces(found: Response) -> list[dict[str, object]]:
-    return [
-        {"speed_Hz": speed, "film": film, "force_x_N": abs(x), "force_y_N": abs(y)}
-        for i, speed in enumerate(found.speeds_Hz)
-        for film, (x, y) in zip(found.films, found.forces[i], strict=True)
-    ]
-
-
-def _coefficients(found: Response) -> list[dict[str, object]]:
-    return [
-        {
-            "speed_Hz": point.speed_Hz,
-            "film": film.name,
-            "stiffness_N_m": film.stiffness,
-            "damping_N_s_m": film.damping,
-            "error": {"coefficients_relative": film.error},
-        }
-        for point in found.resting
-        for film in point.films
-    ]

@@ -12,23 +12,18 @@ if TYPE_CHECKING:
 
     from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
-
-COLUMNS = ("Hz", "whirl", "growth, 1/s", "damping", "log. decrement")
+    from frbcli.linear.damped_modes import DampedMode
 
 
 def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, picture: Path | None) -> None:
     """Table, picture and JSON of the modes of a rotor in its films at a speed in Hz."""
+    from frbcli.columns import heads
+    from frbcli.linear.columns import DAMPED_MODES
     from frbcli.linear.damped_modes import damped_modes
 
     found = damped_modes(case, speed_Hz)
-    rows = [
-        (
-            f"{mode.frequency_Hz:.5g}", mode.direction, f"{mode.eigenvalue.real:.4g}", f"{mode.damping_ratio:.3g}",
-            f"{mode.logarithmic_decrement:.3g}",
-        )
-        for mode in found.modes
-    ]  # fmt: skip
-    terminal.table(f"Damped modes at {speed_Hz:.5g} Hz", COLUMNS, rows)
+    rows = found.table().cells()
+    terminal.table(f"Damped modes at {speed_Hz:.5g} Hz", heads(DAMPED_MODES), rows)
     if not rows:
         terminal.result("No mode oscillates.")
     tell_coefficient_error(terminal, [(found.coefficient_error, speed_Hz)])
@@ -36,6 +31,7 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, picture: Path |
         from frbcli.plot.shapes import shapes_figure
 
         picture = draw(terminal, lambda: shapes_figure(found), picture, "mode shapes")
+    modes, motions = found.table().documents(), [_motion(found.points, mode) for mode in found.modes]
     terminal.emit(
         {
             "command": "stability",
@@ -44,20 +40,12 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, picture: Path |
             "threshold": None,
             "speed_Hz": speed_Hz,
             "error": {"coefficients_relative": found.coefficient_error},
-            "modes": [
-                {
-                    "frequency_Hz": mode.frequency_Hz,
-                    "direction": mode.direction,
-                    "growth_1_s": mode.eigenvalue.real,
-                    "damping_ratio": mode.damping_ratio,
-                    "logarithmic_decrement": mode.logarithmic_decrement,
-                    "motion": [
-                        {"point": name, "x": [x.real, x.imag], "y": [y.real, y.imag]}
-                        for name, (x, y) in zip(found.points, mode.motion, strict=True)
-                    ],
-                }
-                for mode in found.modes
-            ],
+            "modes": [document | {"motion": motion} for document, motion in zip(modes, motions, strict=True)],
             "picture": picture,
         }
     )
+
+
+def _motion(points: tuple[str, ...], mode: DampedMode) -> list[dict[str, object]]:
+    named = zip(points, mode.motion, strict=True)
+    return [{"point": name, "x": [x.real, x.imag], "y": [y.real, y.imag]} for name, (x, y) in named]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -25,7 +24,6 @@ from frbcli.cli.stability_table import tell_points
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.threshold import ThresholdKind
-    from frbcli.linear.coefficients import RestingFilm
     from frbcli.linear.stability import Stability, StabilityPoint
 
 
@@ -156,11 +154,14 @@ def _character(kind: ThresholdKind) -> str:
     )
 
 
-def _point(point: StabilityPoint) -> dict[str, object]:
+def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
-    document: dict[str, object] = {"speed_Hz": point.speed_Hz, "status": point.status}
-    films = [_film(film) for film in point.films]
-    document |= films[0] if films else dict.fromkeys(_FILM_KEYS)
+    from frbcli.columns import keys, table_of
+    from frbcli.linear.columns import FILM, MODES, POINT
+
+    (document,) = table_of(POINT, [point]).documents()
+    films = table_of(FILM, point.films).documents()
+    document |= films[0] if films else dict.fromkeys(keys(FILM))
     if len(films) > 1:
         named = zip(point.films, films, strict=True)
         document["films"] = [{"film": film.name} | values for film, values in named]
@@ -170,20 +171,8 @@ def _point(point: StabilityPoint) -> dict[str, object]:
         document["thermal"] = heat_document(point.warm)
     if point.problem:
         document["problem"] = point.problem
-    document["modes"] = [
-        {"frequency_Hz": value.imag / (2 * math.pi), "damping": -value.real / abs(value), "growth_1_s": value.real}
-        for value in point.modes.tolist()
-    ]
+    document["modes"] = table_of(MODES, point.modes.tolist()).documents()
     return document | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
-
-
-_FILM_KEYS = ("displacement", "eccentricity", "attitude_deg", "stiffness_N_m", "damping_N_s_m", "error")
-
-
-def _film(film: RestingFilm) -> dict[str, object]:
-    error = {"coefficients_relative": film.error}
-    values = (film.displacement, film.eccentricity, film.attitude_deg, film.stiffness, film.damping, error)
-    return dict(zip(_FILM_KEYS, values, strict=True))
 
 
 def _threshold(found: Stability) -> dict[str, float] | None:

@@ -8,17 +8,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from frbcli.columns import heads, table_of
+from frbcli.linear.columns import FILM, MODES, SPEED, STABILITY
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from frbcli.cli.common import Terminal
-    from frbcli.linear.coefficients import RestingFilm
     from frbcli.linear.stability import Stability, StabilityPoint
 
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
-MODES = 2  # in the one line of a single film
-ONE_FILM = ("Hz", "eps", "attitude", *("mode Hz", "damping") * MODES, "growth 1/s")
-FILMS = ("Hz", "film", "eps", "attitude", "mode Hz", "damping", "growth 1/s")
+MODES_TOLD = 2  # in the one line of a single film
 NONE = "none"  # no resting position
 
 
@@ -30,7 +30,9 @@ def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None
     every = 1 if every_speed else math.ceil(len(found.points) / most)
     shown = found.points[every - 1 :: every]
     rows = [line for point in shown for line in (_film_lines(point) if several else _lines(point))]
-    terminal.table(found.case.title or found.case.name, FILMS if several else ONE_FILM, rows)
+    speed, place, mode = (heads(columns, STABILITY) for columns in ((SPEED,), FILM, MODES))
+    columns = (*speed, "film", *place, *mode) if several else (*speed, *place, *mode[:2] * MODES_TOLD, *mode[2:])
+    terminal.table(found.case.title or found.case.name, columns, rows)
     if several:
         terminal.result("Modes of the machine: all that grow (damping below 0), then the least damped.")
     if every > 1:
@@ -52,36 +54,32 @@ def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None
 def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     """A line of a single film; further ones hold what else grows."""
     if not point.films:
-        return [(f"{point.speed_Hz:.4g}", NONE, *[""] * (len(ONE_FILM) - 2))]
-    modes = point.modes[: max(MODES, len(point.growing))]
-    cells = [_mode(value) for value in modes]
+        return [(_speed(point), NONE, *[""] * (2 * MODES_TOLD + 2))]
+    modes = point.modes[: max(MODES_TOLD, len(point.growing))]
+    cells = table_of(MODES, modes.tolist()).cells(STABILITY)
+    (place,) = table_of(FILM, point.films[:1]).cells(STABILITY)
     lines = []
-    for start in range(0, max(1, len(cells)), MODES):
-        pairs = [cell for mode in cells[start : start + MODES] for cell in mode[:2]]
+    for start in range(0, max(1, len(cells)), MODES_TOLD):
+        pairs = [cell for mode in cells[start : start + MODES_TOLD] for cell in mode[:2]]
         fastest = cells[start][2] if cells else "-"
-        head = (f"{point.speed_Hz:.4g}", *_place(point.films[0])) if start == 0 else ("",) * 3
-        lines.append((*head, *pairs, *[""] * (2 * MODES - len(pairs)), fastest))
+        head = (_speed(point), *place) if start == 0 else ("",) * 3
+        lines.append((*head, *pairs, *[""] * (2 * MODES_TOLD - len(pairs)), fastest))
     return lines
 
 
 def _film_lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     """A line for each film, and beside them one for each mode."""
     if not point.films:
-        return [(f"{point.speed_Hz:.4g}", NONE, *[""] * (len(FILMS) - 2))]
+        return [(_speed(point), NONE, *[""] * 5)]
     count = max(len(point.films), len(point.growing))
-    films = [(film.name, *_place(film)) for film in point.films]
-    modes = [_mode(value) for value in point.modes[:count]]
+    places = table_of(FILM, point.films).cells(STABILITY)
+    films = [(film.name, *place) for film, place in zip(point.films, places, strict=True)]
+    modes = table_of(MODES, point.modes[:count].tolist()).cells(STABILITY)
     films += [("",) * 3] * (count - len(films))
     modes += [("",) * 3] * (count - len(modes))
-    speeds = [f"{point.speed_Hz:.4g}", *[""] * (count - 1)]
+    speeds = [_speed(point), *[""] * (count - 1)]
     return [(speed, *film, *mode) for speed, film, mode in zip(speeds, films, modes, strict=True)]
 
 
-def _place(film: RestingFilm) -> tuple[str, str]:
-    attitude = "-" if math.isnan(film.attitude_deg) else f"{film.attitude_deg:.1f}°"
-    return f"{film.eccentricity:.4f}", attitude
-
-
-def _mode(value: complex) -> tuple[str, str, str]:
-    """Frequency in Hz, share of the critical damping (negative where the motion grows), growth in 1/s."""
-    return f"{value.imag / (2 * math.pi):.1f}", f"{-value.real / abs(value):.4f}", f"{value.real:.1f}"
+def _speed(point: StabilityPoint) -> str:
+    return table_of((SPEED,), [point]).cells(STABILITY)[0][0]

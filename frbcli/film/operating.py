@@ -27,6 +27,11 @@ def sommerfeld_number(
     return (clearance / radius) ** 2 * force / shear if shear > 0.0 else math.nan
 
 
+def friction_coefficient(torque: float, force: float, radius: float) -> float:
+    """mu = |T| / (R F) of the torque on the journal in N m, the load in N and the radius in m; NaN without a load."""
+    return abs(torque) / (radius * force) if force > 0.0 else math.nan
+
+
 def shaft_rotation_strain(solid: Solid, omega: float, radius: float) -> float:
     """Of the surface of a solid shaft with a radius in m that turns with omega in rad/s."""
     return 0.25 * solid.density * (omega * radius) ** 2 * (1.0 - solid.poisson) / solid.modulus

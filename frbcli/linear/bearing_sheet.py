@@ -12,15 +12,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.coefficients import RestingFilm, coefficient_error, resting_film
+from frbcli.linear.columns import SHEET
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.linear.resting import ring_speeds
 from frbcli.linear.static_films import StaticFilms, static_films
@@ -30,9 +31,6 @@ from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.published import is_published
 from frbcli.scene.remedies import advised
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Observer = Callable[[int, int], None]
 
@@ -56,11 +54,9 @@ class BearingSheet(Tabular):
         """The states of one film that were found."""
         return tuple(point for point in self.points if point.film == film and not point.problem)
 
-    def to_pandas(self) -> pd.DataFrame:
-        """One row per film and state, units in the names of the columns."""
-        import pandas as pd
-
-        return pd.DataFrame([_row(point) for point in self.points])
+    def table(self) -> Table:
+        """One row per film and state."""
+        return table_of(SHEET, self.points)
 
 
 def bearing_sheet(
@@ -170,34 +166,3 @@ def _speeds(case: Case) -> tuple[float, ...]:
     if case.motion is not None and case.motion.speed:
         return (abs(case.motion.speed),)
     raise InputError(case.name or "case", (Fault("speed", "", None, "is missing.", "Give --speed, or add [speed]."),))
-
-
-def _row(point: FilmState) -> dict[str, object]:
-    row: dict[str, object] = {
-        "film": point.film,
-        "status": "not-converged" if point.problem else "resting",
-        "speed_Hz": point.speed_Hz,
-        "journal_speed_Hz": point.journal_speed_Hz,
-        "shell_speed_Hz": point.shell_speed_Hz,
-        "load_x_N": point.load[0],
-        "load_y_N": point.load[1],
-        "sommerfeld_number": point.sommerfeld_number,
-        "eccentricity": point.eccentricity,
-        "attitude_deg": point.attitude_deg,
-        "film_thickness_min_m": point.film_thickness_min,
-        "torque_Nm": point.torque,
-        "power_W": point.power,
-        "side_flow_m3_s": point.side_flow,
-        "p_max_Pa": point.p_max,
-        "temperature_rise_K": point.temperature_rise,
-        "force_error_relative": point.force_error,
-        "coefficient_error": point.error,
-        "viscosity_Pa_s": point.viscosity,
-        "clearance_m": point.clearance,
-        "temperature_K": point.temperature,
-    }
-    for name, unit, matrix in (("k", "N_m", point.stiffness), ("c", "Ns_m", point.damping)):
-        for r, x in enumerate("xy"):
-            for s, y in enumerate("xy"):
-                row[f"{name}_{x}{y}_{unit}"] = math.nan if matrix is None else matrix[r, s]
-    return row

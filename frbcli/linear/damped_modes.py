@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
+from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.stability import OSCILLATING, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.turbocharger import all_modes, kept_modes
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
@@ -78,21 +76,9 @@ class DampedModes(Tabular):
     modes: tuple[DampedMode, ...]
     coefficient_error: float = math.nan
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per mode."""
-        import pandas as pd
-
-        rows = [
-            {
-                "frequency_Hz": mode.frequency_Hz,
-                "direction": mode.direction,
-                "growth_1_s": mode.eigenvalue.real,
-                "damping_ratio": mode.damping_ratio,
-                "logarithmic_decrement": mode.logarithmic_decrement,
-            }
-            for mode in self.modes
-        ]
-        return pd.DataFrame(rows)
+        return table_of(DAMPED_MODES, self.modes)
 
 
 def damped_modes(case: Case, speed_Hz: float) -> DampedModes:

@@ -17,7 +17,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
-from frbcli.film.operating import sommerfeld_number
+from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.linear.coefficients import RestingFilm, force_error, settled_force
 from frbcli.linear.static_films import StaticFilms
@@ -32,17 +32,10 @@ SAMPLES = 720  # angles at which the smallest gap is looked for
 
 @dataclass(frozen=True)
 class FilmState:
-    """One film in its resting position, SI units.
+    """One film in its resting position, SI units: the fields are those of SHEET in columns.py,
+    which tells what they are.
 
-    speed_Hz: of the rotor; journal_speed_Hz, shell_speed_Hz: of the two bodies of the film; load: (2,) N on the journal
-    by one bearing; displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the
-    displacement, positive counter-clockwise; film_thickness_min in m; stiffness, damping: (2, 2) N/m and N s/m, -dF/dD
-    and -dF/dD', of films that keep oil when this has settled; error: of both, see RestingFilm; sommerfeld_number:
-    (3.14), with omega_J + omega_S; torque: on the journal, N m; power: that journal and shell put into the film, W;
-    side_flow: what leaves at the open ends, m^3/s, without what flows back into a groove; p_max: absolute, Pa;
-    temperature_rise: of the oil that leaves, K, if it took all of the power; force_error: estimated, relative;
-    viscosity: Pa s; clearance: m; temperature: of the film, K, NaN without heat; problem: why there is no state, then
-    the numbers are NaN.
+    error: of stiffness and damping, see RestingFilm; problem: why there is no state, then the numbers are NaN.
     """
 
     film: str
@@ -58,6 +51,8 @@ class FilmState:
     error: float = math.nan
     sommerfeld_number: float = math.nan
     torque: float = math.nan
+    friction_coefficient: float = math.nan
+    friction_variable: float = math.nan
     power: float = math.nan
     side_flow: float = math.nan
     p_max: float = math.nan
@@ -72,6 +67,11 @@ class FilmState:
     def eccentricity(self) -> float:
         """Relative eccentricity of the journal."""
         return math.hypot(*self.displacement)
+
+    @property
+    def status(self) -> str:
+        """ "resting" | "not-converged"."""
+        return "not-converged" if self.problem else "resting"
 
 
 def heat_capacity(case: Case) -> float:
@@ -115,6 +115,7 @@ def film_state(
     flow = outflow(at, motion.d, at.pressure(solution.state))
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
+    friction = friction_coefficient(found.torque.journal, size, section.radius)
     return FilmState(
         film=system.names[i],
         speed_Hz=float(bodies[0]) / (2.0 * math.pi),
@@ -129,6 +130,8 @@ def film_state(
         error=at_rest.error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
         torque=found.torque.journal,
+        friction_coefficient=friction,
+        friction_variable=friction * section.radius / c,
         power=power,
         side_flow=flow,
         p_max=found.p_max,

@@ -16,22 +16,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.columns import Table, spread_table
 from frbcli.errors import Fault, InputError
 from frbcli.film.parabola import summit
 from frbcli.html import Tabular
+from frbcli.linear.columns import RESPONSE_POINTS
 from frbcli.linear.stability import StabilityPoint, default_speeds, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.film_faults import require_films
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
@@ -121,28 +119,9 @@ class Response(Tabular):
         turn = np.exp(2j * np.pi * np.arange(count) / count)
         return np.asarray((turn[:, None] * self.motion[speed, point]).real)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per speed and point."""
-        import pandas as pd
-
-        amplitude, phase, eccentricity, validity = self.amplitude, self.phase_deg, self.eccentricity_max, self.validity
-        return pd.DataFrame(
-            {
-                "speed_Hz": speed,
-                "point": name,
-                "amplitude_m": amplitude[i, j],
-                "phase_deg": phase[i, j],
-                "x_m": abs(self.motion[i, j, 0]),
-                "y_m": abs(self.motion[i, j, 1]),
-                "forward_m": abs(self.forward[i, j]),
-                "backward_m": abs(self.backward[i, j]),
-                "growth_1_s": self.growth[i],
-                "eccentricity_max": eccentricity[i].max(),
-                "validity": validity[i],
-            }
-            for i, speed in enumerate(self.speeds_Hz)
-            for j, name in enumerate(self.points)
-        )
+        return spread_table(RESPONSE_POINTS, self)
 
 
 def response(

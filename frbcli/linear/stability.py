@@ -11,17 +11,18 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.html import Tabular
 from frbcli.linear.coefficients import RestingFilm
+from frbcli.linear.columns import point_columns
 from frbcli.linear.heat import WarmMachine
 from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.linear import LinearRotor
@@ -32,9 +33,6 @@ from frbcli.scene.film_faults import require_films
 from frbcli.scene.keys import bearing_key, cavitation_keys
 from frbcli.scene.remedies import advised
 from frbcli.scene.system import System
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 Eigenvalues = NDArray[np.complex128]
@@ -127,11 +125,10 @@ class Stability(Tabular):
     threshold: Threshold | None
     note: str
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per point: speed, resting position and coefficients of each film, critical eigenvalue."""
-        import pandas as pd
-
-        return pd.DataFrame([_row(point) for point in self.points])
+        films = max((tuple(film.name for film in point.films) for point in self.points), key=len, default=())
+        return table_of(point_columns(films), self.points)
 
 
 def stability(
@@ -315,18 +312,3 @@ def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
     if wrong:
         faults = [Fault("speed", f"{s:g} Hz", None, "must be greater than 0.", 'Write e.g. "25 Hz".') for s in wrong]
         raise InputError(case.name or "case", tuple(faults))
-
-
-def _row(point: StabilityPoint) -> dict[str, float | str]:
-    """The columns of to_pandas; with several films each carries the name of its film at its end."""
-    row: dict[str, float | str] = {"speed_Hz": point.speed_Hz, "status": point.status}
-    for film in point.films:
-        end = f"_{film.name}" if len(point.films) > 1 else ""
-        row |= {f"eccentricity{end}": film.eccentricity, f"attitude_deg{end}": film.attitude_deg}
-        row |= {f"d{axis}{end}": value for axis, value in zip("xy", film.displacement.tolist(), strict=True)}
-        for name, matrix in (("stiffness_{}_N_m", film.stiffness), ("damping_{}_N_s_m", film.damping)):
-            row |= {name.format("xy"[i] + "xy"[j]) + end: float(value) for (i, j), value in np.ndenumerate(matrix)}
-        row[f"coefficient_error{end}"] = film.error
-    critical = point.critical
-    row |= {"growth_1_s": critical.real, "frequency_Hz": critical.imag / (2 * math.pi)}
-    return row | {"growing_modes": len(point.growing)}

@@ -13,7 +13,8 @@ from frbcli.results.write import write
 if TYPE_CHECKING:
     import pandas as pd
 
-COLUMNS = {f"{name}{axes}": f"{name}_{axes}_{unit}" for name, unit in (("k", "N_m"), ("c", "Ns_m"))
+COLUMNS = {f"{letter}{axes}": f"{name}_{axes}_{unit}"
+           for letter, name, unit in (("k", "stiffness", "N_m"), ("c", "damping", "N_s_m"))
            for axes in ("xx", "xy", "yx", "yy")}  # fmt: skip
 
 

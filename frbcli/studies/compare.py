@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
@@ -28,11 +29,10 @@ from frbcli.runs.standing import earlier_run, is_interrupted, standing_run
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.plan import THEORIES, make_plan
+from frbcli.studies.comparison_columns import VARIANT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    import pandas as pd
 
 TESTS = ("runup",)
 NO_HEAT = "none"
@@ -121,11 +121,9 @@ class Comparison(Tabular):
     status: str = FINISHED
     message: str = ""
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per variant: models, coupling, status, first events, deviation, cost, error."""
-        import pandas as pd
-
-        return pd.DataFrame([_row(result) for result in self.results])
+        return table_of(VARIANT, self.results)
 
 
 Observer = Callable[[Variant, int, int, Progress], None]
@@ -311,26 +309,3 @@ def _directory(keep: str | Path | None) -> Iterator[Path]:
         problem = f"cannot be made: {error.strerror}."
         raise InputError("comparison", (Fault("--keep", str(keep), None, problem, "Choose another place."),)) from error
     yield Path(keep)
-
-
-def _row(result: VariantResult) -> dict[str, Any]:
-    critical, onset = result.first("critical-speed"), result.first("onset")
-    return {
-        "cavitation": result.variant.cavitation,
-        "theory": result.variant.theory,
-        "coupling": result.variant.coupled,
-        "status": result.run.status,
-        "t_end_s": result.run.t_end_s,
-        "critical_speed_Hz": np.nan if critical is None else critical["speed_Hz"],
-        "onset_speed_Hz": np.nan if onset is None else onset["speed_Hz"],
-        "onset_frequency_ratio": np.nan if onset is None else onset["frequency_ratio"],
-        "deviation_largest": result.deviation.largest,
-        "deviation_rms": result.deviation.rms,
-        "deviation_until_s": result.deviation.until_s,
-        "cpu_s": result.run.cost["cpu_s"],
-        "ms_per_step": result.ms_per_step,
-        "micro_steps_per_macro_step": result.run.cost.get("micro_steps_per_macro_step", np.nan),
-        "simulated_ms_per_hour": result.run.cost["simulated_ms_per_hour"],
-        "film_force_relative": result.run.error["film_force_relative"],
-        "eccentricity_error": result.run.error.get("eccentricity", np.nan),
-    }

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.html import Tabular
-
-if TYPE_CHECKING:
-    import pandas as pd
+from frbcli.studies.ladder_columns import LADDER
 
 
 @dataclass(frozen=True)
@@ -101,22 +99,6 @@ class AccuracyLadder(Tabular):
             return 1.0
         return math.inf if cheapest == 0.0 else own / cheapest
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per rung."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            [
-                {
-                    **vars(item.rung),
-                    "status": item.status,
-                    "cpu_s": item.cpu_s,
-                    **vars(item.error),
-                    "stated": item.stated.get("eccentricity"),
-                    "work_s": item.work_s,
-                    "planned": item.planned,
-                    "on_front": item in self.front,
-                }
-                for item in self.ladder
-            ]
-        )
+        return table_of(LADDER, ((item, item in self.front) for item in self.ladder))

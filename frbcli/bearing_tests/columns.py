@@ -1,0 +1,113 @@
+"""What kinematic tests tell: the columns of a result and of the moments of a squeeze or a whirl."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from operator import attrgetter, itemgetter
+from typing import Any
+
+from frbcli.columns import Column, Shown, named
+
+FORCES, OIL = "forces", "oil"  # tables of the terminal
+
+
+def _loads(path: str) -> Callable[[Any], Any]:
+    get = attrgetter(path)
+    return lambda result: math.nan if result.loads is None else get(result.loads)
+
+
+def _force(result: Any) -> Any:
+    return None if result.loads is None else result.loads.force
+
+
+def force_size(result: Any) -> float:
+    """The force in N of a KinematicResult, 0 without a solution."""
+    return math.hypot(*(_force(result) or (0.0, 0.0)))
+
+
+def _alike(force: Sequence[float]) -> list[str]:
+    """Both components and the size, with the decimals that suit it."""
+    size = math.hypot(*force)
+    decimals = max(0, 2 - math.floor(math.log10(size))) if size > 0.0 else 0
+    return [f"{value:.{min(decimals, 6)}f}" for value in (*force, size)]
+
+
+def _angle(result: Any) -> float:
+    x, y = _force(result) or (math.nan, math.nan)
+    return math.degrees(math.atan2(y, x))
+
+
+HEAD = (
+    Column("cavitation", "", "cavitation model, none of a bearing model", lambda result: result.cavitation or None),
+    Column("theory", "", "`finite`, or the bearing model"),
+    Column("status", "", "`ok` or `not-converged`"),
+)
+
+# Of a KinematicResult; of a squeeze or a whirl at the moment of the largest force
+RESULT = (
+    Column("name", "", "", shown=(Shown("films", table=FORCES), Shown("cavitation", table=OIL)), key="", flat=False),
+    *HEAD,
+    Column("displacement", "", "displacement of the journal over the clearance", shape=(2,)),
+    Column("eccentricity", "", "relative eccentricity of the journal", lambda result: math.hypot(*result.displacement),
+           shown=(Shown("eps", ".3f", table=FORCES),), key=""),
+    Column("force", "N", "force of the whole bearing on the journal", _force, shape=(2,),
+           shown=(Shown(("Fx", "Fy", "|F|"), _alike, table=FORCES),)),
+    Column("sommerfeld_number", "", "Sommerfeld number (3.14)", shown=(Shown("So", ".3g", table=FORCES),), key=""),
+    Column("force_angle", "deg", "angle of the force from the x-axis", _angle,
+           shown=(Shown("angle", "{:.0f}°".format, table=FORCES),), key=""),
+    Column("p_max", "Pa", "largest absolute pressure", _loads("p_max"), shown=(Shown("p_max", ".4g", "bar", FORCES),)),
+    Column("p_min", "Pa", "smallest absolute pressure", _loads("p_min"), shown=(Shown("p_min", ".4g", "bar", OIL),)),
+    Column("torque_journal", "N m", "torque on the journal", _loads("torque.journal"),
+           shown=(Shown("torque", ".3g", table=OIL),)),
+    Column("torque_shell", "N m", "torque on the shell", _loads("torque.shell")),
+    Column("oil_fraction", "", "mean oil fraction (4.46)", _loads("oil_fraction"),
+           shown=(Shown("oil", ".3f", table=OIL),)),
+    Column("oil_in", "m^3/s", "oil that comes in", _loads("oil.in_m3_s"), shown=(Shown("in", ".4g", "mm^3/s", OIL),),
+           key="oil_balance.in_m3_s"),
+    Column("oil_out", "m^3/s", "oil that leaves", _loads("oil.out_m3_s"), shown=(Shown("out", ".4g", "mm^3/s", OIL),),
+           key="oil_balance.out_m3_s"),
+    Column("oil_defect_relative", "", "oil that is lost, or created (negative), over the flow",
+           _loads("oil.defect_relative"), shown=(Shown("balance", ".0e", table=OIL),),
+           key="oil_balance.defect_relative"),
+    Column("force_error_relative", "", "error of the force, from half the cells, over its size",
+           attrgetter("force_error"), key="error.force_relative"),
+    Column("temperature", "K", "temperature of the film, with heat", lambda result: math.nan if result.heat is None
+           else float(result.heat.temperatures[0]), key=""),
+    Column("viscosity", "Pa s", "viscosity of its oil", attrgetter("plan.section.viscosity"), key=""),
+    Column("cpu", "s", "CPU time", attrgetter("cpu_s"), shown=(Shown("CPU", ".1f", table=OIL),), key="cost.cpu_s"),
+    Column("unknowns", "", "number of unknowns", key="cost.unknowns"),
+    Column("newton_iterations", "", "number of Newton's steps", key="cost.newton_iterations"),
+)  # fmt: skip
+
+# Of a History: whole in JSON, moment by moment in pandas
+HISTORY = (
+    Column("time", "s", "time", attrgetter("time_s"), key="t_s"),
+    Column("displacement", "", "displacement of the journal over the clearance", shape=(2,), key=""),
+    Column("force", "N", "force on the journal", shape=(2,), key="force_history_N"),
+    Column("probe_pressure", "Pa", "absolute pressure at the bottom, a quarter of the width from the end"),
+    Column("gap_ratio", "", "gap there over the clearance"),
+)
+
+
+def _at_moment(column: Column) -> Column:
+    def value(item: Any) -> Any:
+        result, moment = item
+        return None if result.history is None else column.value_of(result.history)[moment]
+
+    return replace(column, value=value)
+
+
+# Of a KinematicResult and the number of a moment
+MOMENTS = (*named(HEAD, "", itemgetter(0)), *map(_at_moment, HISTORY))
+
+
+def error_column(largest: float) -> Column:
+    """The error of a force over the largest one of a table in N: one that nearly vanishes has a large error of its own,
+    which is of no meaning beside the others."""
+    return Column(
+        "error", "", "error of the force, from half the cells, over the largest |F| of the table",
+        lambda result: result.force_error * force_size(result) / largest if largest > 0.0 else math.nan,
+        shown=(Shown("err.", ".0e", table=FORCES),), key="", flat=False,
+    )  # fmt: skip

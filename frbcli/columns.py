@@ -1,0 +1,224 @@
+"""Columns of results: each is declared once, with its name, unit, shape and meaning, and how the terminal shows it.
+
+Tables for pandas and CSV, the objects of a JSON document, and the cells and the legend of a table of the terminal are
+made from the declarations, and so are the tables of columns in the documents.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+AXES = "xy"
+ENTRIES = ("xx", "xy", "yx", "yy")  # heads of a matrix
+ZERO_CELSIUS = 273.15
+SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3}  # over SI
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A column in a table of the terminal.
+
+    head: one, or as many as it has cells there; form: of a number as format() takes it, or a function to the cell (to
+    all of its cells, of several heads); unit: in which it is shown, that of the column without one; table: its name.
+    """
+
+    head: str | tuple[str, ...]
+    form: str | Callable[[Any], Any] = ""
+    unit: str = ""
+    table: str = ""
+
+    @property
+    def heads(self) -> tuple[str, ...]:
+        """Of its cells."""
+        return (self.head,) if isinstance(self.head, str) else self.head
+
+    def unit_beside(self, unit: str = "") -> tuple[str, ...]:
+        """The shown unit, else this one, unless there is none or the head names it."""
+        told = self.unit or unit
+        return (told,) if told and not self.heads[0].endswith(told) else ()
+
+    def cells(self, value: Any) -> tuple[str, ...]:
+        """"-" for a number that is not known."""
+        if isinstance(self.head, str):
+            return (self._cell(value),)
+        if value is None:
+            return ("-",) * len(self.head)
+        cells = self.form(value) if callable(self.form) else map(self._cell, np.ravel(value).tolist())
+        return tuple(cells)
+
+    def _cell(self, value: Any) -> str:
+        if value is None or (isinstance(value, float) and math.isnan(value)):
+            return "-"
+        if callable(self.form):
+            return str(self.form(value))
+        if self.unit == "degC":
+            value = value - ZERO_CELSIUS
+        elif self.unit in SCALES:
+            value = SCALES[self.unit] * value
+        text = format(value, self.form)
+        return text.replace("e-0", "e-") if self.form.endswith("e") else text
+
+
+@dataclass(frozen=True)
+class Column:
+    """One quantity of a result.
+
+    quantity: its name in whole words; unit: in SI, Hz or deg; meaning: a few words, to which `more` adds what documents
+    tell besides; value: from the item of a row, without it the item's attribute of that name, with or without the unit,
+    to a number, a text or an array of `shape`, which is (), (2,) or (2, 2) over x and y, None where there is none; key:
+    in JSON, with a dot inside of an object, the name without one, "" where JSON does not have it; flat: whether pandas
+    and CSV have it; of: what stands at the end of the names there, as the film of several.
+    """
+
+    quantity: str
+    unit: str
+    meaning: str
+    value: Callable[[Any], Any] | None = None
+    shape: tuple[int, ...] = ()
+    shown: tuple[Shown, ...] = ()
+    more: str = ""
+    key: str | None = None
+    flat: bool = True
+    of: str = ""
+
+    @property
+    def name(self) -> str:
+        """The quantity with its unit: torque_N_m."""
+        return _joined(self.quantity, self.unit, self.of)
+
+    @property
+    def path(self) -> str:
+        """In JSON."""
+        return self.name if self.key is None else self.key
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all entries: stiffness_xx_N_m, stiffness_xy_N_m, ..."""
+        entries = map("".join, itertools.product(AXES, repeat=len(self.shape)))
+        return tuple(_joined(self.quantity, entry, self.unit, self.of) for entry in entries)
+
+    def value_of(self, item: Any) -> Any:
+        """The value of an item."""
+        if self.value is not None:
+            return self.value(item)
+        return getattr(item, self.quantity if hasattr(item, self.quantity) else self.name)
+
+    def entries(self, value: Any) -> list[Any]:
+        """Of the names; NaN for those of an array that there is not."""
+        if not self.shape:
+            return [value]
+        return np.ravel(np.full(self.shape, math.nan) if value is None else value).tolist()
+
+
+Columns = Sequence[Column]
+
+
+@dataclass(frozen=True)
+class Table:
+    """Values of columns, row by row."""
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Any, ...], ...]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A column per entry of those that tables have."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            [
+                dict(pair for column, value in zip(self.columns, row, strict=True) if column.flat
+                     for pair in zip(column.names, column.entries(value), strict=True))
+                for row in self.rows
+            ],
+            columns=[name for column in self.columns if column.flat for name in column.names],
+        )  # fmt: skip
+
+    def documents(self) -> list[dict[str, Any]]:
+        """An object of JSON per row."""
+        found: list[dict[str, Any]] = []
+        for row in self.rows:
+            document: dict[str, Any] = {}
+            for column, value in zip(self.columns, row, strict=True):
+                *path, last = column.path.split(".")
+                place = document
+                for key in path:
+                    place = place.setdefault(key, {})
+                if last:
+                    place[last] = value
+            found.append(document)
+        return found
+
+    def cells(self, table: str = "") -> list[tuple[str, ...]]:
+        """The rows of a table of the terminal."""
+        return [
+            tuple(cell for column, value in zip(self.columns, row, strict=True)
+                  for shown in _in(column, table) for cell in shown.cells(value))
+            for row in self.rows
+        ]  # fmt: skip
+
+
+def table_of(columns: Columns, items: Iterable[object]) -> Table:
+    """A row per item."""
+    return Table(tuple(columns), tuple(tuple(column.value_of(item) for column in columns) for item in items))
+
+
+def spread_table(columns: Columns, result: object) -> Table:
+    """A row per entry of the arrays of the columns, which are made of one shape; columns have no shape of their own."""
+    values = np.broadcast_arrays(*(np.asarray(column.value_of(result)) for column in columns))
+    return Table(tuple(columns), tuple(zip(*(value.ravel().tolist() for value in values), strict=True)))
+
+
+def named(columns: Columns, of: str, value: Callable[[Any], Any]) -> tuple[Column, ...]:
+    """The columns of a part of a row, which `value` takes from it, with `of` at the end of their names."""
+    return tuple(replace(column, of=of, value=_after(value, column.value_of)) for column in columns)
+
+
+def keys(columns: Columns) -> list[str]:
+    """Of their object in JSON."""
+    return list(dict.fromkeys(column.path.split(".")[0] for column in columns if column.path))
+
+
+def heads(columns: Columns, table: str = "") -> tuple[str, ...]:
+    """Of a table of the terminal."""
+    return tuple(head for column in columns for shown in _in(column, table) for head in shown.heads)
+
+
+def legend(columns: Columns, table: str = "") -> str:
+    """The heads of a table of the terminal with meaning and unit."""
+    told = ((column, shown) for column in columns if column.meaning for shown in _in(column, table))
+    return "; ".join(
+        ", ".join((*shown.heads[:-1], f"{shown.heads[-1]}: {column.meaning}", *shown.unit_beside(column.unit)))
+        for column, shown in told
+    )
+
+
+def short_number(value: float | None) -> str:
+    """Two digits for a narrow column, e.g. 4.2e-3; "-" where there is none."""
+    if value is None or math.isnan(value):
+        return "-"
+    return f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
+
+
+def _joined(*words: str) -> str:
+    return "_".join(word.replace("^", "").replace("/", "_").replace(" ", "_") for word in words if word)
+
+
+def _in(column: Column, table: str) -> list[Shown]:
+    return [shown for shown in column.shown if shown.table == table]
+
+
+def _after(first: Callable[[Any], Any], then: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    def value(item: Any) -> Any:
+        part = first(item)
+        return None if part is None else then(part)
+
+    return value

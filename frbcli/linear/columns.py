@@ -1,0 +1,167 @@
+"""What static and linear results tell: the columns of bearing sheet, stability and unbalance response."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from operator import attrgetter, itemgetter
+from typing import Any
+
+import numpy as np
+
+from frbcli.columns import ENTRIES, Column, Shown, named
+
+# Tables of the terminal
+FILMS, WARM, MATRICES = "films", "warm", ("stiffness", "damping")
+STABILITY, RESPONSE = "stability", "response"
+
+SPEED = Column("speed", "Hz", "rotor speed", shown=(
+    *(Shown("Hz", ".3g", table=table) for table in (FILMS, WARM)),
+    *(Shown("Hz", ".4g", table=table) for table in (*MATRICES, STABILITY, RESPONSE)),
+))  # fmt: skip
+NAME = Column("film", "", "name of the film, empty of one alone")
+STATUS = Column("status", "", "`resting` or `not-converged`")
+DISPLACEMENT = Column("displacement", "", "displacement of the journal over the clearance", shape=(2,))
+ECCENTRICITY = Column("eccentricity", "", "relative eccentricity of the journal", shown=(
+    *(Shown("eps", ".3f", table=table) for table in (FILMS, WARM, *MATRICES)), Shown("eps", ".4f", table=STABILITY),
+))  # fmt: skip
+ATTITUDE = Column(
+    "attitude", "deg", "attitude angle", more="from the load line to the displacement, positive counter-clockwise",
+    shown=(Shown("att.", ".1f", table=FILMS), Shown("attitude", "{:.1f}°".format, table=STABILITY)),
+)  # fmt: skip
+STIFFNESS = Column("stiffness", "N/m", "stiffness `-dF/dD` of one bearing", shape=(2, 2),
+                   shown=(Shown(ENTRIES, ".4g", "N/um", "stiffness"),))  # fmt: skip
+DAMPING = Column("damping", "N s/m", "damping `-dF/dD'` of one bearing", shape=(2, 2),
+                 shown=(Shown(ENTRIES, ".4g", "N s/mm", "damping"),))  # fmt: skip
+ERROR = Column(
+    "coefficient_error", "", "relative error of stiffness and damping", attrgetter("error"),
+    more="over the largest entry of each, at the same load", key="error.coefficients_relative",
+    shown=tuple(Shown("err.", ".0e", table=table) for table in MATRICES),
+)  # fmt: skip
+
+# Of a RestingFilm
+FILM = (DISPLACEMENT, ECCENTRICITY, ATTITUDE, STIFFNESS, DAMPING, ERROR)
+
+# Of a FilmState
+SHEET = (
+    NAME,
+    STATUS,
+    Column("problem", "", "why there is no state"),
+    SPEED,
+    Column("journal_speed", "Hz", "speed of the journal of the film"),
+    Column("shell_speed", "Hz", "speed of its shell"),
+    Column("load", "N", "load on the journal by one bearing", shape=(2,)),
+    DISPLACEMENT,
+    ECCENTRICITY,
+    ATTITUDE,
+    Column("sommerfeld_number", "", "Sommerfeld number (3.14)", shown=(Shown("So", ".3g", table=FILMS),),
+           more="`F psi^2 / (D B eta omega)` with `omega = omega_J + omega_S`"),
+    Column("film_thickness_min", "m", "smallest film thickness", shown=(Shown("h", ".3g", "um", FILMS),)),
+    Column("p_max", "Pa", "largest absolute pressure", shown=(Shown("p", ".3g", "bar", FILMS),)),
+    Column("torque", "N m", "torque on the journal"),
+    Column("friction_coefficient", "", "coefficient of friction of the journal", more="`mu = |T| / (R F)`"),
+    Column("friction_variable", "", "`mu R / C`", more="`pi / So` of a journal in the middle of a shell at rest"),
+    Column("power", "W", "power that journal and shell put into the film", shown=(Shown("loss", ".4g", table=FILMS),),
+           more="their torques times their speeds"),
+    Column("side_flow", "m^3/s", "oil that leaves at the open ends", shown=(Shown("flow", ".4g", "mm^3/s", FILMS),),
+           more="what flows back into a groove is not part of it"),
+    Column("temperature_rise", "K", "temperature rise of that oil if it took all of the power",
+           shown=(Shown("rise", ".3g", table=FILMS),), more="with `oil.density` and `oil.heat_capacity`; if the case "
+           "gives none, 2000 J/(kg K), or with heat that of the oil at 80 degC"),
+    Column("force_error_relative", "", "relative error of the force, from other meshes", attrgetter("force_error"),
+           shown=(Shown("err.", ".0e", table=FILMS),), key="error.force_relative"),
+    Column("temperature", "K", "temperature of the film, with heat",
+           shown=(Shown("temperature, degC", ".2f", "degC", WARM),)),
+    Column("viscosity", "Pa s", "viscosity of its oil", shown=(Shown("viscosity, mPa s", ".4g", "mPa s", WARM),)),
+    Column("clearance", "m", "clearance", shown=(Shown("clearance, um", ".4g", "um", WARM),)),
+    STIFFNESS,
+    DAMPING,
+    ERROR,
+)  # fmt: skip
+
+GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above 0 it hides the unbalance response",
+                shown=(Shown("growth", ".3g", table=RESPONSE),))  # fmt: skip
+
+# Of a StabilityPoint; of several films each has its columns, with its name at their end
+POINT = (SPEED, STATUS, GROWTH,
+         Column("frequency", "Hz", "frequency of that whirl", lambda point: point.critical.imag / (2 * math.pi)),
+         Column("growing_modes", "", "number of modes that grow", lambda point: len(point.growing)))  # fmt: skip
+
+# Of an eigenvalue
+MODES = (
+    Column("frequency", "Hz", "frequency of a mode", lambda value: value.imag / (2 * math.pi),
+           shown=(Shown("mode Hz", ".1f", table=STABILITY),)),
+    Column("damping_ratio", "", "share of the critical damping, below 0 of a mode that grows",
+           lambda value: -value.real / abs(value), shown=(Shown("damping", ".4f", table=STABILITY),), key="damping"),
+    Column("growth", "1/s", "real part of the eigenvalue", attrgetter("real"),
+           shown=(Shown("growth 1/s", ".1f", table=STABILITY),)),
+)  # fmt: skip
+
+
+
+def _size(motion: Any) -> Any:
+    """Absolute values, which of whole arrays abs() rounds otherwise on other processors."""
+    return np.hypot(motion.real, motion.imag)
+
+
+# Of a DampedMode
+DAMPED_MODES = (
+    Column("frequency", "Hz", "frequency", shown=(Shown("Hz", ".5g"),)),
+    Column("direction", "", "`forward` or `backward`", shown=(Shown("whirl"),)),
+    Column("growth", "1/s", "real part of the eigenvalue", attrgetter("eigenvalue.real"),
+           shown=(Shown("growth, 1/s", ".4g"),)),
+    Column("damping_ratio", "", "share of the critical damping", shown=(Shown("damping", ".3g"),)),
+    Column("logarithmic_decrement", "", "logarithmic decrement", shown=(Shown("log. decrement", ".3g"),)),
+)  # fmt: skip
+
+_SPEEDS = replace(SPEED, value=lambda found: found.speeds_Hz[:, None])
+
+# Of a Response, over speeds and points
+RESPONSE_POINTS = (
+    _SPEEDS,
+    Column("point", "", "point of the rotor", attrgetter("points"), key="node"),
+    Column("amplitude", "m", "larger semi-axis of the orbit", shown=(Shown("um", ".3g", "um", RESPONSE),)),
+    Column("phase", "deg", "phase of the forward motion to the angle of the rotor",
+           shown=(Shown("deg", "{:.0f}°".format, table=RESPONSE),)),
+    Column("x", "m", "amplitude along x", lambda found: _size(found.motion[:, :, 0])),
+    Column("y", "m", "amplitude along y", lambda found: _size(found.motion[:, :, 1])),
+    Column("forward", "m", "amplitude of the forward part", lambda found: abs(found.forward)),
+    Column("backward", "m", "amplitude of the backward part", lambda found: abs(found.backward)),
+    replace(GROWTH, value=lambda found: found.growth[:, None]),
+    Column("eccentricity_max", "", "largest eccentricity of a journal on its orbit",
+           lambda found: found.eccentricity_max.max(axis=1)[:, None], shown=(Shown("eps", ".3g", table=RESPONSE),)),
+    Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", lambda found: np.array(found.validity)[:, None]),
+)  # fmt: skip
+
+_NAMES = replace(NAME, value=attrgetter("films"))
+
+# Of a Response, over speeds and films
+RESPONSE_FORCES = (
+    _SPEEDS,
+    _NAMES,
+    Column("force_x", "N", "amplitude of the force on the journal along x", lambda found: _size(found.forces[:, :, 0])),
+    Column("force_y", "N", "amplitude of the force on the journal along y", lambda found: _size(found.forces[:, :, 1])),
+)
+RESPONSE_FILMS = (
+    _SPEEDS,
+    _NAMES,
+    Column("gap_share", "", "larger semi-axis of the orbit over the gap that the resting position leaves"),
+    Column("eccentricity_max", "", "largest eccentricity of the journal on its orbit"),
+)
+
+# Of a StabilityPoint and one of its films
+RESPONSE_COEFFICIENTS = (
+    *named((SPEED,), "", itemgetter(0)),
+    *named((replace(NAME, value=attrgetter("name")), STIFFNESS, DAMPING, ERROR), "", itemgetter(1)),
+)
+
+
+def point_columns(films: Sequence[str]) -> tuple[Column, ...]:
+    """Of the points of a rotor with films of these names."""
+    own = [column for i, name in enumerate(films) for column in named(FILM, name if len(films) > 1 else "", _film(i))]
+    return (*POINT[:2], *own, *POINT[2:])
+
+
+def _film(i: int) -> Callable[[Any], Any]:
+    return lambda point: point.films[i] if point.films else None

@@ -1,0 +1,71 @@
+"""What a comparison of models tells: the columns of its variants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from operator import attrgetter
+from typing import Any
+
+from frbcli.columns import Column, Shown
+
+MODELS, COUPLINGS = "models", "couplings"  # tables of the terminal
+
+
+def _event(kind: str, key: str) -> Callable[[Any], float]:
+    def value(result: Any) -> float:
+        event = result.first(kind)
+        return math.nan if event is None else event[key]
+
+    return value
+
+
+def _of(account: str, key: str) -> Callable[[Any], Any]:
+    """From the cost or the error of a run; NaN where it does not tell it."""
+    return lambda result: getattr(result.run, account).get(key, math.nan)
+
+
+def _rough(value: float) -> str:
+    return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")
+
+
+def _coupling(name: str) -> str:
+    return name.replace("-semi", "-\nsemi")
+
+
+# Of a VariantResult
+VARIANT = (
+    Column("name", "", "", attrgetter("variant.name"), shown=(Shown("films", table=MODELS),), key="", flat=False),
+    Column("cavitation", "", "cavitation model", attrgetter("variant.cavitation")),
+    Column("theory", "", "theory of the films", attrgetter("variant.theory")),
+    Column("coupling", "", "coupling of rotor and films", attrgetter("variant.coupled"),
+           shown=(Shown("coupling", _coupling, table=COUPLINGS),)),
+    Column("status", "", "how the run ended", attrgetter("run.status")),
+    Column("t_end", "s", "when it ended", attrgetter("run.t_end_s"), key=""),
+    Column("events", "", "events of the run", attrgetter("run.events"), flat=False),
+    Column("critical_speed", "Hz", "rotor speed at resonance", _event("critical-speed", "speed_Hz"), key="",
+           shown=(Shown("crit.", ".1f", table=MODELS),)),
+    Column("onset_speed", "Hz", "rotor speed at the onset of whirl", _event("onset", "speed_Hz"), key="",
+           shown=(Shown("onset", ".1f", table=MODELS), Shown("onset", ".1f", table=COUPLINGS))),
+    Column("onset_frequency_ratio", "", "whirl ratio there", _event("onset", "frequency_ratio"), key="",
+           shown=(Shown("ratio", ".3f", table=MODELS),)),
+    Column("deviation_largest", "", "largest deviation of the eccentricity from the first row before a whirl",
+           attrgetter("deviation.largest"), key="deviation.eccentricity_largest",
+           shown=(Shown("max", ".3f", table=MODELS), Shown("max", ".1e", table=COUPLINGS))),
+    Column("deviation_rms", "", "root mean square of this deviation until then", attrgetter("deviation.rms"),
+           key="deviation.eccentricity_rms", shown=(Shown("rms", ".3f", table=MODELS),)),
+    Column("deviation_until", "s", "end of both", attrgetter("deviation.until_s"), key="deviation.until_s"),
+    Column("cost", "", "cost of the run", attrgetter("run.cost"), flat=False),
+    Column("error", "", "stated errors of the run", attrgetter("run.error"), flat=False),
+    Column("film_force_relative", "", "stated error of the film forces", _of("error", "film_force_relative"), key=""),
+    Column("eccentricity_error", "", "stated error of the eccentricity before a whirl", _of("error", "eccentricity"),
+           key="", shown=(Shown("err.", _rough, table=MODELS),), more="as a share of the clearance"),
+    Column("ms_per_step", "", "CPU time of a step, of a micro step in a co-simulation, in ms", key="",
+           shown=(Shown("ms/step", ".2g", table=COUPLINGS),)),
+    Column("micro_steps_per_macro_step", "", "micro steps per macro step", _of("cost", "micro_steps_per_macro_step"),
+           key="", shown=(Shown("micro", ".2f", table=COUPLINGS),)),
+    Column("simulated_ms_per_hour", "", "simulated time in ms per hour", _of("cost", "simulated_ms_per_hour"), key="",
+           shown=(Shown("ms/h", ".2g", table=COUPLINGS),)),
+    Column("cpu", "s", "CPU time", _of("cost", "cpu_s"), key="",
+           shown=(Shown("CPU", ".2f", table=MODELS), Shown("CPU", ".3g", table=COUPLINGS))),
+)  # fmt: skip

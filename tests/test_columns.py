@@ -1,0 +1,103 @@
+"""One declaration of a column makes pandas, CSV, JSON, the terminal's table with its legend, and a page's table."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any
+
+import column_tables
+import numpy as np
+import pandas as pd
+import pytest
+
+from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
+
+COLUMNS = (
+    Column("speed", "Hz", "rotor speed", shown=(Shown("Hz", ".3g"), Shown("Hz", ".4g", table="stiffness"))),
+    Column("torque", "N m", "torque on the journal"),
+    Column("p_max", "Pa", "largest pressure", shown=(Shown("p", ".3g", "bar"),), more="absolute"),
+    Column("stiffness", "N/m", "stiffness", shape=(2, 2), shown=(Shown(ENTRIES, ".2g", "N/um", "stiffness"),)),
+    Column("load", "N", "load", shape=(2,), flat=False),
+    Column("error", "", "error", shown=(Shown("err.", ".0e"),), key="error.relative"),
+    Column("rise", "K", "temperature rise", key=""),
+)
+
+
+@dataclass(frozen=True)
+class Item:
+    """A row."""
+
+    speed_Hz: float = 123.456
+    torque: float = -0.5
+    p_max: float = 2.5e5
+    stiffness: Any = None
+    load: Any = (3.0, -4.0)
+    error: float = math.nan
+    rise: float = 7.0
+
+
+KNOWN = Item(stiffness=np.array([[1e6, 2e6], [3e6, 4e6]]), error=3e-4)
+
+
+def test_pandas_has_a_column_per_entry_with_its_unit_at_the_end() -> None:
+    frame = table_of(COLUMNS, [KNOWN, Item()]).to_pandas()
+    matrix = [f"stiffness_{entry}_N_m" for entry in ("xx", "xy", "yx", "yy")]
+    assert list(frame.columns) == ["speed_Hz", "torque_N_m", "p_max_Pa", *matrix, "error", "rise_K"]
+    assert frame["stiffness_xy_N_m"][0] == 2e6
+    assert frame[matrix].loc[1].isna().all()
+    assert frame["torque_N_m"].dtype == np.float64
+
+
+def test_a_document_nests_keys_and_leaves_out_those_without_one() -> None:
+    known, unknown = table_of(COLUMNS, [KNOWN, Item()]).documents()
+    assert keys(COLUMNS) == ["speed_Hz", "torque_N_m", "p_max_Pa", "stiffness_N_m", "load_N", "error"]
+    assert list(known) == keys(COLUMNS)
+    assert known["error"] == {"relative": 3e-4}
+    assert known["stiffness_N_m"] is KNOWN.stiffness
+    assert unknown["stiffness_N_m"] is None
+
+
+def test_the_terminal_shows_numbers_in_their_units() -> None:
+    table = table_of(COLUMNS, [KNOWN, Item()])
+    assert heads(COLUMNS) == ("Hz", "p", "err.")
+    assert table.cells() == [("123", "2.5", "3e-4"), ("123", "2.5", "-")]
+    assert heads(COLUMNS, "stiffness") == ("Hz", *ENTRIES)
+    assert table.cells("stiffness") == [("123.5", "1", "2", "3", "4"), ("123.5", "-", "-", "-", "-")]
+    assert legend(COLUMNS) == "Hz: rotor speed; p: largest pressure, bar; err.: error"
+
+
+def test_a_page_tells_names_units_and_meaning() -> None:
+    rows = column_tables.page_table(COLUMNS).splitlines()
+    assert len(rows) == 2 + len(COLUMNS)
+    assert rows[4] == "| `p_max_Pa` | `p_max_Pa` | Pa | `p` in bar | largest pressure: absolute |"
+    assert rows[5].startswith("| `stiffness_xx_N_m` to `stiffness_yy_N_m` | `stiffness_N_m` | N/m |")
+    assert rows[6].startswith("| | `load_N` |")
+    assert rows[8] == "| `rise_K` | | K | | temperature rise |"
+
+
+def test_columns_of_a_part_have_its_name_at_their_end() -> None:
+    (column,) = named(COLUMNS[3:4], "inner", attrgetter("film"))
+    holder = type("Holder", (), {"film": KNOWN})()
+    assert table_of([column], [holder]).to_pandas()["stiffness_xy_N_m_inner"][0] == 2e6
+    assert column.value_of(type("Holder", (), {"film": None})()) is None
+
+
+def test_arrays_are_spread_over_rows() -> None:
+    columns = (
+        replace(COLUMNS[0], value=lambda _: np.array([[1.0], [2.0]])),
+        Column("point", "", "point", lambda _: ("journal", "disk")),
+        Column("amplitude", "m", "amplitude", lambda _: np.arange(4.0).reshape(2, 2)),
+    )
+    frame = spread_table(columns, None).to_pandas()
+    rows = [(1.0, "journal", 0.0), (1.0, "disk", 1.0), (2.0, "journal", 2.0), (2.0, "disk", 3.0)]
+    pd.testing.assert_frame_equal(frame, pd.DataFrame(rows, columns=["speed_Hz", "point", "amplitude_m"]))
+
+
+@pytest.mark.parametrize("columns", column_tables.TABLES.values(), ids=column_tables.TABLES)
+def test_declared_names_are_of_one_column_each(columns: tuple[Column, ...]) -> None:
+    flat = [name for column in columns if column.flat for name in column.names]
+    json = [column.path for column in columns if column.path]
+    assert len(set(flat)) == len(flat)
+    assert len(set(json)) == len(json)
