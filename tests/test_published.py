@@ -276,7 +276,7 @@ def test_a_full_film_follows_a_moved_journal_as_sommerfelds_does(
     tmp_path: Path, test: Callable[[Case, Sequence[str]], KinematicTest]
 ) -> None:
     """Far above the cavitation pressure the film stays full, and its equation (3.9) is linear. The law lets the density
-    of the full film rise with its pressure, here to a uniform theta, which the moving walls carry: so does the force."""
+    of the full film rise with its pressure, here to a uniform theta, which the walls carry: so does the force."""
     pressures = [f"{key}=40 bar" for key in ("oil.ambient_pressure", "bearing.supply.pressure")]
     case = moved(tmp_path / "case.toml", "bearing.ends=oil-bath", *pressures)
     full, linear = test(case, ["two-phase", "sommerfeld"]).results
