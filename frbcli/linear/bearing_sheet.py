@@ -114,7 +114,7 @@ def sommerfeld_chart(
     speed = max(_speeds(case)) if speed_Hz is None else speed_Hz
     static = static_films(case, 0.0, speed)
     system, volumes, omega = static.system, static.volumes(), 2.0 * math.pi * speed
-    spins = ring_speeds(system, held_rotor(system.rotor), omega, np.zeros((len(system.names), 2)))
+    spins = ring_speeds(system, held_rotor(system.rotor, omega), omega, np.zeros((len(system.names), 2)))
     bodies, omegas = np.concatenate([[omega], spins]), system.omegas(omega, spins)
     points = []
     for number, eccentricity in enumerate(eccentricities):

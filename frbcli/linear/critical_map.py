@@ -77,7 +77,7 @@ def critical_map(
         raise InputError(case.name or "case", (fault,))
     plane = _plane(_alone(case))
     forward, backward = (np.array([_criticals(plane, k, sign) for k in given]) for sign in (-1.0, 1.0))
-    known = [(point.speed_Hz, film_springs(case, point.films)) for point in resting if point.films]
+    known = [(point.speed_Hz, film_springs(case, point.films)) for point in resting if point.rests]
     films = [(speed, springs) for speed, springs in known if springs]
     speeds, springs = np.array([speed for speed, _ in films]), np.array([found for _, found in films])
     return CriticalMap(case, given, forward, backward, speeds, springs.reshape(len(speeds), len(case.bearings)))

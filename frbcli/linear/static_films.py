@@ -21,7 +21,7 @@ from frbcli.film.grid import Mesh
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.film_choice import CELLS as ON_CELLS
-from frbcli.scene.film_choice import DEFAULT_MESH, all_clipped, choose_films, needs_cells
+from frbcli.scene.film_choice import DEFAULT_MESH, NO_FILM, all_clipped, choose_films, needs_cells
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.plan import make_plan
 from frbcli.scene.planned import Plan
@@ -99,7 +99,7 @@ def static_films(case: Case, load: float | None = None, top_Hz: float | None = N
 
 def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     """Plans of other meshes, with their shares; none for a bearing model, whose error is not known."""
-    if plan.form == GIVEN:
+    if plan.form in (GIVEN, NO_FILM):
         return ()
     if plan.cells is not None:
         around = plan.cells[0]

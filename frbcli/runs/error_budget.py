@@ -138,6 +138,8 @@ def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
     the films in the middle of the run; None for a rotor that has no modes, or without a state whose films are stiff."""
     if not isinstance(case.rotor, TurbochargerRotor) or not len(samples):
         return None
+    if not case.bearings:
+        return None
     modes = all_modes(case)
     kept = kept_modes(case.rotor, modes)
     if kept == len(modes.frequencies):
@@ -178,5 +180,5 @@ def _journals(system: System) -> Iterable[tuple[Array, float]]:
 
 
 def _points(system: System) -> Iterable[tuple[Array, float]]:
-    """Disks and all other points; displacements are relative to the clearance of the first film."""
-    return ((selection, system.clearances[0]) for _, selection in system.rotor.points)
+    """Disks and all other points; displacements are relative to the length of the system."""
+    return ((selection, system.length) for _, selection in system.rotor.points)

@@ -22,6 +22,7 @@ from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.runs.control import control_of
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.cell_choice import compared_states
+from frbcli.scene.film_choice import NO_FILM
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.planned import Plan
 from frbcli.scene.system import System, planned_film, published_film
@@ -75,7 +76,7 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     film in the contact gap. Mass-conserving films are compared in their steady state; where there is none, they are
     left out.
     """
-    if plan.form == GIVEN:  # a bearing model has no mesh
+    if plan.form in (GIVEN, NO_FILM):  # a bearing model has no mesh
         return FilmErrors(*np.zeros((3, 0)))
     if system.published is not None:
         forces = _published_forces(system.published, case)

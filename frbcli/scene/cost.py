@@ -21,7 +21,7 @@ from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.cell_choice import USUAL, cells_time
 from frbcli.scene.course import STAGES, Course, expected_course, runs_nearly_dry, whirl_speed
-from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
+from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, NO_FILM, TABLE
 from frbcli.scene.films import film_places
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import after_s, before_s, memory_B, rotor_size
@@ -31,7 +31,7 @@ from frbcli.scene.tabulated import SOLUTIONS
 DAY_s = 86_400.0
 # Time of a solve by form of the film; of cells on USUAL ones, of Elrod's law.
 SOLVE_us = {CLOSED_FORM: 0.35, CLIPPED: 14.0, TABLE: 0.35, FIELDS: 10.5, CHAINS: 17.5, CELLS: 20.0, SOLUTIONS: 0.6,
-            PUBLISHED: 1300.0, GIVEN: 1.0}  # fmt: skip
+            PUBLISHED: 1300.0, GIVEN: 1.0, NO_FILM: 0.35}  # fmt: skip
 FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 CELLS_FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
@@ -70,8 +70,10 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     """Expected cost of a run along a speed profile."""
     course = expected_course(case, plan, profile)
     steps, solves = float(course.steps[-1]), float(course.solves[-1])
-    iterations = solves / max(steps * STAGES[plan.method] * len(film_places(case)), 1e-300)
-    loop_s = 1e-6 * solves * solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
+    films = len(film_places(case))
+    iterations = solves / max(steps * STAGES[plan.method] * films, 1e-300) if films else 0.0
+    asked = solves if films else steps * STAGES[plan.method]  # without films, what a stage costs beside them
+    loop_s = 1e-6 * asked * solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
     samples = profile.end / case.output.step
     before, after = before_s(case, plan), after_s(case, plan, loop_s * _quiet_share(case, profile, course), samples)
     return ExpectedCost(round(steps), round(solves), loop_s, before, after, memory_B(case, plan, samples))

@@ -26,7 +26,7 @@ from frbcli.rotor.speed_profile import Array, SpeedProfile
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.cell_choice import USUAL
 from frbcli.scene.coupling import APART, SEMI
-from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, TABLE
+from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, NO_FILM, TABLE
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import shaft_mass
@@ -59,6 +59,7 @@ WORK = {
     SOLUTIONS: Work(1.0, 1.0, 1.5, (1.0, 1.0)),
     PUBLISHED: Work(1.5, 4.0, 4.0, (1.0, 1.0)),
     GIVEN: Work(1.0, 1.0, 1.6, (1.0, 2.0)),
+    NO_FILM: Work(1.0, 1.0, 1.0, (1.0, 1.0)),
 }
 RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring
 # Solves of a stage of a film that keeps its oil, whose cells turn with it: at least, and for every cell that passes a
@@ -128,6 +129,8 @@ def whirl_speed(case: Case) -> float:
     """Rotor speed in rad/s from which a whirl is expected; 0 where nothing keeps the journal from it: rings, films
     that do not cavitate, films that run dry, a rotor without weight."""
     rotor, places = case.rotor, film_places(case)
+    if not places:
+        return math.inf
     free = rings(case) or runs_nearly_dry(case) or rotor.gravity == 0.0
     if not case.film.bearing_model:
         free = free or any(not law_named(name).cavitates for name in case.cavitations)
@@ -161,7 +164,7 @@ def _pressing_speed(case: Case) -> float:
     soft that its sag is larger than the clearance, which cannot press, for rotors without such a shaft or on rings,
     and for films that run nearly dry, which their fronts keep at short steps all along."""
     rotor = case.rotor
-    if not isinstance(rotor, JeffcottRotor) or rings(case) or runs_nearly_dry(case):
+    if not isinstance(rotor, JeffcottRotor) or not case.bearings or rings(case) or runs_nearly_dry(case):
         return math.inf
     square = rotor.shaft_stiffness / rotor.mass
     stiff = rotor.gravity / square < film_places(case)[0].geometry.clearance
@@ -187,11 +190,8 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
     The local error of a motion A cos(w t) is A (w h / SMOOTH)^p of a method with an embedded solution of order p - 1.
     """
     rotor, order = case.rotor, ERROR_ORDERS[plan.method]
-    clearance = film_places(case)[0].geometry.clearance
-    if isinstance(rotor, TurbochargerRotor):
-        eccentric = sum(disk.unbalance for disk in case.disks) / shaft_mass(case)
-    else:
-        eccentric = rotor.unbalance / rotor.mass
+    clearance = film_places(case)[0].geometry.clearance if case.bearings else plan.length
+    eccentric = unbalance_eccentricity(case)
 
     def steps(w: Array | float, size: Array | float) -> Array:
         return np.asarray(w / SMOOTH * (size / (plan.tolerance * clearance)) ** (1.0 / order), dtype=np.float64)
@@ -205,6 +205,14 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
     if plan.form == CELLS and plan.cells is not None and runs_nearly_dry(case):
         rate = np.maximum(rate, _at_fronts(case, plan) * omega / (2.0 * math.pi))
     return rate
+
+
+def unbalance_eccentricity(case: Case) -> float:
+    """Distance in m of the centre of mass from the axis by the unbalance of a rotor, that of all disks in phase."""
+    rotor = case.rotor
+    if isinstance(rotor, TurbochargerRotor):
+        return sum(disk.unbalance for disk in case.disks) / shaft_mass(case)
+    return rotor.unbalance / rotor.mass
 
 
 def _at_fronts(case: Case, plan: Plan) -> float:

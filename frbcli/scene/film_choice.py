@@ -24,6 +24,7 @@ TABULATED = ("none", "circumferential-groove", "axial-grooves")  # supplies of g
 CLOSED_FORM, CLIPPED = "closed form", "clipped exactly along z, 96 points around"
 TABLE, FIELDS = "table over eccentricity and direction", "tabulated fields, clipped at every call"
 CHAINS, CELLS = "solved between the grooves at every call", "cells"
+NO_FILM = "no film"
 MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)
 
 # Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
@@ -64,6 +65,8 @@ class FilmChoice:
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
     given = case.accuracy.mesh
+    if not case.bearings:
+        return FilmChoice(NO_FILM, NO_FILM, DEFAULT_MESH, None, 0.0, "", "")
     if case.film.bearing_model:
         each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
         return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
@@ -125,7 +128,7 @@ def all_clipped(case: Case) -> bool:
 
 def needs_cells(case: Case) -> bool:
     """Whether the films of a case are solved on volumes in a run."""
-    if case.film.bearing_model:
+    if case.film.bearing_model or not case.bearings:
         return False
     if case.film.solution == "cells":
         return True

@@ -20,7 +20,7 @@ from frbcli.rotor.reduction import DENSE, MOST, RIGID
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.cell_choice import compared_states
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.film_choice import CHAINS, FIELDS, TABLE, all_clipped, needs_cells
+from frbcli.scene.film_choice import CHAINS, FIELDS, NO_FILM, TABLE, all_clipped, needs_cells
 from frbcli.scene.films import film_places, rings, turning_rings
 from frbcli.scene.planned import Plan
 from frbcli.scene.published import PUBLISHED
@@ -96,7 +96,7 @@ def film_error_s(case: Case, plan: Plan) -> float:
     if plan.cells is not None:
         fine = plan.cells[0] * FINER, plan.cells[1] * FINER
         return compared_states(plan.cells) * films * (_steady_s(plan.cells) + _steady_s(fine))
-    if plan.form == GIVEN:
+    if plan.form in (GIVEN, NO_FILM):
         return 0.0
     if plan.form == SOLUTIONS:  # one state in place of a table of thousands
         return SAMPLES * films * 1e-3 * _table_s(plan)
@@ -126,7 +126,7 @@ def signal_count(case: Case) -> int:
     """Signals that a run records; with heat at most."""
     places, floating = film_places(case), rings(case)
     disks = len(case.disks) + isinstance(case.rotor, JeffcottRotor)
-    found = 2 + 2 * (len(case.bearings) + len(floating) + disks) + len(turning_rings(case))
+    found = 2 + 2 * (len(case.given_bearings) + len(floating) + disks) + len(turning_rings(case))
     found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
     found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
     if case.heat is not None:
@@ -167,7 +167,7 @@ def shaft_freedoms(case: Case) -> int:
     """Degrees of freedom of the shaft in a plane, before its reduction; none of a rotor without sections."""
     if not isinstance(case.rotor, TurbochargerRotor):
         return 0
-    return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.bearings))
+    return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.given_bearings))
 
 
 def shaft_mass(case: Case) -> float:
@@ -187,7 +187,7 @@ def _table_s(plan: Plan) -> float:
     if plan.form == SOLUTIONS:
         size = plan.mesh.circumferential / SOLUTION_MESH.circumferential
         return SOLUTIONS_s * size * along_factor(_half(plan.mesh)) / along_factor(_half(SOLUTION_MESH))
-    if plan.cells is not None or plan.theory == "short" or plan.form == GIVEN:
+    if plan.cells is not None or plan.theory == "short" or plan.form in (GIVEN, NO_FILM):
         return 0.0
     modes = MODES_s * plan.mesh.axial**3
     if plan.form == CHAINS:

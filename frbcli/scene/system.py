@@ -60,7 +60,8 @@ class System:
     inside and outside of each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing
     in N m s, the Couette torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the
     films' cavitation models; torque, cavitation_factor: see FilmModel. scales: of tabulated films of a warm
-    machine, what their tables have to be scaled by, see warm.py.
+    machine, what their tables have to be scaled by, see warm.py. own_length: see length, 0 of a machine with films.
+    A machine without films has none of what belongs to them.
     """
 
     rotor: LinearRotor
@@ -79,6 +80,13 @@ class System:
     torque: str = "all"
     cavitation_factor: str = "none"
     scales: tuple[float, ...] | None = None
+    own_length: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """What displacements count over that are in no film, m: the clearance of the first film, or without films a
+        length of the machine (reference_length.py)."""
+        return self.clearances[0] if self.clearances else self.own_length
 
     @property
     def remembering(self) -> tuple[bool, ...]:
@@ -140,13 +148,16 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
         films=(),
         names=tuple(place.name for place in places),
         clearances=tuple(place.geometry.clearance for place in places),
-        bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64),
+        bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64).reshape(-1, 2),
         turning=turning(places, len(ringed), [turns_with_oil(case, place) for place in places]),
         drags=tuple(film_drag(case, place.geometry) for place in places),
         ring_count=len(ringed),
         laws=case.cavitations,
         torque=case.film.torque,
+        own_length=plan.length,
     )
+    if not places:
+        return system
     if plan.cells is not None and plan.form == PUBLISHED:
         film = published_film(case, film_section(case, places[0].geometry), plan.cells)
         return replace(system, films=element_film(film), published=film)
