@@ -104,7 +104,9 @@ def _near_the_speed(
 ) -> Iterator[Event]:
     """The critical speed and the first self-excited vibration before the first whirl, of all disks or else journals.
     resonances: by point; besides: of the same points, or empty."""
-    room = min((length for name, length in run.references.items() if name.startswith("clearance_m")), default=0.0)
+    without_films = run.references.get("length_m", 0.0)
+    clearances = (length for name, length in run.references.items() if name.startswith("clearance_m"))
+    room = min(clearances, default=without_films)
     modes = signals.critical_speeds(run)
     found = [
         (vibration, name)

@@ -8,6 +8,7 @@ all that it was made of.
 from __future__ import annotations
 
 import csv
+import itertools
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -175,7 +176,7 @@ def _checked(columns: Columns) -> Columns:
 
 def over_speed_problem(speeds: Sequence[float], masses: Sequence[Sequence[float]]) -> str:
     """What is wrong with speeds in Hz and masses xx, xy, yx, yy at them, or nothing."""
-    for below, above in zip(speeds, speeds[1:], strict=False):
+    for below, above in itertools.pairwise(speeds):
         if above <= below:
             return f"has {above:g} Hz after {below:g} Hz: the speeds do not ascend."
     for speed, entries in zip(speeds, zip(*masses, strict=True), strict=False):

@@ -14,7 +14,9 @@ FILMS = ("single-film", "floating-ring")
 GIVEN = ("stiffness", "damping", "mass")
 REMEDY = "Remove it, or add a bearing with a film."
 # Keys that say how films are computed, recorded or touched.
-OF_FILMS = (("film",), ("thermal",), ("contact",), ("accuracy", "mesh"), ("output", "signals"), ("start", "displacement"))
+OF_FILMS = (
+    ("film",), ("thermal",), ("contact",), ("accuracy", "mesh"), ("output", "signals"), ("start", "displacement"),
+)  # fmt: skip
 
 
 def has_films(data: Mapping[str, Any]) -> bool:

@@ -1,8 +1,8 @@
 """A case: one machine and one run as the user describes them, frozen, in SI.
 
 Keys of the file that are no Python words have other attribute names: `from` and `to` of [speed] are `start` and `end`,
-`two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `given_bearings`, [[disk]] is `disks`. `clearance` and
-`viscosity` may be given as a law: the attributes of these names are its value. Of `given_bearings`, all tables
+`two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `given_bearings`, [[disk]] is `disks`. `clearance`
+and `viscosity` may be given as a law: the attributes of these names are its value. Of `given_bearings`, all tables
 [[bearing]], `bearings` are those with a film and `elements` the others.
 Rules that tie several keys together are in `checks.py`.
 """

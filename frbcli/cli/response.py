@@ -126,23 +126,24 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
     shown = found.points[:MOST_POINTS]
     every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
     amplitude, phase = 1e6 * found.amplitude, found.phase_deg
-    eccentricity, validity = found.eccentricity_max.max(axis=1), found.validity
+    eccentricity, validity = found.eccentricity_max.max(axis=1, initial=0.0), found.validity
+    in_films = bool(found.films)
     rows = [
         (
             f"{found.speeds_Hz[i]:.4g}",
             *(f"{amplitude[i, j]:.3g} {phase[i, j]:.0f}°" for j in range(len(shown))),
             f"{found.growth[i]:.3g}",
-            f"{eccentricity[i]:.3g}{MARKS[validity[i]]}",
+            *([f"{eccentricity[i]:.3g}{MARKS[validity[i]]}"] if in_films else []),
         )
         for i in range(every - 1, len(found.speeds_Hz), every)
     ]
     named = [name.replace("_", " ") for name in shown]
-    columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", "eps")
+    columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", *(["eps"] if in_films else []))
     terminal.table(found.case.title or found.case.name, columns, rows)
     if len(found.points) > len(shown):
         rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
-    terminal.result(EXPLANATION)
+    terminal.result(EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + ".")
     for sentence in _doubts(found):
         terminal.result(fill(sentence, COLUMNS))
     peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)

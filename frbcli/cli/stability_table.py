@@ -51,7 +51,7 @@ def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None
 
 def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     """A line of a single film; further ones hold what else grows."""
-    if not point.films:
+    if not point.rests:
         return [(f"{point.speed_Hz:.4g}", NONE, *[""] * (len(ONE_FILM) - 2))]
     modes = point.modes[: max(MODES, len(point.growing))]
     cells = [_mode(value) for value in modes]
@@ -59,14 +59,15 @@ def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     for start in range(0, max(1, len(cells)), MODES):
         pairs = [cell for mode in cells[start : start + MODES] for cell in mode[:2]]
         fastest = cells[start][2] if cells else "-"
-        head = (f"{point.speed_Hz:.4g}", *_place(point.films[0])) if start == 0 else ("",) * 3
+        place = _place(point.films[0]) if point.films else ("-", "-")
+        head = (f"{point.speed_Hz:.4g}", *place) if start == 0 else ("",) * 3
         lines.append((*head, *pairs, *[""] * (2 * MODES - len(pairs)), fastest))
     return lines
 
 
 def _film_lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     """A line for each film, and beside them one for each mode."""
-    if not point.films:
+    if not point.rests:
         return [(f"{point.speed_Hz:.4g}", NONE, *[""] * (len(FILMS) - 2))]
     count = max(len(point.films), len(point.growing))
     films = [(film.name, *_place(film)) for film in point.films]

@@ -2,8 +2,8 @@
 
 M q'' + (D + Omega G) q' + K q = f_static + unbalance(alpha) + sum over films of P^T F
 
-Elements whose forces are linear are part of M, D and K; where their coefficients depend on the speed, `over_speed` holds
-what they add to the matrices, and `at` gives the rotor at a speed.
+Elements whose forces are linear are part of M, D and K; where their coefficients depend on the speed, `over_speed`
+holds what they add to the matrices, and `at` gives the rotor at a speed.
 """
 
 from __future__ import annotations

@@ -17,6 +17,7 @@ from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.film_error import film_force_errors
 from frbcli.runs.oil import oil_defect
 from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.elements import element_places, element_springs
 from frbcli.scene.planned import Plan
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
@@ -138,8 +139,6 @@ def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
     the films in the middle of the run; None for a rotor that has no modes, or without a state whose films are stiff."""
     if not isinstance(case.rotor, TurbochargerRotor) or not len(samples):
         return None
-    if not case.bearings:
-        return None
     modes = all_modes(case)
     kept = kept_modes(case.rotor, modes)
     if kept == len(modes.frequencies):
@@ -150,7 +149,8 @@ def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
         return None
     if not np.all(springs > 0.0):
         return None
-    stations = np.stack([modes.at(journal.position) for journal in journals(case)])
+    springs = np.concatenate([springs, element_springs(case, float(samples[len(samples) // 2][2 * system.rotor.size]))])
+    stations = np.stack([modes.at(place.position) for place in (*journals(case), *element_places(case))])
     top = 2.0 * math.pi * max(case.speed.start, case.speed.end)
     return reduction_error(modes, kept, stations, springs, top).frequency
 

@@ -58,6 +58,33 @@ def element_faults(case: Case) -> list[Fault]:
     return [fault for key, element in keyed for fault in kind_of(element).faults(key, element)]
 
 
+def element_springs(case: Case, omega: float) -> Array:
+    """(e,) N/m of each element at omega rad/s: the mean of the direct stiffness of both directions, as far as it holds
+    the shaft; cross-coupling, damping and mass are left out."""
+    stiffness = (kind_of(element).linear(element).at(omega)[0] for element in case.elements)
+    return np.array([max(0.5 * float(np.trace(each)), 0.0) for each in stiffness])
+
+
+def without_film(case: Case, what: str) -> list[Fault]:
+    """The fault of a case in which no bearing has a film, where `what` is of films alone."""
+    if case.bearings:
+        return []
+    problem = f"has no film, and {what}."
+    key = element_keys(case)[0]
+    return [Fault(f"{key}.kind", case.elements[0].kind, None, problem, "Add a bearing with a film.")]
+
+
+def speed_dependent(case: Case, what: str) -> list[Fault]:
+    """The faults of elements whose coefficients depend on the speed, where `what` needs constant ones."""
+    problem = f"depends on the speed, and {what}."
+    remedy = "Give constant stiffness, damping and mass, those at the speed of interest."
+    return [
+        Fault(f"{key}.over_speed", element.name, None, problem, remedy)
+        for key, element in zip(element_keys(case), case.elements, strict=True)
+        if not kind_of(element).linear(element).constant
+    ]
+
+
 def without_journals(rotor: LinearRotor) -> LinearRotor:
     """The rotor without any film: no journal of it moves in one."""
     return replace(rotor, journals=np.zeros((0, 2, rotor.size)), multiplicity=np.zeros(0))

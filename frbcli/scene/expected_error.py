@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from frbcli.scene.bearing_models import GIVEN
-from frbcli.scene.film_choice import CELLS
+from frbcli.scene.film_choice import CELLS, NO_FILM
 from frbcli.scene.planned import Plan
 
 SUMMED = 10.0  # number of local errors that add up: 1 to 13 as measured (docs/accuracy.md)
@@ -15,7 +15,7 @@ REACH = 0.5  # usual eccentricity of a resting position, the factor of an error 
 @dataclass(frozen=True)
 class ExpectedError:
     """eccentricity: of the eccentricities until a whirl grows; film_force: relative, None where it is not known: for a
-    bearing model, and for cells, whose known error is that of the eccentricities."""
+    bearing model, without films, and for cells, whose known error is that of the eccentricities."""
 
     eccentricity: float
     film_force: float | None
@@ -24,5 +24,5 @@ class ExpectedError:
 def expected_error(plan: Plan) -> ExpectedError:
     """From the tolerance of a step and the known error of the films of a plan."""
     reach = REACH if plan.cells is None else 1.0
-    force = None if plan.form in (GIVEN, CELLS) else plan.film_error
+    force = None if plan.form in (GIVEN, CELLS, NO_FILM) else plan.film_error
     return ExpectedError(SUMMED * plan.tolerance + reach * plan.film_error, force)

@@ -24,8 +24,8 @@ class Plan:
     films: form and mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for
     other films; film_error: expected relative error of the forces; method: name of a time integration method;
     tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
-    COUPLINGS; macro_step: longest one in s of a co-simulation, else None; length: m, in place of the clearance for machines
-    without films, see reference_length.py."""
+    COUPLINGS; macro_step: longest one in s of a co-simulation, else None; length: m, in place of the clearance for
+    machines without films, see reference_length.py."""
 
     theory: str
     cavitation: str

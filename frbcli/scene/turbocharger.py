@@ -18,8 +18,8 @@ from frbcli.scene.films import rings
 
 
 def make_turbocharger(case: Case) -> LinearRotor:
-    """The reduced rotor of a case with its rings, without its elements; films in the order of the bearings, inner before
-    outer ones.
+    """The reduced rotor of a case with its rings, without its elements; films in the order of the bearings, inner
+    before outer ones.
 
     Raises InputError if the case has another rotor.
     """

@@ -18,13 +18,13 @@ E_STATIC, E_COS, E_SIN = range(3)
 def outdated(numbers: Array, g: float, speed: float, gyroscopic: bool, follows_speed: bool) -> bool:
     """Whether the inverse that the numbers tell of does not serve a stage with this g and speed."""
     if follows_speed:
-        return g != numbers[INVERSE_G] or speed != numbers[INVERSE_SPEED]
+        return bool(g != numbers[INVERSE_G] or speed != numbers[INVERSE_SPEED])
     return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
 
 
 @compiled()
 def add_table(rotor: RotorData, g: float, speed: float, dynamic: Array, right: Array) -> None:
-    """Add what elements put on the rotor at this speed: to M + g D + g^2 K, and to the columns of D and K in `right`."""
+    """Add what elements put on the rotor at this speed to M + g D + g^2 K, and to the columns of D and K in `right`."""
     n, last, below = rotor.mass.shape[0], rotor.table_speeds.shape[0] - 1, 0
     while below < last and rotor.table_speeds[below + 1] <= speed:
         below += 1
@@ -33,7 +33,8 @@ def add_table(rotor: RotorData, g: float, speed: float, dynamic: Array, right: A
     share = max(speed - rotor.table_speeds[below], 0.0) / width if width > 0.0 else 0.0
     for i in range(n):
         for j in range(n):
-            m, d, k = rotor.table_mass[below, i, j], rotor.table_damping[below, i, j], rotor.table_stiffness[below, i, j]
+            m, d = rotor.table_mass[below, i, j], rotor.table_damping[below, i, j]
+            k = rotor.table_stiffness[below, i, j]
             m += share * (rotor.table_mass[above, i, j] - m)
             d += share * (rotor.table_damping[above, i, j] - d)
             k += share * (rotor.table_stiffness[above, i, j] - k)
