@@ -68,6 +68,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     if len(run) < 2:
         return ()
     bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
+    if any(True for _ in signals.films(run.signals)):  # beside those in films there may be journals in none
+        bearings = [name for name in bearings if signals.in_film(run, name)]
     nodes = [("disk", name) for name in points(run.signals, "disk")] or [("journal", name) for name in bearings]
     plain = [name for name in bearings if name not in rings and signals.bearing_clearance(run, name) is not None]
     halves = [(Tracked("journal", name, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS),) for name in plain]

@@ -256,12 +256,18 @@ def _as_list(given: object) -> object:
     if isinstance(given, dict | Model):
         return [given]
     if isinstance(given, list | tuple) and len(given) > 1:
-        alone = sum(not _without_film(bearing) for bearing in given) == 1  # its film keeps its signals' plain names
+        in_film = [bearing for bearing in given if not _without_film(bearing)]
+        # The one film of a symmetric rotor keeps the plain names of its signals beside elements.
+        plain = in_film if len(in_film) == 1 and _position(in_film[0]) is None else []
         return [
-            bearing if alone and not _without_film(bearing) else _named(bearing, str(number))
+            bearing if any(bearing is one for one in plain) else _named(bearing, str(number))
             for number, bearing in enumerate(given, start=1)
         ]
     return given
+
+
+def _position(bearing: object) -> object:
+    return bearing.get("position") if isinstance(bearing, dict) else getattr(bearing, "position", None)
 
 
 def _without_film(bearing: object) -> bool:

@@ -26,7 +26,7 @@ from frbcli.linear.resting import ring_speeds
 from frbcli.linear.static_films import StaticFilms, static_films
 from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.held import held_rotor
-from frbcli.scene.elements import without_film
+from frbcli.scene.elements import require_a_film
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
 from frbcli.scene.published import is_published
@@ -149,8 +149,7 @@ def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: fl
 
 
 def _check(case: Case) -> None:
-    if faults := without_film(case, "the sheet is of films"):
-        raise InputError(case.name or "case", tuple(faults))
+    require_a_film(case, "the sheet is of films")
     faults = film_faults(case)
     if case.film.bearing_model:
         problem = "is a bearing model: it tells the force, and neither pressures nor oil."

@@ -120,7 +120,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in modes), strict=True)]
     modes = [modes[i] for i in np.lexsort(keys)] if modes else []
     names = tuple(name for name, _ in rotor.points)
-    error = max((film.error for film in point.films), default=0.0)
+    error = max((film.error for film in point.films), default=math.nan)
     return DampedModes(case, speed_Hz, names, positions, to_scale, marks, tuple(modes), error)
 
 

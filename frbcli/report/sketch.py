@@ -120,10 +120,10 @@ def _turbocharger(case: Case) -> str:
         if bearing.position is not None:
             parts += _bearing_parts(case, number, bearing.position, scale)
             parts.append(_named(bearing.name, bearing.position, scale, half + 16.0))
-    for element in case.elements:
-        at = element.position or 0.0
-        parts += symbol(element, scale.left + per_m * at, scale.middle, per_m * _radius_at(case, at))
-        parts.append(_named(element.name, at, scale, half + 16.0))
+    for each in case.elements:
+        at = each.position or 0.0
+        parts += symbol(each, scale.left + per_m * at, scale.middle, per_m * _radius_at(case, at))
+        parts.append(_named(each.name, at, scale, half + 16.0))
     for disk, radius, _ in disks:
         parts.append(_named(f"{disk.name} {1e3 * disk.mass:.3g} g", disk.position, scale, -per_m * radius - 6.0))
     return _finish(parts, scale, half, length)
@@ -145,9 +145,9 @@ def _symmetric(case: Case) -> str:
         parts.append(scale.box(at - half_width, at + half_width, 0.0, journal, "shaft"))
         if case.bearings:
             parts += _bearing_parts(case, 0, at, scale)
-        for element in case.elements:  # of both journals: outwards of the films
+        for each in case.elements:  # of both journals: outwards of the films
             outwards = 0.5 * half_width if at else -0.5 * half_width
-            parts += symbol(element, scale.left + per_m * (at + outwards), scale.middle, per_m * journal)
+            parts += symbol(each, scale.left + per_m * (at + outwards), scale.middle, per_m * journal)
         parts.append(_named("bearing", at, scale, half + 16.0))
     parts.append(_named(f"{case.rotor.mass:.4g} kg", 0.5 * span, scale, -half - 6.0))
     return _finish(parts, scale, half, None)

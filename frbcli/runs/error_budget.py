@@ -72,7 +72,7 @@ def error_budget(
         "coupling": None if plan.coupling in (SEMI, APART) else NEWTON_SHARE * plan.tolerance,
         "modal_reduction": modal_reduction(case, system, samples),
         "cells": None if cells is None else cells.eccentricity,
-        "eccentricity": fading + in_films,
+        "eccentricity": fading + in_films if system.names else None,
         "displacement": LASTING * whole + in_points,
         "ring_speed": fading + cells.ring_speed if cells is not None and system.ring_count else None,
         "oil_fraction": fading + cells.oil_fraction if cells is not None and system.remembers else None,

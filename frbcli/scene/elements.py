@@ -10,7 +10,7 @@ import numpy as np
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.elements.table import kind_of
-from frbcli.errors import Fault
+from frbcli.errors import Fault, InputError
 from frbcli.rotor.linear import Array, LinearRotor
 from frbcli.rotor.turbocharger import Journal
 from frbcli.scene.keys import element_keys
@@ -72,6 +72,12 @@ def without_film(case: Case, what: str) -> list[Fault]:
     problem = f"has no film, and {what}."
     key = element_keys(case)[0]
     return [Fault(f"{key}.kind", case.elements[0].kind, None, problem, "Add a bearing with a film.")]
+
+
+def require_a_film(case: Case, what: str) -> None:
+    """Raises InputError for a case in which no bearing has a film, see without_film."""
+    if faults := without_film(case, what):
+        raise InputError(case.name or "case", tuple(faults))
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:
