@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import CHAIN_MODES, Mesh
@@ -21,6 +22,7 @@ from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.bearing_models import GIVEN
 from frbcli.scene.cell_choice import USUAL, cells_time
 from frbcli.scene.course import STAGES, Course, expected_course, runs_nearly_dry, whirl_speed
+from frbcli.scene.elements import changes_with_speed
 from frbcli.scene.film_choice import CELLS, CHAINS, CLIPPED, CLOSED_FORM, FIELDS, NO_FILM, TABLE
 from frbcli.scene.films import film_places
 from frbcli.scene.planned import Plan
@@ -88,11 +90,14 @@ def _quiet_share(case: Case, profile: SpeedProfile, course: Course) -> float:
 
 
 def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
-    """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve."""
+    """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve, but for an
+    inverse that is renewed in every stage."""
     n, m, stages = max(rotor_size(case), SMALL_ROTOR), 2 * len(film_places(case)), STAGES[plan.method]
+    follows = changes_with_speed(case) or (not case.bearings and isinstance(case.rotor, TurbochargerRotor))
+    renewed = stages * INVERSE_ns * rotor_size(case) ** 3 if follows else 0.0  # an inverse for each speed
     inverse, products = n**3 - SMALL_ROTOR**3, n**2 - SMALL_ROTOR**2
     journals = max(0, m**3 - SMALL_ROTOR**3)
-    return INVERSE_ns * inverse + stages * (PRODUCTS_ns * products + iterations * JOURNALS_ns * journals)
+    return renewed + INVERSE_ns * inverse + stages * (PRODUCTS_ns * products + iterations * JOURNALS_ns * journals)
 
 
 def solve_us(plan: Plan) -> float:
