@@ -308,6 +308,15 @@ def test_a_motion_without_bound_ends_the_run(tmp_path: Path) -> None:
     assert 1e5 < last / make_plan(case).length < 1e9
 
 
+def test_bearings_without_stiffness_do_not_hold_a_rotor() -> None:
+    case = rigid({"kind": "coefficients", "name": "damper", "damping": "300 N*s/m"})
+    plan = make_plan(case)
+    assert plan.length == pytest.approx(U / M)  # no static deflection
+    (point,) = stability(case, [100.0]).points
+    assert point.status == "not-converged"
+    assert "do not hold the rotor" in point.problem
+
+
 SHORT_FILM = {
     "kind": "single-film", "width": "20 mm", "diameter": "25 mm", "clearance": "35 um", "ends": "oil-bath",
     "supply": {"kind": "circumferential-groove", "pressure": "1 bar"},

@@ -128,7 +128,7 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
         return []
     wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
     for point in found.points[-1:]:
-        springs = film_springs(found.case, point.films)
+        springs = film_springs(found.case, point.films) if point.films else ()
         if springs or (point.rests and not found.case.bearings):
             wanted.append((springs, point.speed_Hz))
     return wanted

@@ -14,6 +14,7 @@ from frbcli.scene.course import unbalance_eccentricity
 from frbcli.scene.rotors import make_rotor
 
 SMALLEST = 1e-9  # m: of a rotor that neither its weight nor an unbalance moves
+LARGEST = 1.0  # m: bearings that let the rotor sag further do not hold it
 SAGS, TURNS, LEAST = "the largest static deflection", "the unbalance over the mass", "the least that is taken"
 
 
@@ -33,4 +34,4 @@ def _sag(rotor: LinearRotor, omega: float) -> float:
     except NotConverged:
         return 0.0
     found = max((float(np.hypot(*(place @ shape))) for _, place in rotor.points), default=0.0)
-    return found if math.isfinite(found) else 0.0
+    return found if found < LARGEST else 0.0
