@@ -225,6 +225,20 @@ def test_a_run_at_constant_speed_is_the_response(tmp_path: Path) -> None:
     assert run.references["length_m"] == make_plan(case).length
 
 
+def test_a_run_of_a_gyroscopic_shaft_at_constant_speed_is_the_response(tmp_path: Path) -> None:
+    """On coefficients alone, those of a shaft with wheels: points at the elements are recorded like journals."""
+    tables = {"rotor": {"kind": "turbocharger", "modes": 5, "modal_damping": 0.02}, "speed": speed(300.0, 300.0, 0.3)}
+    case = case_from_dict(HEAVY | tables | {"accuracy": {"tolerance": 1e-10}}, "heavy")
+    run = runup(case, tmp_path / "run.h5")
+    found = response(case, [300.0])
+    slowest = -found.resting[0].eigenvalues.real.max()
+    assert math.exp(-slowest * 0.25) < 1e-7
+    assert found.points[:2] == ("journal_front", "journal_rear")
+    for name, motion in zip(found.points, found.motion[0], strict=True):
+        forward = 0.5 * (motion[0] + 1j * motion[1])
+        assert abs(synchronous(run, name, TURN * 300.0, 0.25) - forward) < 2e-6 * abs(forward)
+
+
 OVER_SPEED = {"speed": ["0 Hz", "60 Hz", "160 Hz"]} | {
     name: [f"{value} {unit}" for value in values]
     for name, values, unit in (
@@ -340,6 +354,26 @@ def test_a_seal_of_zero_coefficients_changes_nothing(tmp_path: Path) -> None:
     for name in without.signals:
         np.testing.assert_array_equal(np.array(without[name]), np.array(beside[name]))
     assert stability(in_film()).threshold == stability(in_film(nothing)).threshold
+
+
+def test_a_table_of_equal_rows_is_the_constant_coefficients(tmp_path: Path) -> None:
+    """Beside a film, in a run whose inverse follows the speed."""
+    constant = {"kind": "coefficients", "name": "seal", "stiffness": matrix(2e5, 5e4, "N/m"), "damping": "50 N*s/m"}
+    columns = {"kxx": 2e5, "kxy": 5e4, "kyx": -5e4, "kyy": 2e5, "cxx": 50.0, "cxy": 0.0, "cyx": 0.0, "cyy": 50.0}
+    table = {name: [f"{value} {'N/m' if name[0] == 'k' else 'N*s/m'}"] * 3 for name, value in columns.items()}
+    rows = {"kind": "coefficients", "name": "seal", "over_speed": {"speed": ["0 Hz", "50 Hz", "90 Hz"], **table}}
+    runs = [
+        runup(in_film(element, speed=speed(20.0, 120.0, 0.2)), tmp_path / f"{number}.h5")
+        for number, element in enumerate((constant, rows))
+    ]
+    assert runs[0].cost["steps"] == runs[1].cost["steps"]
+    for name in runs[0].signals:
+        first, second = (np.array(run[name]) for run in runs)
+        np.testing.assert_allclose(first, second, atol=1e-11 * np.abs(first).max(), rtol=0.0)
+    with pytest.raises(InputError) as caught:
+        make_plan(in_film(rows, film={"theory": "short", "coupling": "co-simulation"}))
+    (fault,) = caught.value.faults
+    assert (fault.key, fault.value) == ("film.coupling", "co-simulation")
 
 
 def test_a_seal_shifts_the_threshold_as_its_stiffness_in_the_matrices() -> None:
