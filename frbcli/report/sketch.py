@@ -145,12 +145,20 @@ def _symmetric(case: Case) -> str:
         parts.append(scale.box(at - half_width, at + half_width, 0.0, journal, "shaft"))
         if case.bearings:
             parts += _bearing_parts(case, 0, at, scale)
-        for each in case.elements:  # of both journals: outwards of the films
-            outwards = 0.5 * half_width if at else -0.5 * half_width
-            parts += symbol(each, scale.left + per_m * (at + outwards), scale.middle, per_m * journal)
+        for number, each in enumerate(case.elements):
+            place = at + half_width * _place(case, number) * (1.0 if at else -1.0)
+            parts += symbol(each, scale.left + per_m * place, scale.middle, per_m * journal)
         parts.append(_named("bearing", at, scale, half + 16.0))
     parts.append(_named(f"{case.rotor.mass:.4g} kg", 0.5 * span, scale, -half - 6.0))
-    return _finish(parts, scale, half, None)
+    return _finish(parts, scale, half, None, bool(case.bearings))
+
+
+def _place(case: Case, number: int) -> float:
+    """Of an element of a symmetric rotor, from the middle of a journal outwards over half its width: beside the film,
+    or spread over the journal."""
+    if case.bearings:
+        return 1.25 + 0.5 * number
+    return 2.0 * (number + 0.5) / len(case.elements) - 1.0
 
 
 def _journal(case: Case) -> tuple[float, float]:
@@ -183,14 +191,15 @@ def _named(words: str, at: float, scale: _Scale, y: float) -> str:
     return text(scale.left + scale.per_m * at, scale.middle + y, words)
 
 
-def _finish(parts: list[str], scale: _Scale, half: float, length: float | None) -> str:
-    """With the axis and a bar for the scale."""
+def _finish(parts: list[str], scale: _Scale, half: float, length: float | None, to_scale: bool = True) -> str:
+    """With the axis and a bar for the scale, where there is one."""
     height = 2.0 * half + 86.0
     bar = _round_length((WIDTH - 2.0 * MARGIN) / scale.per_m / 6.0)
     y, x = height - 14.0, MARGIN
     parts.append(line(8.0, scale.middle, WIDTH - 8.0, scale.middle, "axis"))
-    parts.append(line(x, y, x + scale.per_m * bar, y, "bar"))
-    parts.append(text(x + scale.per_m * bar + 8.0, y + 4.0, f"{1e3 * bar:g} mm", anchor="start"))
+    if to_scale:
+        parts.append(line(x, y, x + scale.per_m * bar, y, "bar"))
+        parts.append(text(x + scale.per_m * bar + 8.0, y + 4.0, f"{1e3 * bar:g} mm", anchor="start"))
     if length is not None:
         parts.append(text(WIDTH - MARGIN, y + 4.0, f"shaft of {1e3 * length:g} mm", anchor="end"))
     return drawing(WIDTH, height, parts, "rotor and bearings, cut along the axis")
