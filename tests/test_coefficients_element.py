@@ -295,6 +295,12 @@ def test_cross_coupling_makes_the_rotor_whirl_where_it_exceeds_c_omega() -> None
     assert threshold.frequency_Hz == pytest.approx(natural / TURN, rel=1e-9)
 
 
+def test_the_shipped_seal_whirls_where_it_says() -> None:
+    threshold = stability(frbcli.load_case("seal")).threshold
+    assert threshold is not None
+    assert threshold.speed_Hz == pytest.approx(math.sqrt(2.0 * K / M) / 1.1 / TURN, rel=1e-9)
+
+
 @pytest.mark.parametrize("share", [0.8, 1.25])
 def test_a_run_grows_above_the_threshold_and_decays_below(share: float, tmp_path: Path) -> None:
     """At a constant speed, without unbalance: the forward whirl out of the start grows by its eigenvalue."""
