@@ -369,13 +369,13 @@ def test_a_table_of_equal_rows_is_the_constant_coefficients(tmp_path: Path) -> N
     table = {name: [f"{value} {'N/m' if name[0] == 'k' else 'N*s/m'}"] * 3 for name, value in columns.items()}
     rows = {"kind": "coefficients", "name": "seal", "over_speed": {"speed": ["0 Hz", "50 Hz", "90 Hz"], **table}}
     runs = [
-        runup(in_film(element, speed=speed(20.0, 120.0, 0.2)), tmp_path / f"{number}.h5")
+        runup(in_film(element, speed=speed(20.0, 120.0, 0.2), output={"signals": ["force"]}), tmp_path / f"{number}.h5")
         for number, element in enumerate((constant, rows))
     ]
     assert runs[0].cost["steps"] == runs[1].cost["steps"]
     for name in runs[0].signals:
         first, second = (np.array(run[name]) for run in runs)
-        np.testing.assert_allclose(first, second, atol=1e-11 * np.abs(first).max(), rtol=0.0)
+        np.testing.assert_allclose(first, second, atol=1e-9 * np.abs(first).max(), rtol=0.0)
     with pytest.raises(InputError) as caught:
         make_plan(in_film(rows, film={"theory": "short", "coupling": "co-simulation"}))
     (fault,) = caught.value.faults
@@ -429,8 +429,7 @@ ends = "oil-bath"
         for more in ("", seal.format("0 N/m"), seal.format("1e6 N/m"))
     ]
     plain, nothing, held = (stability_points(case, [1500.0])[1][0] for case in cases)
-    for value in plain.eigenvalues:
-        assert np.abs(nothing.eigenvalues - value).min() < 1e-6 * abs(value)
+    np.testing.assert_allclose(nothing.eigenvalues, plain.eigenvalues, rtol=1e-12)  # 34 mm is the end of a section
     assert abs(held.growth - plain.growth) > 1e-3 * abs(plain.growth)
     assert [name for name, _ in make_rotor(cases[1]).points if name.startswith("journal")] == [
         "journal_front", "journal_rear", "journal_seal"
