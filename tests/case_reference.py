@@ -47,6 +47,8 @@ TABLES = {
     "[[disk]]": "Disk",
     '[bearing] kind = "single-film"': "SingleFilmBearing",
     '[bearing] kind = "floating-ring"': "FloatingRingBearing",
+    '[bearing] kind = "coefficients"': "CoefficientsBearing",
+    "over_speed = { ... }": "CoefficientsOverSpeed",
     "[bearing.ring]": "Ring",
     "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",
@@ -102,6 +104,8 @@ def _value(entry: dict[str, Any]) -> str:
         return f"`{entry['const']}`"
     if "enum" in entry:
         return ", ".join(f"`{choice}`" for choice in entry["enum"])
+    if "anyOf" in entry.get("items", {}) and "$ref" not in str(entry["items"]):
+        return f"list of {_value(entry['items'])}"
     if "enum" in entry.get("items", {}):
         return f"list of {_value(entry['items'])}"
     if "prefixItems" in entry:

@@ -155,7 +155,8 @@ def test_every_shipped_machine_is_drawn(name: str) -> None:
         assert parser.wrong == []
         assert note.endswith(".")
         assert "nan" not in drawing
-    assert len(film_sketches(case)) >= 1
+        assert drawing.count('class="ground"') == 2 * len(case.elements) * (1 if case.shaft else 2)
+    assert bool(film_sketches(case)) == bool(case.bearings)
 
 
 def test_a_shaft_is_drawn_to_scale() -> None:

@@ -68,6 +68,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     if len(run) < 2:
         return ()
     bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
+    if any(True for _ in signals.films(run.signals)):  # beside those in films there may be journals in none
+        bearings = [name for name in bearings if signals.in_film(run, name)]
     nodes = [("disk", name) for name in points(run.signals, "disk")] or [("journal", name) for name in bearings]
     plain = [name for name in bearings if name not in rings and signals.bearing_clearance(run, name) is not None]
     halves = [(Tracked("journal", name, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS),) for name in plain]
@@ -104,7 +106,9 @@ def _near_the_speed(
 ) -> Iterator[Event]:
     """The critical speed and the first self-excited vibration before the first whirl, of all disks or else journals.
     resonances: by point; besides: of the same points, or empty."""
-    room = min((length for name, length in run.references.items() if name.startswith("clearance_m")), default=0.0)
+    without_films = run.references.get("length_m", 0.0)
+    clearances = (length for name, length in run.references.items() if name.startswith("clearance_m"))
+    room = min(clearances, default=without_films)
     modes = signals.critical_speeds(run)
     found = [
         (vibration, name)

@@ -147,6 +147,12 @@ def film_clearance(run: RunLike, film: str = "") -> float | None:
     return lengths.get(joined("clearance_m", film), lengths.get("clearance_m"))
 
 
+def in_film(run: RunLike, bearing: str) -> bool:
+    """Whether the journal of a bearing is in a film; elsewhere nothing says how far it can move."""
+    known = set(films(run.signals))
+    return bool(known) and (not bearing or bearing in known or joined(bearing, "inner") in known)
+
+
 def samples_about(run: RunLike, begin_s: float, end_s: float) -> tuple[int, int]:
     """(start, stop) of the samples, at even times, from the one before begin_s to the one after end_s."""
     count = len(run)

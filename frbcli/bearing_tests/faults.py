@@ -1,10 +1,12 @@
 """What a case lacks for a kinematic test, and what no such test can be made of."""
 
+
 from __future__ import annotations
 
 from frbcli.case.bearing import Bores, SingleFilmBearing
 from frbcli.case.schema import Case, Motion
 from frbcli.errors import Fault
+from frbcli.scene.elements import without_film
 
 
 def motion_faults(motion: Motion | None, test: str) -> list[Fault]:
@@ -34,6 +36,8 @@ def motion_faults(motion: Motion | None, test: str) -> list[Fault]:
 
 def bearing_faults(case: Case, test: str) -> list[Fault]:
     """Of the bearing, for the test called "rotation", "squeeze" or "whirl"."""
+    if faults := without_film(case, "a kinematic test is of one"):
+        return faults
     if len(case.bearings) != 1:
         problem = "are too many: a kinematic test is of one bearing."
         return [Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")]

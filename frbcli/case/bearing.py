@@ -1,4 +1,4 @@
-"""The bearings of a case: one film, or a floating ring between two films; supply and ends.
+"""The bearings of a case: one film, a floating ring between two films, or given coefficients; supply and ends.
 
 Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are those of the
 whole bearing, both symmetric halves.
@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
+from frbcli.case.elements import CoefficientsBearing
 from frbcli.case.laws import Cavitation
 from frbcli.case.model import Model, altered
 from frbcli.case.quantities import (
@@ -235,7 +236,8 @@ class FloatingRingBearing(BearingWalls):
     )
 
 
-Bearing = Annotated[SingleFilmBearing | FloatingRingBearing, Field(discriminator="kind")]
+FilmBearing = SingleFilmBearing | FloatingRingBearing
+Bearing = Annotated[SingleFilmBearing | FloatingRingBearing | CoefficientsBearing, Field(discriminator="kind")]
 
 
 class _OneOrMany:
@@ -254,14 +256,30 @@ def _as_list(given: object) -> object:
     if isinstance(given, dict | Model):
         return [given]
     if isinstance(given, list | tuple) and len(given) > 1:
-        return [_named(bearing, str(number)) for number, bearing in enumerate(given, start=1)]
+        in_film = [bearing for bearing in given if not _without_film(bearing)]
+        # The one film of a symmetric rotor keeps the plain names of its signals beside elements.
+        plain = in_film if len(in_film) == 1 and _position(in_film[0]) is None else []
+        return [
+            bearing if any(bearing is one for one in plain) else _named(bearing, str(number))
+            for number, bearing in enumerate(given, start=1)
+        ]
     return given
+
+
+def _position(bearing: object) -> object:
+    return bearing.get("position") if isinstance(bearing, dict) else getattr(bearing, "position", None)
+
+
+def _without_film(bearing: object) -> bool:
+    if isinstance(bearing, dict):
+        return bearing.get("kind") == "coefficients"
+    return isinstance(bearing, CoefficientsBearing)
 
 
 def _named(bearing: object, name: str) -> object:
     if isinstance(bearing, dict):
         return {"name": name, **bearing}
-    if isinstance(bearing, SingleFilmBearing | FloatingRingBearing) and not bearing.name:
+    if isinstance(bearing, SingleFilmBearing | FloatingRingBearing | CoefficientsBearing) and not bearing.name:
         return altered(bearing, {"name": name})
     return bearing
 

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from frbcli.case.element_checks import element_breaches, has_films
 from frbcli.case.film_checks import film_breaches, law_breaches
 from frbcli.case.lines import Path
 from frbcli.case.oil import ATMOSPHERE
@@ -31,6 +32,9 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     if data.get("bearing") == []:
         yield Breach(("bearing",), "is empty.", "Add the table [bearing].")
     yield from _oil(data)
+    if "oil" not in data and has_films(data):
+        yield Breach(("oil",), "is missing.", "Add the table [oil].")
+    yield from element_breaches(data)
     yield from thermal_breaches(data)
     for path, bearing in bearings:
         for film_path, film in _films(path, bearing):

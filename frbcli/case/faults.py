@@ -89,6 +89,8 @@ def _path(loc: Sequence[str | int], data: Any) -> Path:
             if not kind_seen and element == data.get("kind"):
                 kind_seen = True
                 continue
+        if isinstance(element, int) and isinstance(data, str | int | float):
+            continue  # one quantity that stands for a matrix
         path = (*path, element)
         kind_seen = False
         data = data[element] if is_present((element,), data) else None

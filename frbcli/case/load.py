@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from frbcli.case import lines
 from frbcli.case.checks import Breach, breaches
+from frbcli.case.coefficient_files import with_coefficient_files
 from frbcli.case.faults import objections, with_nearest_kinds
 from frbcli.case.model import Model
 from frbcli.case.ross import with_rotor_file
@@ -46,7 +47,7 @@ def load_case_text(
     """The case in the TOML `text` with `settings` applied.
 
     name: of the case, if the text has none; source: name of the text in errors, `name` if not given;
-    folder: of a rotor file. Raises InputError with every fault of text and settings.
+    folder: of rotor files and files of coefficients. Raises InputError with every fault of text and settings.
     """
     source = source or name
     try:
@@ -85,8 +86,8 @@ def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Pa
     """The case in tables that have the keys of a case file, checked as a file is.
 
     data: nested mappings and sequences; quantities are numbers in SI or text with a unit; a table may also be a model
-    of `frbcli.case`; None stands for a key that is not given. name: of the case, if the data have none; folder: of a
-    rotor file. Raises InputError with every fault of the data.
+    of `frbcli.case`; None stands for a key that is not given. name: of the case, if the data have none; folder: of
+    rotor files and files of coefficients. Raises InputError with every fault of the data.
     """
     try:
         tables = _plain(data)
@@ -112,10 +113,11 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     """The case in `data`, None if there is none; its tables, with name and rotor file; all faults."""
     data = data if "name" in data else {"name": _printable(name), **data}
     data, unread = with_rotor_file(data, Path(folder))
+    data, unknown = with_coefficient_files(data, Path(folder))
     case, found = _validate(data)
     if unread:  # what the file would have completed is no fault of the case
         found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
-    return case, data, found
+    return case, data, [*unknown, *found]
 
 
 def _refused(source: str, faults: Sequence[Fault]) -> InputError:

@@ -1,20 +1,22 @@
 """A case: one machine and one run as the user describes them, frozen, in SI.
 
 Keys of the file that are no Python words have other attribute names: `from` and `to` of [speed] are `start` and `end`,
-`two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `bearings`, [[disk]] is `disks`. `clearance` and
-`viscosity` may be given as a law: the attributes of these names are its value.
+`two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `given_bearings`, [[disk]] is `disks`. `clearance`
+and `viscosity` may be given as a law: the attributes of these names are its value. Of `given_bearings`, all tables
+[[bearing]], `bearings` are those with a film and `elements` the others.
 Rules that tie several keys together are in `checks.py`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from frbcli.case.bearing import Bearings, FilmGeometry, FloatingRingBearing, RingFilm
+from frbcli.case.bearing import Bearings, FilmBearing, FilmGeometry, FloatingRingBearing, RingFilm
+from frbcli.case.elements import Element
 from frbcli.case.laws import Cavitation, adopt, attribute
 from frbcli.case.model import Model, altered, with_default
 from frbcli.case.oil import Oil
@@ -208,10 +210,12 @@ class Case(Model):
     )
     shaft: tuple[ShaftSection, ...] = Field(default=(), description="sections of the shaft of a turbocharger, in order")
     disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="disks on the shaft of a turbocharger")
-    bearings: Bearings = Field(
+    given_bearings: Bearings = Field(
         alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
     )
-    oil: Oil = Field(description="the lubricant")
+    given_oil: Oil | None = Field(
+        default=None, alias="oil", description="the lubricant; must be given where a bearing has a film"
+    )
     film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
     thermal: Thermal | None = Field(default=None, description="heat; without it every film keeps its temperature")
     given_speed: SpeedProfile | None = Field(
@@ -232,7 +236,7 @@ class Case(Model):
         """
         if self._read is not None and self._read[1] == self.__dict__:
             return self._read[0]
-        return as_text(self, self.name, [bearing.name for bearing in self.bearings])
+        return as_text(self, self.name, [bearing.name for bearing in self.given_bearings])
 
     def with_source_text(self, text: str) -> Case:
         """This case, which was read from `text`."""
@@ -265,6 +269,31 @@ class Case(Model):
     def same_run(self, other: Case) -> bool:
         """Whether `other` is the same machine and run; labels may differ."""
         return altered(self, _UNCOMPUTED) == altered(other, _UNCOMPUTED)
+
+    @property
+    def bearings(self) -> tuple[FilmBearing, ...]:
+        """The bearings that have a film, or two around a ring."""
+        return tuple(bearing for bearing in self.given_bearings if not isinstance(bearing, Element))
+
+    @property
+    def elements(self) -> tuple[Element, ...]:
+        """The bearings without a film."""
+        return tuple(bearing for bearing in self.given_bearings if isinstance(bearing, Element))
+
+    def with_bearings(self, bearings: Sequence[FilmBearing]) -> Case:
+        """This case with other bearings in place of those with a film, in their order; values that the program has
+        computed, as in `altered`."""
+        films = iter(bearings)
+        all_of_them = tuple(b if isinstance(b, Element) else next(films) for b in self.given_bearings)
+        return altered(self, {"given_bearings": all_of_them})
+
+    @property
+    def oil(self) -> Oil:
+        """The lubricant. Raises InputError for a case without a film that has none."""
+        if self.given_oil is None:
+            fault = Fault("oil", "", None, "is missing: the case has no film.", "Add the table [oil].")
+            raise InputError(self.name or "case", (fault,))
+        return self.given_oil
 
     @property
     def rotor(self) -> Rotor:

@@ -65,7 +65,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     else:
         plan = make_plan(case)
         cost, error = expected_cost(case, plan, run_up_profile(case)), expected_error(plan)
-        decisions, lines = plan.decisions, _expectations(cost, error, compile_B(case))
+        decisions, lines = plan.decisions, _expectations(cost, error, compile_B(case), bool(case.bearings))
         expected = {
             "eccentricity_error": error.eccentricity,
             "film_force_error_relative": error.film_force,
@@ -141,16 +141,19 @@ def _told_film(film: FilmOperation) -> dict[str, object]:
     }
 
 
-def _expectations(cost: ExpectedCost, error: ExpectedError, compile_B: float) -> tuple[Decision, ...]:
+def _expectations(
+    cost: ExpectedCost, error: ExpectedError, compile_B: float, with_films: bool
+) -> tuple[Decision, ...]:
     """Expected error and cost, the last lines of the plan; compile_B: memory of the first start, which compiles."""
     from frbcli.scene.cost import clock
     from frbcli.scene.limits import memory
     from frbcli.scene.planned import Decision
 
-    solves = f"{cost.steps} steps, {cost.film_solves} film solves, on the machine of docs/accuracy.md"
+    solved = f", {cost.film_solves} film solves" if with_films else ""
+    solves = f"{cost.steps} steps{solved}, on the machine of docs/accuracy.md"
     beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
     first = memory(max(cost.memory_B, compile_B))
-    parts = "of the eccentricities before a whirl grows"
+    parts = "of the eccentricities before a whirl grows" if with_films else "of the displacements, over the length"
     if error.film_force is not None:
         parts += f"; film forces {error.film_force:.1g}, relative"
     return (
@@ -205,7 +208,8 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
         )
         for film in films
     ]
-    terminal.table("films at the top speed", columns, rows)
+    if rows:
+        terminal.table("films at the top speed", columns, rows)
     turbulent = ", ".join(f"{film.reynolds:.0f} in {film.name}" for film in films if not film.laminar)
     if turbulent:
         _say(

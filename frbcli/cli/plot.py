@@ -78,6 +78,8 @@ def command(
         return
     check_outputs(picture=target)
     runs = [read_run(path) for path in run_files]
+    if what == "eccentricity" and over == "time" and all("length_m" in run.references for run in runs):
+        what = "displacement"  # no bearing has a film
     draw_wanted(terminal, lambda: _figure(what, runs, (from_time, to_time), over, signal), target, what)
     first = run_files[0] if len(run_files) == 1 else list(run_files)
     terminal.emit({"command": "plot", "run": first, "output": target, "what": what})

@@ -131,18 +131,18 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
     shown = found.points[:MOST_POINTS]
     every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
     count, validity, cells = len(found.points), found.validity, found.table().cells(RESPONSE)
-    rows = []
+    in_films, rows = bool(found.films), []
     for i in range(every - 1, len(found.speeds_Hz), every):
         speed, _, _, growth, eccentricity = cells[i * count]
         motions = (f"{amplitude} {phase}" for _, amplitude, phase, *_ in cells[i * count : i * count + len(shown)])
-        rows.append((speed, *motions, growth, f"{eccentricity}{MARKS[validity[i]]}"))
+        rows.append((speed, *motions, growth, *([f"{eccentricity}{MARKS[validity[i]]}"] if in_films else [])))
     named = [name.replace("_", " ") for name in shown]
-    columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", "eps")
+    columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", *(["eps"] if in_films else []))
     terminal.table(found.case.title or found.case.name, columns, rows)
     if len(found.points) > len(shown):
         rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
-    terminal.result(EXPLANATION)
+    terminal.result(EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + ".")
     for sentence in _doubts(found):
         terminal.result(fill(sentence, COLUMNS))
     peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)

@@ -82,7 +82,7 @@ def command(
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
-    if len(natural) == 1 and found.points[-1].films:
+    if len(natural) == 1 and found.points[-1].rests:
         at = f"{found.points[-1].speed_Hz:.4g} Hz"
         terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
     terminal.emit(
@@ -97,7 +97,7 @@ def command(
         }
         | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
     )
-    return None if any(point.films for point in found.points) else NotConverged.exit_code
+    return None if any(point.rests for point in found.points) else NotConverged.exit_code
 
 
 def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, every_speed: bool) -> None:
@@ -127,7 +127,7 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
     for point in found.points[-1:]:
         springs = film_springs(found.case, point.films) if point.films else ()
-        if springs:
+        if springs or (point.rests and not found.case.bearings):
             wanted.append((springs, point.speed_Hz))
     return wanted
 

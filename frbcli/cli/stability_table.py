@@ -53,11 +53,11 @@ def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None
 
 def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     """A line of a single film; further ones hold what else grows."""
-    if not point.films:
+    if not point.rests:
         return [(_speed(point), NONE, *[""] * (2 * MODES_TOLD + 2))]
     modes = point.modes[: max(MODES_TOLD, len(point.growing))]
     cells = table_of(MODES, modes.tolist()).cells(STABILITY)
-    (place,) = table_of(FILM, point.films[:1]).cells(STABILITY)
+    place = (table_of(FILM, point.films[:1]).cells(STABILITY) or [("-", "-")])[0]
     lines = []
     for start in range(0, max(1, len(cells)), MODES_TOLD):
         pairs = [cell for mode in cells[start : start + MODES_TOLD] for cell in mode[:2]]
@@ -69,7 +69,7 @@ def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
 
 def _film_lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     """A line for each film, and beside them one for each mode."""
-    if not point.films:
+    if not point.rests:
         return [(_speed(point), NONE, *[""] * 5)]
     count = max(len(point.films), len(point.growing))
     places = table_of(FILM, point.films).cells(STABILITY)

@@ -148,7 +148,7 @@ def first_place(system: System, machine: Machine, ask: Callable[[Array], tuple[A
     """The resting position at omega rad/s as a place of the curve that goes down in speed."""
     resting = resting_position(system, omega)
     journals = system.rotor.journals @ resting
-    turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
+    turning = ring_speeds(system, held_rotor(system.rotor, omega), omega, journals)
     places = machine.places @ resting[: machine.rotor.size]
     guess = np.concatenate([places, turning / machine.pace, [omega / machine.pace]])
     along = -unit_vector(len(guess))

@@ -10,6 +10,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.linear.stability import default_speeds
 from frbcli.scene.channels import coupled
+from frbcli.scene.elements import require_a_film, speed_dependent
 from frbcli.scene.film_choice import all_clipped, needs_cells
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
@@ -21,6 +22,9 @@ def check(case: Case, with_oil: bool = False) -> tuple[float, float]:
     """The range of speeds of a case in rad/s, the slowest above zero. with_oil: whether films may be mass-conserving.
     Raises InputError."""
     require_films(case)
+    require_a_film(case, "limit cycles are those of films")
+    if changing := speed_dependent(case, "limit cycles follow it with a rotor of constant coefficients"):
+        raise InputError(case.name or "case", tuple(changing))
     faults = list(_oil_films(case) if with_oil and keeps_oil(case) else _films(case))
     if case.heat is not None:
         problem = "is not modelled in limit cycles: each of them dissipates something else, and has other viscosities."

@@ -159,8 +159,7 @@ def _parts(machine: Machine) -> tuple[Part, ...]:
     rotor, shapes, pulls = machine.rotor, machine.places, machine.pulls
     springs = pulls @ (np.repeat(machine.spring, 2)[:, None] * shapes)
     dashpots = pulls @ (np.repeat(machine.dashpot, 2)[:, None] * shapes)
-    unbalance = rotor.unbalance_sin + 1j * rotor.unbalance_cos
-    loads = np.column_stack([pulls, rotor.static_load, 0.5 * unbalance])
+    loads = np.column_stack([pulls, rotor.static_load, 0.5 * rotor.unbalance])
     return parts_of(rotor, springs, dashpots, shapes, loads)
 
 

@@ -108,7 +108,7 @@ def resting_over(family: Family, lowest: float) -> Resting:
     with advised(family.case):
         system, machine = family.system(1.0), family.machine(1.0)
         q = resting_position(system, family.omega)
-    turning = ring_speeds(system, held_rotor(system.rotor), family.omega, system.rotor.journals @ q)
+    turning = ring_speeds(system, held_rotor(system.rotor, family.omega), family.omega, system.rotor.journals @ q)
     near = np.concatenate([machine.places @ q[: machine.rotor.size], turning / machine.pace])
     points = []
     for share in np.linspace(1.0, lowest, POINTS):

@@ -27,6 +27,7 @@ from frbcli.linear.resting import ring_speeds
 from frbcli.linear.static_films import StaticFilms, static_films
 from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.held import held_rotor
+from frbcli.scene.elements import require_a_film
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.published import is_published
@@ -110,7 +111,7 @@ def sommerfeld_chart(
     speed = max(_speeds(case)) if speed_Hz is None else speed_Hz
     static = static_films(case, 0.0, speed)
     system, volumes, omega = static.system, static.volumes(), 2.0 * math.pi * speed
-    spins = ring_speeds(system, held_rotor(system.rotor), omega, np.zeros((len(system.names), 2)))
+    spins = ring_speeds(system, held_rotor(system.rotor, omega), omega, np.zeros((len(system.names), 2)))
     bodies, omegas = np.concatenate([[omega], spins]), system.omegas(omega, spins)
     points = []
     for number, eccentricity in enumerate(eccentricities):
@@ -144,6 +145,7 @@ def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: fl
 
 
 def _check(case: Case) -> None:
+    require_a_film(case, "the sheet is of films")
     faults = film_faults(case)
     if case.film.bearing_model:
         problem = "is a bearing model: it tells the force, and neither pressures nor oil."

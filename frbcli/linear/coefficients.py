@@ -46,6 +46,12 @@ class RestingFilm:
         return math.hypot(*self.displacement)
 
 
+def coefficients_of(films: Sequence[RestingFilm]) -> tuple[Array, Array]:
+    """(films, 2, 2) stiffness in N/m and damping in N s/m of films at rest, or of none."""
+    stiffness, damping = (np.array([getattr(film, name) for film in films]) for name in ("stiffness", "damping"))
+    return stiffness.reshape(-1, 2, 2), damping.reshape(-1, 2, 2)
+
+
 def settled_force(system: System, i: int, place: Array, total: float, near: FilmForce | None = None) -> FilmForce:
     """Force and derivatives of film i with its journal at rest at `place` (2,) in m, of a film that keeps oil when this
     has settled in each of two neighbouring motions. total: omega_J + omega_S. Raises NotConverged."""
@@ -80,7 +86,7 @@ def films_at_rest(system: System, omega: float, resting: Array, near: Sequence[F
     """The films at omega rad/s in the displacements `resting` (n,) in m; near: in a motion near by, if known. Raises
     NotConverged."""
     journals = system.rotor.journals @ resting
-    turning = ring_speeds(system, held_rotor(system.rotor), omega, journals)
+    turning = ring_speeds(system, held_rotor(system.rotor, omega), omega, journals)
     totals = system.omegas(omega, turning)
     forces = tuple(
         settled_force(system, i, place, float(totals[i]), near[i] if near else None) for i, place in enumerate(journals)

@@ -130,7 +130,8 @@ RESPONSE_POINTS = (
     Column("backward", "m", "amplitude of the backward part", lambda found: abs(found.backward)),
     replace(GROWTH, value=lambda found: found.growth[:, None]),
     Column("eccentricity_max", "", "largest eccentricity of a journal on its orbit",
-           lambda found: found.eccentricity_max.max(axis=1)[:, None], shown=(Shown("eps", ".3g", table=RESPONSE),)),
+           lambda found: found.eccentricity_max.max(axis=1, initial=0.0)[:, None],
+           shown=(Shown("eps", ".3g", table=RESPONSE),)),
     Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", lambda found: np.array(found.validity)[:, None]),
 )  # fmt: skip
 

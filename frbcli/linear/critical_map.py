@@ -30,6 +30,7 @@ from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.turbocharger import turbocharger_rotor
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.findings import findings
+from frbcli.scene.keys import element_keys
 from frbcli.scene.turbocharger import all_modes, journals, wheels
 
 if TYPE_CHECKING:
@@ -71,13 +72,18 @@ def critical_map(
     """The map of the rotor of a case over a stiffness in N/m of each of its bearings, by default STIFFNESSES over
     DECADES; resting: of the case, for the stiffness of its films. Raises InputError if a stiffness is not positive."""
     require_films(case)
+    if case.elements:
+        problem = "has coefficients of its own, and the map is of a rotor on springs of one stiffness."
+        key = f"{element_keys(case)[0]}.kind"
+        fault = Fault(key, case.elements[0].kind, None, problem, "Leave --map out: the response has its own peaks.")
+        raise InputError(case.name or "case", (fault,))
     given = _default(case) if stiffness is None else np.array(sorted(stiffness), dtype=np.float64)
     if not len(given) or not (np.isfinite(given).all() and given[0] > 0.0):
         fault = Fault("stiffness", "", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".')
         raise InputError(case.name or "case", (fault,))
     plane = _plane(_alone(case))
     forward, backward = (np.array([_criticals(plane, k, sign) for k in given]) for sign in (-1.0, 1.0))
-    known = [(point.speed_Hz, film_springs(case, point.films)) for point in resting if point.films]
+    known = [(point.speed_Hz, film_springs(case, point.films)) for point in resting if point.rests]
     films = [(speed, springs) for speed, springs in known if springs]
     speeds, springs = np.array([speed for speed, _ in films]), np.array([found for _, found in films])
     return CriticalMap(case, given, forward, backward, speeds, springs.reshape(len(speeds), len(case.bearings)))

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from frbcli.case.model import altered
 from frbcli.case.schema import Case, FilmModel
 from frbcli.errors import FrbError, NotConverged
+from frbcli.linear.coefficients import coefficients_of
 from frbcli.linear.stability import eigenvalues
 from frbcli.linear.static_machine import StaticMachines
 from frbcli.scene.films import rings
@@ -59,8 +60,7 @@ def _modes(machines: StaticMachines, speeds_Hz: Sequence[float]) -> Iterator[tup
             machine = machines.at(omega, machine, with_error=False)
         except NotConverged:
             continue
-        stiffness = np.stack([film.stiffness for film in machine.films])
-        damping = np.stack([film.damping for film in machine.films])
+        stiffness, damping = coefficients_of(machine.films)
         values = eigenvalues(machine.system.rotor, omega, stiffness, damping)
         excited = values[(values.imag > 0.0) & (-values.real < DAMPED * np.abs(values))]
         yield speed, np.abs(excited) / (2.0 * math.pi)

@@ -13,7 +13,9 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
+from frbcli.linear.coefficients import coefficients_of
 from frbcli.linear.columns import DAMPED_MODES
+from frbcli.linear.linearised import state_matrix
 from frbcli.linear.stability import OSCILLATING, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import EQUAL, first_largest, ranks
@@ -87,11 +89,10 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     Raises InputError as stability does, and where there is no resting position.
     """
     system, (point,) = stability_points(case, [speed_Hz])
-    if not point.films:
+    if not point.rests:
         raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, point.problem, ""),))
     rotor = without_spins(system.rotor, system.ring_count)
-    stiffness = np.stack([film.stiffness for film in point.films])
-    damping = np.stack([film.damping for film in point.films])
+    stiffness, damping = coefficients_of(point.films)
     positions, along, to_scale, marks = _stations(case, rotor)
     modes = []
     for value, vector in _eigenvectors(rotor, 2.0 * math.pi * speed_Hz, stiffness, damping):
@@ -105,7 +106,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in modes), strict=True)]
     modes = [modes[i] for i in np.lexsort(keys)] if modes else []
     names = tuple(name for name, _ in rotor.points)
-    error = max(film.error for film in point.films)
+    error = max((film.error for film in point.films), default=math.nan)
     return DampedModes(case, speed_Hz, names, positions, to_scale, marks, tuple(modes), error)
 
 
@@ -113,12 +114,8 @@ def _eigenvectors(
     rotor: LinearRotor, omega: float, stiffness: Array, damping: Array
 ) -> list[tuple[complex, Amplitudes]]:
     """Eigenvalues with positive imaginary part in 1/s, and displacements (n,), as eigenvalues of stability.py."""
-    bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
-    k = rotor.stiffness + (bearings @ stiffness @ rotor.journals).sum(axis=0)
-    d = rotor.damping + omega * rotor.gyroscopic + (bearings @ damping @ rotor.journals).sum(axis=0)
     n = rotor.size
-    state = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(rotor.mass, np.hstack([k, d]))]])
-    values, vectors = np.linalg.eig(state)
+    values, vectors = np.linalg.eig(state_matrix(rotor, omega, stiffness, damping))
     chosen = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
     return [(complex(values[i]), vectors[:n, i]) for i in chosen]
 
@@ -146,7 +143,7 @@ def _stations(case: Case, rotor: LinearRotor) -> tuple[Array, Array, bool, tuple
         kept = kept_modes(kind, modes)
         along = np.zeros((len(modes.positions), 2, rotor.size))
         along[:, 0, :kept] = along[:, 1, kept : 2 * kept] = modes.shapes[:, :kept]
-        marks = [(bearing.name, bearing.position or 0.0) for bearing in case.bearings]
+        marks = [(bearing.name, bearing.position or 0.0) for bearing in case.given_bearings]
         marks += [(disk.name, disk.position) for disk in case.disks]
         return modes.positions, along, True, tuple(marks)
     journal = named["journal"]

@@ -94,7 +94,7 @@ class WarmMachines:
             system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
             resting = resting_position(system, omega, resting)
             journals = system.rotor.journals @ resting
-            spins = ring_speeds(system, held_rotor(system.rotor), omega, journals)
+            spins = ring_speeds(system, held_rotor(system.rotor, omega), omega, journals)
             power, flow = _film_heat(system, journals, np.concatenate([[omega], spins]))
             if self._concentric:
                 flow = self._heat.concentric * clearances**3 / viscosities

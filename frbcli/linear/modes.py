@@ -19,6 +19,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.rotor.order import first_largest, ranks
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, reduction_error, whirl_modes
+from frbcli.scene.elements import element_places, element_springs
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
 
@@ -62,9 +63,10 @@ class ModesAtSpeed:
 class Modes(Tabular):
     """Modes over speed.
 
-    stiffness_N_m: of each bearing, empty for the free rotor; positions_m: (k,) along the shaft; bearings, disks: names
-    and positions in m; free_Hz: slowest bending frequencies of the free rotor at rest; kept: modes of each plane after
-    the reduction of the case; error: what it leaves out at the highest speed, None for the free rotor.
+    stiffness_N_m: of each bearing, those with a film first, at the highest speed; empty for the free rotor;
+    positions_m: (k,) along the shaft; bearings, disks: names and positions in m; free_Hz: slowest bending frequencies
+    of the free rotor at rest; kept: modes of each plane after the reduction of the case; error: what it leaves out at
+    the highest speed, None for the free rotor.
     """
 
     case: Case
@@ -101,8 +103,9 @@ def natural_modes(
 ) -> Modes:
     """Natural modes of the turbocharger's rotor of a case.
 
-    stiffness: N/m, of each bearing or of all alike, the same in all directions; None leaves the rotor free. speeds_Hz:
-    rotor speeds, by default from standstill to the highest speed of the case. Raises InputError if the case has another
+    stiffness: N/m, of each bearing with a film or of all alike, the same in all directions, none where no bearing has
+    one; elements without a film are springs as element_springs says. None leaves the rotor free. speeds_Hz: rotor
+    speeds, by default from standstill to the highest speed of the case. Raises InputError if the case has another
     rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not as many as bearings.
     """
     require_films(case)
@@ -111,29 +114,33 @@ def natural_modes(
     springs = _springs(case, stiffness)
     _check(case, springs, speeds)
     modes = all_modes(case)
-    places = [journal.position for journal in journals(case)]
-    stations = np.stack([modes.at(place) for place in places])
-    held = stations[: len(springs)]
+    places = () if stiffness is None else (*journals(case), *element_places(case))
+    held = np.array([modes.at(place.position) for place in places]).reshape(len(places), len(modes.frequencies))
+
+    def on(omega: float) -> Array:
+        """(b,) N/m of all bearings."""
+        return springs if stiffness is None else np.concatenate([springs, element_springs(case, omega)])
+
     omega = 2 * math.pi * np.asarray(speeds, dtype=np.float64)
     kept = kept_modes(rotor, modes)
     return Modes(
         case,
-        tuple(springs.tolist()),
+        tuple(on(float(np.max(omega))).tolist()),
         modes.positions,
-        tuple((journal.name, journal.position) for journal in journals(case)),
+        tuple((journal.name, journal.position) for journal in (*journals(case), *element_places(case))),
         tuple((wheel.name, wheel.position) for wheel in wheels(case)),
         float(modes.weight[0] ** 2),
         tuple((modes.frequencies[RIGID : RIGID + SHOWN] / (2 * math.pi)).tolist()),
         kept,
-        tuple(_at_speed(modes, held, springs, value) for value in omega),
-        reduction_error(modes, kept, held, springs, float(np.max(omega))) if len(springs) else None,
+        tuple(_at_speed(modes, held, on(float(value)), value) for value in omega),
+        reduction_error(modes, kept, held, on(float(np.max(omega))), float(np.max(omega))) if places else None,
     )
 
 
 def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
     """Isotropic stiffness in N/m of each bearing of a case out of its films at rest: the mean of both directions, in
     series where a ring floats between two films. Cross stiffness is left out: it excites a whirl and carries no load.
-    Empty where a film has no direct stiffness, such as a full film in its centre."""
+    Empty where a film has no direct stiffness, such as a full film in its centre, and without films."""
     means = [0.5 * float(np.trace(film.stiffness)) for film in films]
     sizes = [float(np.abs(film.stiffness).max()) for film in films]
     if any(mean <= NO_STIFFNESS * size for mean, size in zip(means, sizes, strict=True)):

@@ -25,7 +25,9 @@ from frbcli.columns import Table, spread_table
 from frbcli.errors import Fault, InputError
 from frbcli.film.parabola import summit
 from frbcli.html import Tabular
+from frbcli.linear.coefficients import coefficients_of
 from frbcli.linear.columns import RESPONSE_POINTS
+from frbcli.linear.linearised import linearised
 from frbcli.linear.stability import StabilityPoint, default_speeds, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
@@ -73,6 +75,7 @@ class Response(Tabular):
         """(n, f) larger semi-axis of the orbit of each journal in its film over the gap that its resting position
         leaves, 1 - eccentricity."""
         left = 1.0 - np.array([[film.eccentricity for film in point.films] for point in self.resting])
+        left = left.reshape(self.clearances.shape)
         return np.asarray(larger_semi_axis(self.in_films) / left)
 
     @property
@@ -81,6 +84,7 @@ class Response(Tabular):
         journal can have, the orbit leaves the gap."""
         turn = np.exp(2j * np.pi * np.arange(ORBIT_PLACES) / ORBIT_PLACES)
         rest = np.array([[film.displacement for film in point.films] for point in self.resting])
+        rest = rest.reshape(*self.clearances.shape, 2)
         places = rest[..., None] + (self.in_films[..., None] * turn).real
         return np.asarray(np.hypot(places[:, :, 0], places[:, :, 1]).max(axis=-1))
 
@@ -88,7 +92,7 @@ class Response(Tabular):
     def validity(self) -> tuple[str, ...]:
         """At each speed "linear"; "doubtful" where a journal moves over more than DOUBTFUL of the gap left at rest; or
         "beyond-gap" where its orbit leaves the gap."""
-        pairs = zip(self.eccentricity_max.max(axis=1), self.gap_share.max(axis=1), strict=True)
+        pairs = zip(*(each.max(axis=1, initial=0.0) for each in (self.eccentricity_max, self.gap_share)), strict=True)
         return tuple(
             BEYOND_GAP if eccentricity >= 1.0 else DOUBTFUL_MOTION if share > DOUBTFUL else SOUND
             for eccentricity, share in pairs
@@ -135,7 +139,7 @@ def response(
     require_films(case)
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
     system, points = stability_points(case, asked, observe)
-    resting = [point for point in points if point.films]
+    resting = [point for point in points if point.rests]
     if not resting:
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise InputError(case.name or "case", (Fault("speed", "", None, problem, "Choose other speeds."),))
@@ -163,11 +167,8 @@ def response(
 def unbalance_motion(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Amplitudes:
     """(n,) complex amplitudes of all degrees of freedom at omega rad/s on bearings of stiffness and damping (films, 2,
     2) in N/m and N s/m."""
-    bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
-    k = rotor.stiffness + (bearings @ stiffness @ rotor.journals).sum(axis=0)
-    d = rotor.damping + omega * rotor.gyroscopic + (bearings @ damping @ rotor.journals).sum(axis=0)
-    pull = omega**2 * (rotor.unbalance_sin + 1j * rotor.unbalance_cos)
-    return np.asarray(np.linalg.solve(k + 1j * omega * d - omega**2 * rotor.mass, pull))
+    mass, d, k = linearised(rotor, omega, stiffness, damping)
+    return np.asarray(np.linalg.solve(k + 1j * omega * d - omega**2 * mass, omega**2 * rotor.unbalance))
 
 
 def larger_semi_axis(motion: Amplitudes) -> Array:
@@ -181,8 +182,7 @@ def _at(rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitud
     """Motion (p, 2) of the points, forces (films, 2), and motion (films, 2) of the journals in their films at one
     speed."""
     omega = 2.0 * math.pi * point.speed_Hz
-    stiffness = np.stack([film.stiffness for film in point.films])
-    damping = np.stack([film.damping for film in point.films])
+    stiffness, damping = coefficients_of(point.films)
     q = unbalance_motion(rotor, omega, stiffness, damping)
     journals = rotor.journals @ q
     forces = -np.einsum("fij,fj->fi", stiffness + 1j * omega * damping, journals)

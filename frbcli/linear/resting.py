@@ -41,10 +41,12 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
 
 def resting_films(system: System, omega: float, start: Array | None = None) -> tuple[Array, tuple[FilmForce, ...]]:
     """As resting_position, with the films there; without them where nothing turns and nothing has to be carried."""
-    held, clearances = held_rotor(system.rotor), np.array(system.clearances)[:, None]
+    held, clearances = held_rotor(system.rotor, omega), np.array(system.clearances)[:, None]
     loads = held.load.reshape(-1, 2)
     size = np.linalg.norm(loads, axis=1, keepdims=True)
     along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
+    if not system.names:
+        return held.shape, ()
     starts = [np.zeros_like(loads), OUTER_START * clearances * along]
     if start is not None:
         starts.insert(0, system.rotor.journals @ start)

@@ -21,9 +21,10 @@ from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.html import Tabular
-from frbcli.linear.coefficients import RestingFilm
+from frbcli.linear.coefficients import RestingFilm, coefficients_of
 from frbcli.linear.columns import point_columns
 from frbcli.linear.heat import WarmMachine
+from frbcli.linear.linearised import state_matrix
 from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import fastest_first, ranks
@@ -65,6 +66,11 @@ class StabilityPoint:
     def status(self) -> str:
         """ "resting" | "not-converged"."""
         return "not-converged" if self.problem else "resting"
+
+    @property
+    def rests(self) -> bool:
+        """Whether a resting position was found."""
+        return not self.problem
 
     @property
     def oscillating(self) -> Eigenvalues:
@@ -201,12 +207,7 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
 
     Ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
     """
-    bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
-    k = rotor.stiffness + (bearings @ stiffness @ rotor.journals).sum(axis=0)
-    d = rotor.damping + omega * rotor.gyroscopic + (bearings @ damping @ rotor.journals).sum(axis=0)
-    n = rotor.size
-    state = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(rotor.mass, np.hstack([k, d]))]])
-    values = np.linalg.eigvals(state).astype(complex)
+    values = np.linalg.eigvals(state_matrix(rotor, omega, stiffness, damping)).astype(complex)
     # frequencies that are equal but for round-off are one, and the real parts decide
     frequency = np.abs(values.imag)
     equal = ranks(frequency, float(np.max(np.abs(values))))
@@ -228,7 +229,7 @@ def _point(
 def _at_rest(machine: MachineAtRest, speed: float) -> StabilityPoint:
     """The point at a speed in Hz of a machine that rests."""
     system, films = machine.system, machine.films
-    stiffness, damping = np.stack([film.stiffness for film in films]), np.stack([film.damping for film in films])
+    stiffness, damping = coefficients_of(films)
     values = eigenvalues(without_spins(system.rotor, system.ring_count), machine.omega, stiffness, damping)
     rings = tuple((machine.at_rest.ring_speeds / (2 * math.pi)).tolist())
     return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm)
@@ -237,7 +238,7 @@ def _at_rest(machine: MachineAtRest, speed: float) -> StabilityPoint:
 def _threshold(case: Case, machines: StaticMachines, sweep: Sequence[StabilityPoint]) -> tuple[Threshold | None, str]:
     """The lowest speed at which the growth passes zero from below; a note where there is none, or where the rotor
     becomes stable once more."""
-    resting = [point for point in sweep if point.films]
+    resting = [point for point in sweep if point.rests]
     if not resting:
         return None, "No threshold: there is no resting position in the whole range of speeds."
     slowest, fastest = resting[0], resting[-1]

@@ -17,7 +17,7 @@ from frbcli.analysis.signals import joined, points, speed_at
 from frbcli.errors import Fault, InputError
 from frbcli.plot.envelope import at_times
 from frbcli.plot.orbit import LAST_s
-from frbcli.plot.signals import MICRO, clearance, cut, ends, heading, motion
+from frbcli.plot.signals import MICRO, cut, ends, heading, motion, shell
 from frbcli.plot.style import BLUE, GREY, new_figure, styled
 from frbcli.results.kinds import PICTURES
 from frbcli.results.place import require_places
@@ -75,7 +75,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Any
     lines = []
     for axes, bearing in zip(figure.subplots(1, len(bearings), squeeze=False)[0], bearings, strict=True):
         x, y = (MICRO * at_times(run, part, times) for part in motion(run, joined("journal", bearing)))
-        _prepare(axes, bearing, MICRO * clearance(run, bearing), float(np.max(np.hypot(x, y))))
+        _prepare(axes, bearing, _radius(run, bearing), float(np.max(np.hypot(x, y))))
         trail = axes.plot([], [], color=BLUE, linewidth=1.0)[0]
         dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
         lines.append((x, y, trail, dot))
@@ -96,9 +96,15 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Any
     return figure, draw
 
 
+def _radius(run: Run, bearing: str) -> float:
+    """Of the circle around a journal in um, 0 without a film."""
+    return MICRO * (shell(run, bearing) or 0.0)
+
+
 def _prepare(axes: Axes, bearing: str, radius: float, reach: float) -> None:
     axes.set_title(bearing)
-    axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
+    if radius > 0.0:
+        axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
     widest = 1.08 * max(radius, reach)
     axes.set_xlim(-widest, widest)
     axes.set_ylim(-widest, widest)

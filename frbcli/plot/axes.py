@@ -92,7 +92,7 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
 def campbell(found: Stability, ax: Axes | None = None) -> Axes:
     """Damped eigenfrequencies over the rotor speed; filled dots grow."""
     ax = _axes(ax)
-    draw_frequencies(ax, [point for point in found.sweep if point.films])
+    draw_frequencies(ax, [point for point in found.sweep if point.rests])
     ax.set_xlabel("rotor speed in Hz")
     legend_beside(ax)
     return ax

@@ -21,7 +21,7 @@ def campbell_figure(stability: Stability) -> Figure:
     Motions that grow are filled dots in both panels, at zero frequency where they do not oscillate. Motions that decay
     without oscillating have no frequency and are left out, those faster than the frequency axis as well.
     """
-    points = [point for point in stability.sweep if point.films]
+    points = [point for point in stability.sweep if point.rests]
     case = stability.case
     with styled():
         figure = new_figure(case.title or case.name, "eigenvalues about the resting position", height=5.8)

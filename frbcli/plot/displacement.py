@@ -3,14 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.signals import joined, located, points
+from frbcli.analysis.signals import Column, Values, joined, located, points
+from frbcli.plot.curves import draw_curves
 from frbcli.plot.envelope import curve
 from frbcli.plot.signals import MICRO, cut, heading, labels, motion
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.store import Run
+
+
+@dataclass(frozen=True)
+class Distance:
+    """The distance of a point from the axis, um; read in pieces like a signal."""
+
+    x: Column
+    y: Column
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    def __getitem__(self, where: slice) -> Values:
+        return np.asarray(MICRO * np.hypot(self.x[where], self.y[where]))
+
+
+def draw_distances(axes: Axes, runs: Sequence[Run]) -> None:
+    """The distances of all journals and disks from the axis, for machines without films."""
+    nodes = [joined(kind, name) for kind in ("journal", "disk") for name in points(runs[0].signals, kind)]
+    curves = [(node.replace("_", " "), [Distance(*motion(run, node)) for run in runs]) for node in nodes]
+    draw_curves(axes, runs, curves, "time", (None, None))
+    axes.set_ylim(bottom=0.0)
+    axes.set_ylabel("distance in µm")
 
 
 def displacement_figure(

@@ -11,7 +11,7 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from frbcli.analysis.signals import joined, points
-from frbcli.plot.signals import MICRO, clearance, cut, ends, heading, labels, motion
+from frbcli.plot.signals import MICRO, cut, ends, heading, labels, motion, shell
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
@@ -54,9 +54,10 @@ def draw_orbits(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[flo
         x, y = (values * MICRO for values in visible_steps(*signals, first, last))
         axes.plot(x, y, color=colour, linewidth=0.9, label=label)
         axes.plot(x[:1], y[:1], color=colour, marker="o", markersize=4.0)
-        radius = clearance(run, bearing) * MICRO
-        circles.add(radius)
-        widest = max(widest, radius, _reach(*signals, first, last) * MICRO)
+        room = shell(run, bearing)
+        if room is not None:
+            circles.add(room * MICRO)
+        widest = max(widest, *circles, _reach(*signals, first, last) * MICRO)
     for radius in circles:
         axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
         axes.annotate(

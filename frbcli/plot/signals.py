@@ -10,7 +10,7 @@ from typing import Any
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.revolutions import CELLS
-from frbcli.analysis.signals import bearing_clearance, joined, located, points
+from frbcli.analysis.signals import bearing_clearance, films, in_film, joined, located, points
 from frbcli.case.load import LARGEST_FILE
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.toml import TomlFault, parse
@@ -68,12 +68,20 @@ def cut(run: Run, from_time: float | None, to_time: float | None) -> tuple[int, 
 
 
 def clearance(run: Run, bearing: str = "") -> float:
-    """How far in m a journal can move in a bearing: its clearance, of a floating ring C_i + C_o."""
-    known = [length for name, length in run.references.items() if name.startswith("clearance_m")]
+    """How far in m a journal can move in a bearing: its clearance, of a floating ring C_i + C_o; of a machine without
+    films the length that stands for it."""
+    known = [length for name, length in run.references.items() if name.startswith(("clearance_m", "length_m"))]
     length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
     if length > 0.0:
         return length
     raise refuse(run.path, "lacks the clearance to which amplitudes refer.", "Run the case again.")
+
+
+def shell(run: Run, bearing: str = "") -> float | None:
+    """The clearance of a bearing in m, None of one without a film, where no shell is drawn."""
+    told = any(True for _ in films(run.signals))  # a measured run may not say where it has films
+    room = in_film(run, bearing) if told else "length_m" not in run.references
+    return clearance(run, bearing) if room else None
 
 
 def case_tables(run: Run) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from matplotlib.patches import Circle
 
 from frbcli.analysis.signals import located, speed_at
 from frbcli.analysis.spectrum import Spectrogram
-from frbcli.plot.signals import MICRO, bearing_of, clearance, cut, ends, motion
+from frbcli.plot.signals import MICRO, bearing_of, cut, ends, motion, shell
 from frbcli.plot.style import BLUE, GREY, styled
 from frbcli.plot.waterfall import orders
 from frbcli.results.records import SPEED
@@ -49,8 +49,9 @@ def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal
     x, y = (MICRO * part[first:last] for part in motion(run, signal))
     axes.plot(x, y, color=BLUE, linewidth=0.8)
     middle, reach = np.zeros(2), float(np.max(np.hypot(x, y)))
-    if located(run, signal)[0] == "journal":
-        radius = MICRO * clearance(run, bearing_of(run, signal))
+    room = shell(run, bearing_of(run, signal)) if located(run, signal)[0] == "journal" else None
+    if room is not None:
+        radius = MICRO * room
         axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.0))
         reach = max(reach, radius)
     extent = 0.5 * max(float(np.ptp(x)), float(np.ptp(y)))

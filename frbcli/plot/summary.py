@@ -1,4 +1,4 @@
-"""Summary of a run: eccentricity with its events, waterfall, rotor speed."""
+"""Summary of a run: eccentricity or distance with its events, waterfall, rotor speed."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from frbcli.analysis.signals import joined, points
+from frbcli.analysis.signals import films, joined, points
 from frbcli.analysis.subsynchronous import whirl_names
+from frbcli.plot.displacement import draw_distances
 from frbcli.plot.eccentricity import draw_eccentricity
 from frbcli.plot.envelope import curve
 from frbcli.plot.signals import ends, events, heading, is_searchable
@@ -34,7 +35,8 @@ NAMES = {
 
 
 def summary_figure(run: Run) -> Figure:
-    """Eccentricity with the events marked, waterfall of the journal and rotor speed over one time axis.
+    """Eccentricity, or without films the distance of all points, with the events marked, waterfall of the journal and
+    rotor speed over one time axis.
 
     Raises RunFileError if the run holds no samples.
     """
@@ -49,7 +51,8 @@ def summary_figure(run: Run) -> Figure:
     with styled():
         figure = new_figure(title, ", ".join(word for word in words if word), height=7.6)
         above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
-        draw_eccentricity(above, [run])
+        draw = draw_eccentricity if any(True for _ in films(run.signals)) else draw_distances
+        draw(above, [run])
         above.set_xlim(begin, end)
         legend_beside(above)
         if len(run) >= FEWEST_SAMPLES:

@@ -146,6 +146,8 @@ def _apart(run: Run, signal: str) -> float | None:
 
 def level_label(run: Run, signal: str) -> str:
     """What the levels of a signal are relative to."""
+    if "length_m" in run.references:
+        return f"amplitude relative to {1e6 * clearance(run):.3g} µm in dB"
     ringed = bearing_of(run, signal) in points(run.signals, "ring")
     return f"amplitude relative to {'C$_i$ + C$_o$' if ringed else 'the clearance'} in dB"
 

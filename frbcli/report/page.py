@@ -13,9 +13,11 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from frbcli.analysis.signals import films
 from frbcli.case.listing import values
 from frbcli.case.load import load_case_text
 from frbcli.errors import Fault, FrbError, InputError, printable
+from frbcli.plot.displacement import displacement_figure
 from frbcli.plot.eccentricity import eccentricity_figure
 from frbcli.plot.film_signals import film_signal_figure
 from frbcli.plot.levels import levels
@@ -153,8 +155,9 @@ def _cards(run: Run, found: Sequence[dict[str, Any]]) -> list[tuple[str, str]]:
         ratio = first["frequency_ratio"]
         share = "" if ratio in (None, 1.0) else f", {ratio:.3f} ω"
         cards.append((f"{first['speed_Hz']:.1f} Hz", words + share))
-    largest = max((float(np.max(run[name])) for name in run.signals if name.startswith("eccentricity")), default=0.0)
-    cards.append((f"{largest:.3f}", "largest eccentricity"))
+    eccentricities = [float(np.max(run[name])) for name in run.signals if name.startswith("eccentricity")]
+    if eccentricities:
+        cards.append((f"{max(max(eccentricities), 0.0):.3f}", "largest eccentricity"))
     if run.error.get("eccentricity") is not None:
         cards.append((f"{run.error['eccentricity']:.1e}", "stated error of the eccentricity"))
     if "cpu_s" in run.cost:
@@ -180,7 +183,9 @@ def _note(run: Run, signal: str, words: str) -> str:
 
 def _courses(run: Run) -> list[Shown]:
     """Pictures over time of all that the run holds."""
-    figures = [(eccentricity_figure([run]), "Eccentricity.")]
+    figures = [(displacement_figure([run]), "Displacement.")]
+    if any(True for _ in films(run.signals)):
+        figures = [(eccentricity_figure([run]), "Eccentricity.")]
     if any(name.startswith("ring_speed") for name in run.signals):
         figures.append((ring_speed_figure([run]), "Speed of the rings over that of the rotor."))
     if any(name.startswith(OIL_CONTENT) for name in run.signals):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from frbcli.case.bearing import AxialGrooves, Bores, CircumferentialGroove, FilmGeometry, Pocket, SingleFilmBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
+from frbcli.report.element_symbols import symbol
 from frbcli.report.svg import box, curve, drawing, element, line, text
 from frbcli.scene.films import film_places
 
@@ -22,6 +23,7 @@ HOUSING = 0.45  # thickness of a shell over the radius of its film
 SPAN, DISK = 5.0, 2.2  # of a rotor without a shaft: distance of its bearings over their width, disk over their journal
 ROUND, SHOWN = 200.0, 0.16  # size of a film around the axis; clearance there over the radius
 AROUND = 181  # points of a circle
+NO_WIDTH, NO_RADIUS = 0.02, 0.0125  # of journals that have no dimensions, m
 DENSITY = 7850.0  # kg/m^3 of steel, for the thickness of a disk without inertias
 
 
@@ -48,6 +50,8 @@ def rotor_sketch(case: Case) -> tuple[str, str]:
         return _turbocharger(case), "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
     if isinstance(case.rotor, TurbochargerRotor):
         return "", "The shaft of this rotor is in a file of its own and is not drawn."
+    if not case.bearings:
+        return _symmetric(case), "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
     return _symmetric(case), "Bearings to scale; shaft and disk have no dimensions in this model."
 
 
@@ -93,7 +97,7 @@ def _supply(film: FilmGeometry, at: float, outer: float, scale: _Scale) -> Itera
 
 def _largest_radius(case: Case) -> float:
     films = [b if isinstance(b, SingleFilmBearing) else b.outer for b in case.bearings]
-    return max((1.0 + HOUSING) * 0.5 * film.diameter for film in films)
+    return max(((1.0 + HOUSING) * 0.5 * film.diameter for film in films), default=0.0)
 
 
 def _turbocharger(case: Case) -> str:
@@ -116,6 +120,10 @@ def _turbocharger(case: Case) -> str:
         if bearing.position is not None:
             parts += _bearing_parts(case, number, bearing.position, scale)
             parts.append(_named(bearing.name, bearing.position, scale, half + 16.0))
+    for each in case.elements:
+        at = each.position or 0.0
+        parts += symbol(each, scale.left + per_m * at, scale.middle, per_m * _radius_at(case, at))
+        parts.append(_named(each.name, at, scale, half + 16.0))
     for disk, radius, _ in disks:
         parts.append(_named(f"{disk.name} {1e3 * disk.mass:.3g} g", disk.position, scale, -per_m * radius - 6.0))
     return _finish(parts, scale, half, length)
@@ -123,26 +131,58 @@ def _turbocharger(case: Case) -> str:
 
 def _symmetric(case: Case) -> str:
     assert not isinstance(case.rotor, TurbochargerRotor)
-    bearing = case.bearings[0]
-    film = bearing if isinstance(bearing, SingleFilmBearing) else bearing.inner
-    span, journal = SPAN * film.width, 0.5 * film.diameter
+    width, journal = _journal(case)
+    span = SPAN * width
     disk = max(DISK * journal, 1.1 * _largest_radius(case))
-    half_width = 0.5 * max(film.width, _outer_width(case))
+    half_width = 0.5 * max(width, _outer_width(case))
     per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
     half = per_m * disk
     scale = _Scale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
     thin = 0.45 * journal if case.rotor.kind == "jeffcott" else journal
     parts = [scale.box(0.0, span, 0.0, thin, "vague")]
-    parts.append(scale.box(0.5 * span - 0.3 * film.width, 0.5 * span + 0.3 * film.width, 0.0, disk, "vague"))
+    parts.append(scale.box(0.5 * span - 0.3 * width, 0.5 * span + 0.3 * width, 0.0, disk, "vague"))
     for at in (0.0, span):
         parts.append(scale.box(at - half_width, at + half_width, 0.0, journal, "shaft"))
-        parts += _bearing_parts(case, 0, at, scale)
+        if case.bearings:
+            parts += _bearing_parts(case, 0, at, scale)
+        for number, each in enumerate(case.elements):
+            place = at + half_width * _place(case, number) * (1.0 if at else -1.0)
+            parts += symbol(each, scale.left + per_m * place, scale.middle, per_m * journal)
         parts.append(_named("bearing", at, scale, half + 16.0))
     parts.append(_named(f"{case.rotor.mass:.4g} kg", 0.5 * span, scale, -half - 6.0))
-    return _finish(parts, scale, half, None)
+    return _finish(parts, scale, half, None, bool(case.bearings))
+
+
+def _place(case: Case, number: int) -> float:
+    """Of an element of a symmetric rotor, from the middle of a journal outwards over half its width: beside the film,
+    or spread over the journal."""
+    if case.bearings:
+        return 1.25 + 0.5 * number
+    return 2.0 * (number + 0.5) / len(case.elements) - 1.0
+
+
+def _journal(case: Case) -> tuple[float, float]:
+    """Width and radius of a journal in m; of a machine without films, which has no dimensions, of any."""
+    if not case.bearings:
+        return NO_WIDTH, NO_RADIUS
+    bearing = case.bearings[0]
+    film = bearing if isinstance(bearing, SingleFilmBearing) else bearing.inner
+    return film.width, 0.5 * film.diameter
+
+
+def _radius_at(case: Case, position: float) -> float:
+    """Outer radius of a shaft in m at a position."""
+    end = 0.0
+    for section in case.shaft:
+        end += section.length
+        if position <= end:
+            return 0.5 * section.diameter
+    return 0.5 * case.shaft[-1].diameter
 
 
 def _outer_width(case: Case) -> float:
+    if not case.bearings:
+        return NO_WIDTH
     bearing = case.bearings[0]
     return bearing.width if isinstance(bearing, SingleFilmBearing) else bearing.outer.width
 
@@ -151,14 +191,15 @@ def _named(words: str, at: float, scale: _Scale, y: float) -> str:
     return text(scale.left + scale.per_m * at, scale.middle + y, words)
 
 
-def _finish(parts: list[str], scale: _Scale, half: float, length: float | None) -> str:
-    """With the axis and a bar for the scale."""
+def _finish(parts: list[str], scale: _Scale, half: float, length: float | None, to_scale: bool = True) -> str:
+    """With the axis and a bar for the scale, where there is one."""
     height = 2.0 * half + 86.0
     bar = _round_length((WIDTH - 2.0 * MARGIN) / scale.per_m / 6.0)
     y, x = height - 14.0, MARGIN
     parts.append(line(8.0, scale.middle, WIDTH - 8.0, scale.middle, "axis"))
-    parts.append(line(x, y, x + scale.per_m * bar, y, "bar"))
-    parts.append(text(x + scale.per_m * bar + 8.0, y + 4.0, f"{1e3 * bar:g} mm", anchor="start"))
+    if to_scale:
+        parts.append(line(x, y, x + scale.per_m * bar, y, "bar"))
+        parts.append(text(x + scale.per_m * bar + 8.0, y + 4.0, f"{1e3 * bar:g} mm", anchor="start"))
     if length is not None:
         parts.append(text(WIDTH - MARGIN, y + 4.0, f"shaft of {1e3 * length:g} mm", anchor="end"))
     return drawing(WIDTH, height, parts, "rotor and bearings, cut along the axis")

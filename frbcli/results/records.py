@@ -159,7 +159,7 @@ def _is_complete(record: dict[str, Any]) -> bool:
 
 
 def _is_reference(name: str, value: Any) -> bool:
-    return _is_finite(value) and (not name.startswith("clearance_m") or value >= SMALLEST)
+    return _is_finite(value) and (not name.startswith(("clearance_m", "length_m")) or value >= SMALLEST)
 
 
 def _is_event(record: Any) -> bool:

@@ -25,12 +25,16 @@ class HeldRotor:
     following: Array
 
 
-def held_rotor(rotor: LinearRotor) -> HeldRotor:
-    """The rotor under its static load as its journals see it; what neither spring nor film holds, the angle of a
-    ring, stays at zero. Raises NotConverged if the bearings do not hold the rotor."""
+def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
+    """The rotor at omega rad/s under its static load as its journals see it; what neither spring nor film holds, the
+    angle of a ring, stays at zero. The speed counts where stiffnesses depend on it. Raises NotConverged if the bearings
+    do not hold the rotor."""
+    rotor = rotor.at(omega)
     n, p = rotor.size, rotor.journals.reshape(-1, rotor.size)
     count = len(p)
     loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
+    if np.any(rotor.static_load[loose]):
+        raise NotConverged("The bearings do not hold the rotor: none has a stiffness or a film. Give one to them.")
     held = np.block([[rotor.stiffness + np.diag(loose.astype(float)), p.T], [p, np.zeros((count, count))]])
     given = np.zeros((n + count, 1 + count))
     given[:n, 0] = rotor.static_load

@@ -1,14 +1,21 @@
 """The one linear system that every rotor builds.
 
 M q'' + (D + Omega G) q' + K q = f_static + unbalance(alpha) + sum over films of P^T F
+
+Elements whose forces are linear are part of M, D and K; where their coefficients depend on the speed, `over_speed`
+holds what they add to the matrices, and `at` gives the rotor at a speed.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from frbcli.rotor.over_speed import LinearPart, summed
 
 Array = NDArray[np.float64]
 
@@ -23,6 +30,7 @@ class LinearRotor:
     journals: (films, 2, n): P, the x- and y-displacement of each film's journal relative to its shell.
     multiplicity: (films,) how many equal bearings one film stands for (2 in a symmetric rotor).
     points: names and (2, n) maps of the points that a run records and whose error is controlled.
+    over_speed: what elements add to mass, damping and stiffness at a speed, None where nothing depends on it.
     """
 
     mass: Array
@@ -35,11 +43,53 @@ class LinearRotor:
     journals: Array
     multiplicity: Array
     points: tuple[tuple[str, Array], ...]
+    over_speed: LinearPart | None = None
 
     @property
     def size(self) -> int:
         """Number of degrees of freedom."""
         return len(self.mass)
+
+    @property
+    def unbalance(self) -> NDArray[np.complex128]:
+        """(n,) kg m: at a constant speed Omega the unbalance pulls with Re(Omega^2 unbalance exp(i alpha))."""
+        return np.asarray(self.unbalance_sin + 1j * self.unbalance_cos)
+
+    def at(self, omega: float) -> LinearRotor:
+        """The rotor at omega rad/s, with matrices that do not depend on the speed any more, but for the gyroscopic
+        term."""
+        if self.over_speed is None:
+            return self
+        stiffness, damping, mass = self.over_speed.at(omega)
+        return replace(
+            self,
+            mass=self.mass + mass,
+            damping=self.damping + damping,
+            stiffness=self.stiffness + stiffness,
+            over_speed=None,
+        )
+
+    def with_parts(self, parts: Sequence[LinearPart]) -> LinearRotor:
+        """The rotor with linear parts on all of its degrees of freedom: constant ones join its matrices."""
+        stiffness, damping, mass = self.stiffness, self.damping, self.mass
+        for part in parts:
+            if part.constant:
+                stiffness, damping, mass = (
+                    mine + more[0]
+                    for mine, more in ((stiffness, part.stiffness), (damping, part.damping), (mass, part.mass))
+                )
+        own = () if self.over_speed is None else (self.over_speed,)
+        changing = [*own, *(part for part in parts if not part.constant)]
+        return replace(self, stiffness=stiffness, damping=damping, mass=mass, over_speed=summed(changing))
+
+
+Real = TypeVar("Real", float, Array)
+
+
+def unbalance_shares(alpha: Real, omega: Real, sine: Real, cosine: Real) -> tuple[Real, Real]:
+    """What multiplies unbalance_cos and unbalance_sin in the force of the unbalance (2.3), 1/s^2, at the angular
+    acceleration alpha and the speed omega of the rotor; sine and cosine: of its angle."""
+    return alpha * cosine - omega**2 * sine, alpha * sine + omega**2 * cosine
 
 
 def planar(degrees: int, x: int, y: int) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.over_speed import LinearPart
 
 Array = NDArray[np.float64]
 
@@ -54,6 +55,7 @@ def with_rings(
         journals=np.stack(films),
         multiplicity=np.array(counts),
         points=tuple(points),
+        over_speed=_bordered_part(rotor, added),
     )
 
 
@@ -72,6 +74,7 @@ def with_spins(rotor: LinearRotor, inertias: Sequence[float]) -> LinearRotor:
         unbalance_sin=np.concatenate([rotor.unbalance_sin, np.zeros(added)]),
         journals=np.concatenate([rotor.journals, np.zeros((*rotor.journals.shape[:2], added))], axis=2),
         points=tuple((name, _widened(place, added)) for name, place in rotor.points),
+        over_speed=_bordered_part(rotor, added),
     )
 
 
@@ -90,7 +93,12 @@ def without_spins(rotor: LinearRotor, count: int) -> LinearRotor:
         unbalance_sin=rotor.unbalance_sin[:-count],
         journals=rotor.journals[:, :, :-count],
         points=tuple((name, place[:, :-count]) for name, place in rotor.points),
+        over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(count),
     )
+
+
+def _bordered_part(rotor: LinearRotor, added: int) -> LinearPart | None:
+    return None if rotor.over_speed is None else rotor.over_speed.bordered(added)
 
 
 def _widened(place: Array, added: int) -> Array:

@@ -32,7 +32,7 @@ class Wheel:
 
 @dataclass(frozen=True)
 class Journal:
-    """The place of a bearing. position: of its middle, m."""
+    """The place of a bearing, with a film or without one. position: of its middle, m."""
 
     name: str
     position: float
@@ -60,9 +60,11 @@ def turbocharger_rotor(
     modal_damping: float,
     external_damping: float,
     gravity: float,
+    others: Sequence[Journal] = (),
 ) -> LinearRotor:
     """The rotor in the given modes, which are its degrees of freedom: n of the x-plane, then n of the y-plane.
 
+    journals: those in films; others: places of elements that are no films, which a run records like journals.
     modal_damping: ratio to the critical damping of every elastic mode; external_damping: of each wheel against the
     ground, N s/m; gravity in m/s^2.
     """
@@ -76,8 +78,8 @@ def turbocharger_rotor(
         cos, sin = wheel.unbalance * math.cos(wheel.phase), wheel.unbalance * math.sin(wheel.phase)
         unbalance_cos += np.outer([cos, sin], shape)
         unbalance_sin += np.outer([-sin, cos], shape)
-    maps = [_of(both, modes.at(journal.position)) for journal in journals]
-    points = [(f"journal_{journal.name}", place) for journal, place in zip(journals, maps, strict=True)]
+    maps = [_of(both, modes.at(journal.position)) for journal in (*journals, *others)]
+    points = [(f"journal_{journal.name}", place) for journal, place in zip((*journals, *others), maps, strict=True)]
     points += [(f"disk_{wheel.name}", _of(both, modes.at(wheel.position))) for wheel in wheels]
     return LinearRotor(
         mass=np.eye(2 * n),
@@ -87,7 +89,7 @@ def turbocharger_rotor(
         static_load=np.concatenate([np.zeros(n), -gravity * modes.weight]),
         unbalance_cos=unbalance_cos.ravel(),
         unbalance_sin=unbalance_sin.ravel(),
-        journals=np.stack(maps),
+        journals=np.array(maps[: len(journals)]).reshape(len(journals), 2, 2 * n),
         multiplicity=np.ones(len(journals)),
         points=tuple(points),
     )

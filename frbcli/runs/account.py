@@ -11,6 +11,12 @@ def account(run: Run) -> list[tuple[str, str, str]]:
     """Rows of a table, what and how much and a remark: cost, oil that passed, stated errors."""
     cost, error = run.cost, run.error
     film = error.get("film_force_relative")
+    in_films = "length_m" not in run.references
+
+    def kept(row: tuple[str, str, str]) -> list[tuple[str, str, str]]:
+        """A row about films, if a bearing has one."""
+        return [row] if in_films else []
+
     against = "against a finer mesh" if error.get("model_relative") is None else "of the short-bearing theory"
     return [
         ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.2g} ms/h"),
@@ -19,14 +25,21 @@ def account(run: Run) -> list[tuple[str, str, str]]:
             f"{cost['steps']}",
             f"{cost['steps_per_revolution']:.3g} per revolution, {cost['rejected_steps']} rejected",
         ),
-        ("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each"),
+        *kept(("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each")),
         *_oil_rows(run),
         *_heat_rows(run),
-        ("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes"),
-        ("error, time integration", f"{error['time_integration']:.1e}", "of the eccentricity"),
-        ("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}"),
+        *kept(("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes")),
+        ("error, time integration", f"{error['time_integration']:.1e}", _of(run)),
+        *kept(("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}")),
         *_error_rows(error),
     ]
+
+
+def _of(run: Run) -> str:
+    """What the error of the time integration is of."""
+    if "length_m" not in run.references:
+        return "of the eccentricity"
+    return f"of displacements, over {1e6 * run.references['length_m']:.4g} um"
 
 
 def _oil_rows(run: Run) -> list[tuple[str, str, str]]:

@@ -46,7 +46,7 @@ class FewerCells:
         films = [_largest(apart[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True)]
         runs = samples[:, :n], other[:, :n]
         eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
-        points = [_largest(apart[:, :n], selection, system.clearances[0]) for _, selection in rotor.points]
+        points = [_largest(apart[:, :n], selection, system.length) for _, selection in rotor.points]
         spins = float(np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0))
         top = max(float(np.abs(samples[:, 2 * n]).max(initial=0.0)), 1e-300)
         first = 2 * n + 1

@@ -17,6 +17,7 @@ from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.film_error import film_force_errors
 from frbcli.runs.oil import oil_defect
 from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.elements import element_places, element_springs
 from frbcli.scene.planned import Plan
 from frbcli.scene.segments import Segment
 from frbcli.scene.system import System
@@ -63,7 +64,7 @@ def error_budget(
         "coupling": None if plan.coupling in (SEMI, APART) else NEWTON_SHARE * plan.tolerance,
         "modal_reduction": modal_reduction(case, system, samples),
         "cells": None if cells is None else cells.eccentricity,
-        "eccentricity": fading + in_films,
+        "eccentricity": fading + in_films if system.names else None,
         "displacement": LASTING * whole + in_points,
         "ring_speed": fading + cells.ring_speed if cells is not None and system.ring_count else None,
         "oil_fraction": fading + cells.oil_fraction if cells is not None and system.remembers else None,
@@ -140,7 +141,8 @@ def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
         return None
     if not np.all(springs > 0.0):
         return None
-    stations = np.stack([modes.at(journal.position) for journal in journals(case)])
+    springs = np.concatenate([springs, element_springs(case, float(samples[len(samples) // 2][2 * system.rotor.size]))])
+    stations = np.stack([modes.at(place.position) for place in (*journals(case), *element_places(case))])
     top = 2.0 * math.pi * max(case.speed.start, case.speed.end)
     return reduction_error(modes, kept, stations, springs, top).frequency
 
@@ -170,5 +172,5 @@ def _journals(system: System) -> Iterable[tuple[Array, float]]:
 
 
 def _points(system: System) -> Iterable[tuple[Array, float]]:
-    """Disks and all other points; displacements are relative to the clearance of the first film."""
-    return ((selection, system.clearances[0]) for _, selection in system.rotor.points)
+    """Disks and all other points; displacements are relative to the length of the system."""
+    return ((selection, system.length) for _, selection in system.rotor.points)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.linear import LinearRotor, unbalance_shares
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
@@ -73,12 +73,15 @@ def film_signals(
 def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> Array:
     """(k, films, 2) N, on the journal by one bearing: what the equation of the rotor leaves for the films."""
     alpha, omega, angle = np.array([profile.rotation(float(t)) for t in samples.times]).reshape(-1, 3).T
-    sine, cosine = np.sin(angle), np.cos(angle)
+    along, across = unbalance_shares(alpha, omega, np.sin(angle), np.cos(angle))
     a = samples.noted[:, : rotor.size]
     left = a @ rotor.mass.T + samples.v @ rotor.damping.T + samples.q @ rotor.stiffness.T - rotor.static_load
+    if rotor.over_speed is not None:
+        for i, (stiffness, damping, mass) in enumerate(map(rotor.over_speed.at, omega.tolist())):
+            left[i] += mass @ a[i] + damping @ samples.v[i] + stiffness @ samples.q[i]
     left = left + omega[:, None] * (samples.v @ rotor.gyroscopic.T)
-    left = left - (alpha * cosine - omega**2 * sine)[:, None] * rotor.unbalance_cos
-    left = left - (alpha * sine + omega**2 * cosine)[:, None] * rotor.unbalance_sin
+    left = left - along[:, None] * rotor.unbalance_cos
+    left = left - across[:, None] * rotor.unbalance_sin
     rows = rotor.journals.reshape(-1, rotor.size) * np.repeat(rotor.multiplicity, 2)[:, None]
     return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
 

@@ -71,7 +71,8 @@ def header(
         versions={PROGRAM: version_of(PROGRAM), "python": platform.python_version()}
         | {package: version_of(package) for package in PACKAGES}
         | model_record(case),
-        references={"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.clearances[0]}
+        references=({} if system.names else {"length_m": system.length})
+        | ({"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.length} if system.names else {})
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
         | {f"{CLEARANCE_STEP}_{number}_s": segment.start for number, segment in enumerate(segments[1:], start=1)}
         | ({} if critical_speeds is None else {CRITICAL_SPEEDS: float(len(critical_speeds))})

@@ -54,6 +54,7 @@ FIRST_BUDGET, BUDGET, GROWTH = 4, 5000, 8.0
 CHUNK_s = 0.1
 # A run with this many times the expected steps makes no progress and is stopped.
 RUNAWAY, FEWEST_STEPS = 100, 2_000_000
+UNBOUNDED = 1e6  # displacement over the length of a machine without films from which it counts as unbounded
 
 
 @dataclass(frozen=True)
@@ -204,7 +205,15 @@ class March:
             status = self._change()
         if status == RUNNING and self._state.numbers[STEPS] > self._most_steps:
             status = STUCK
+        if status == RUNNING and not self._system.names and self._grown() > UNBOUNDED:
+            status = STUCK
         return status, signals
+
+    def _grown(self) -> float:
+        """Largest displacement of a point over the length of a machine without films, where no shell ends the motion
+        of an unstable rotor."""
+        places = (selection @ self._state.q for _, selection in self._system.rotor.points)
+        return max(float(np.hypot(*place)) for place in places) / self._system.length
 
     def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
@@ -301,7 +310,7 @@ class March:
             t_s=t,
             end_s=end,
             speed_Hz=float(self._profile.speed(np.array([t]))[0]) / (2 * math.pi),
-            eccentricity=float(np.max(np.hypot(here[:, 0], here[:, 1]))),
+            eccentricity=float(np.max(np.hypot(here[:, 0], here[:, 1]), initial=0.0)),
             steps=int(numbers[STEPS]),
             steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
             simulated_ms_per_hour=1e3 * 3600.0 * rate,

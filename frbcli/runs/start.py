@@ -11,6 +11,8 @@ from frbcli.case.schema import Start
 from frbcli.errors import NotConverged
 from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
+from frbcli.rotor.linear import unbalance_shares
+from frbcli.rotor.over_speed import no_part
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.system import System
 from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
@@ -23,7 +25,8 @@ def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
     """The system and its speed as the time loop takes them."""
     rotor = system.rotor
     # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
-    observed = np.concatenate([points / system.clearances[0] for _, points in rotor.points])
+    observed = np.concatenate([points / system.length for _, points in rotor.points])
+    table = rotor.over_speed or no_part(rotor.size)
     return RotorData(
         mass=rotor.mass,
         damping=rotor.damping,
@@ -45,6 +48,11 @@ def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
         ring_of=system.bodies,
         drag=np.array(system.drags),
         torque_terms=np.array([int(system.torque == "all"), _factor(system)], dtype=np.int64),
+        table_speeds=table.speeds,
+        table_mass=table.mass,
+        table_damping=table.damping,
+        table_stiffness=table.stiffness,
+        follows_speed=rotor.over_speed is not None or (not system.names and bool(np.any(rotor.gyroscopic))),
     )
 
 
@@ -64,12 +72,12 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
     rotor = system.rotor
     q, v = np.zeros(rotor.size), np.zeros(rotor.size)
     if start.displacement is not None:
-        held = held_rotor(rotor)
+        held = held_rotor(rotor, float(profile.speeds[0]))
         q = held.shape + held.following @ np.outer(system.clearances, start.displacement).ravel()
     elif start.position == "resting":
         omega = float(profile.speeds[0])
         q = resting_position(system, omega)
-        v[list(system.spins)] = ring_speeds(system, held_rotor(rotor), omega, rotor.journals @ q)
+        v[list(system.spins)] = ring_speeds(system, held_rotor(rotor, omega), omega, rotor.journals @ q)
     return state_at(system, profile, q, v)
 
 
@@ -105,11 +113,11 @@ def accelerations(
 
     rotation: angular acceleration, speed and angle of the rotor, see SpeedProfile.
     """
-    rotor, (alpha, omega, angle) = system.rotor, rotation
-    sine, cosine = math.sin(angle), math.cos(angle)
+    alpha, omega, angle = rotation
+    rotor, (along, across) = system.rotor.at(omega), unbalance_shares(alpha, omega, math.sin(angle), math.cos(angle))
     forces = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
-    forces = forces + (alpha * cosine - omega**2 * sine) * rotor.unbalance_cos
-    forces = forces + (alpha * sine + omega**2 * cosine) * rotor.unbalance_sin
+    forces = forces + along * rotor.unbalance_cos
+    forces = forces + across * rotor.unbalance_sin
     for selection, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
         forces = forces + count * selection.T @ force
     return np.asarray(np.linalg.solve(rotor.mass, forces), dtype=np.float64)

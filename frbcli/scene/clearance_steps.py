@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TypeVar
 
-from frbcli.case.bearing import Bearing, FilmGeometry, FloatingRingBearing
+from frbcli.case.bearing import FilmBearing, FilmGeometry, FloatingRingBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
@@ -26,7 +26,7 @@ def step_times(case: Case) -> tuple[float, ...]:
 
 def case_at(case: Case, time: float) -> Case:
     """The case with the clearances that it has at a time in s."""
-    return altered(case, {"bearings": tuple(_bearing_at(bearing, time) for bearing in case.bearings)})
+    return case.with_bearings([_bearing_at(bearing, time) for bearing in case.bearings])
 
 
 def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
@@ -52,7 +52,7 @@ def _films(case: Case) -> Iterator[FilmGeometry]:
     return (place.geometry for place in film_places(case))
 
 
-def _bearing_at(bearing: Bearing, time: float) -> Bearing:
+def _bearing_at(bearing: FilmBearing, time: float) -> FilmBearing:
     if isinstance(bearing, FloatingRingBearing):
         both = {"inner": _film_at(bearing.inner, time), "outer": _film_at(bearing.outer, time)}
         return altered(bearing, both)

@@ -14,9 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.course import STAGES, Course, expected_course, runs_nearly_dry, whirl_speed
+from frbcli.scene.elements import changes_with_speed
 from frbcli.scene.films import film_places
 from frbcli.scene.planned import Plan
 from frbcli.scene.preparation import after_s, before_s, memory_B, rotor_size
@@ -56,8 +58,10 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     """Expected cost of a run along a speed profile."""
     course = expected_course(case, plan, profile)
     steps, solves = float(course.steps[-1]), float(course.solves[-1])
-    iterations = solves / max(steps * STAGES[plan.method] * len(film_places(case)), 1e-300)
-    loop_s = 1e-6 * solves * plan.form.solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
+    films = len(film_places(case))
+    iterations = solves / max(steps * STAGES[plan.method] * films, 1e-300) if films else 0.0
+    asked = solves if films else steps * STAGES[plan.method]  # without films, what a stage costs beside them
+    loop_s = 1e-6 * asked * plan.form.solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
     samples = profile.end / case.output.step
     before, after = before_s(case, plan), after_s(case, plan, loop_s * _quiet_share(case, profile, course), samples)
     return ExpectedCost(round(steps), round(solves), loop_s, before, after, memory_B(case, plan, samples))
@@ -72,11 +76,14 @@ def _quiet_share(case: Case, profile: SpeedProfile, course: Course) -> float:
 
 
 def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
-    """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve."""
+    """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve, but for an
+    inverse that is renewed in every stage."""
     n, m, stages = max(rotor_size(case), SMALL_ROTOR), 2 * len(film_places(case)), STAGES[plan.method]
+    follows = changes_with_speed(case) or (not case.bearings and isinstance(case.rotor, TurbochargerRotor))
+    renewed = stages * INVERSE_ns * rotor_size(case) ** 3 if follows else 0.0  # an inverse for each speed
     inverse, products = n**3 - SMALL_ROTOR**3, n**2 - SMALL_ROTOR**2
     journals = max(0, m**3 - SMALL_ROTOR**3)
-    return INVERSE_ns * inverse + stages * (PRODUCTS_ns * products + iterations * JOURNALS_ns * journals)
+    return renewed + INVERSE_ns * inverse + stages * (PRODUCTS_ns * products + iterations * JOURNALS_ns * journals)
 
 
 def clock(seconds: float) -> str:

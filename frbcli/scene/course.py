@@ -98,6 +98,8 @@ def whirl_speed(case: Case) -> float:
     """Rotor speed in rad/s from which a whirl is expected; 0 where nothing keeps the journal from it: rings, films
     that do not cavitate, films that run dry, a rotor without weight."""
     rotor, places = case.rotor, film_places(case)
+    if not places:
+        return math.inf
     free = rings(case) or runs_nearly_dry(case) or rotor.gravity == 0.0
     if not case.film.bearing_model:
         free = free or any(not law_named(name).cavitates for name in case.cavitations)
@@ -131,7 +133,7 @@ def _pressing_speed(case: Case) -> float:
     soft that its sag is larger than the clearance, which cannot press, for rotors without such a shaft or on rings,
     and for films that run nearly dry, which their fronts keep at short steps all along."""
     rotor = case.rotor
-    if not isinstance(rotor, JeffcottRotor) or rings(case) or runs_nearly_dry(case):
+    if not isinstance(rotor, JeffcottRotor) or not case.bearings or rings(case) or runs_nearly_dry(case):
         return math.inf
     square = rotor.shaft_stiffness / rotor.mass
     stiff = rotor.gravity / square < film_places(case)[0].geometry.clearance
@@ -154,11 +156,8 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
     The local error of a motion A cos(w t) is A (w h / SMOOTH)^p of a method with an embedded solution of order p - 1.
     """
     rotor, order = case.rotor, ERROR_ORDERS[plan.method]
-    clearance = film_places(case)[0].geometry.clearance
-    if isinstance(rotor, TurbochargerRotor):
-        eccentric = sum(disk.unbalance for disk in case.disks) / shaft_mass(case)
-    else:
-        eccentric = rotor.unbalance / rotor.mass
+    clearance = film_places(case)[0].geometry.clearance if case.bearings else plan.length
+    eccentric = unbalance_eccentricity(case)
 
     def steps(w: Array | float, size: Array | float) -> Array:
         return np.asarray(w / SMOOTH * (size / (plan.tolerance * clearance)) ** (1.0 / order), dtype=np.float64)
@@ -174,6 +173,14 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
         fronts *= max(law.fronts for law in _dry_laws(case))
         rate = np.maximum(rate, plan.form.steps_at_fronts(plan, fronts) * omega / (2.0 * math.pi))
     return rate
+
+
+def unbalance_eccentricity(case: Case) -> float:
+    """Distance in m of the centre of mass from the axis by the unbalance of a rotor, that of all disks in phase."""
+    rotor = case.rotor
+    if isinstance(rotor, TurbochargerRotor):
+        return sum(disk.unbalance for disk in case.disks) / shaft_mass(case)
+    return rotor.unbalance / rotor.mass
 
 
 def _summed(rate: Array, times: Array) -> Array:

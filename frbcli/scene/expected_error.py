@@ -13,7 +13,7 @@ REACH = 0.5  # usual eccentricity of a resting position, the factor of an error 
 @dataclass(frozen=True)
 class ExpectedError:
     """eccentricity: of the eccentricities until a whirl grows; film_force: relative, None where it is not known: for a
-    bearing model, and for cells, whose known error is that of the eccentricities."""
+    bearing model, without films, and for cells, whose known error is that of the eccentricities."""
 
     eccentricity: float
     film_force: float | None

@@ -17,6 +17,7 @@ from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import GIVEN, WHY
+from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
@@ -62,6 +63,8 @@ class FilmChoice:
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
     given = case.accuracy.mesh
+    if not case.bearings:
+        return FilmChoice(str(NO_FILM), NO_FILM, DEFAULT_MESH, None, 0.0, "", "")
     if case.film.bearing_model:
         each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
         return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
@@ -123,7 +126,7 @@ def all_clipped(case: Case) -> bool:
 
 def needs_cells(case: Case) -> bool:
     """Whether the films of a case are solved on volumes in a run."""
-    if case.film.bearing_model:
+    if case.film.bearing_model or not case.bearings:
         return False
     if case.film.solution == "cells":
         return True

@@ -12,6 +12,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.channels import MIDDLE, channel_faults
+from frbcli.scene.elements import element_faults
 from frbcli.scene.films import FilmPlace, film_places
 from frbcli.scene.heat_faults import heat_faults
 from frbcli.scene.keys import film_keys
@@ -25,8 +26,9 @@ def require_films(case: Case) -> None:
 
 
 def film_faults(case: Case) -> list[Fault]:
-    """Every reason why the films of a case cannot be modelled: its heat, its channels, its supplies and ends."""
-    faults = [*heat_faults(case), *channel_faults(case)]
+    """Every reason why the films of a case cannot be modelled: its heat, its channels, its supplies and ends; and
+    of its elements."""
+    faults = [*element_faults(case), *heat_faults(case), *channel_faults(case)]
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         faults += _supply_faults(case, key, place)
     return faults

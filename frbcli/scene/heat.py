@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.bearing import Bearing, ColdClearance, FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import ColdClearance, FilmBearing, FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
 from frbcli.film.grid import Array
@@ -107,7 +107,7 @@ class _Builder:
         concentric = np.array([_concentric(self._case, place.geometry) for place in self._places])
         return Heat(model, tuple(self._names), tuple(self._rings), np.array(self._start), concentric)
 
-    def _bearings(self) -> list[Bearing]:
+    def _bearings(self) -> list[FilmBearing]:
         """The bearing of each film."""
         return [b for b in self._case.bearings for _ in range(1 if isinstance(b, SingleFilmBearing) else 2)]
 

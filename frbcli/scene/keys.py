@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from frbcli.case.bearing import FloatingRingBearing, RingFilm
+from frbcli.case.elements import Element
 from frbcli.case.schema import Case
 
 
 def bearing_key(case: Case, index: int) -> str:
-    """The key of a bearing: "bearing", or "bearing.0" where there are several."""
-    return "bearing" if len(case.bearings) == 1 else f"bearing.{index}"
+    """The key of a bearing with a film: "bearing", or "bearing.0" where there are several, with or without one."""
+    return _key(case, [i for i, bearing in enumerate(case.given_bearings) if not isinstance(bearing, Element)][index])
+
+
+def element_keys(case: Case) -> tuple[str, ...]:
+    """The keys of the bearings without a film, in their order."""
+    return tuple(_key(case, i) for i, bearing in enumerate(case.given_bearings) if isinstance(bearing, Element))
+
+
+def _key(case: Case, place: int) -> str:
+    return "bearing" if len(case.given_bearings) == 1 else f"bearing.{place}"
 
 
 def film_keys(case: Case) -> tuple[str, ...]:

@@ -92,7 +92,7 @@ def _by_machine(case: Case) -> Iterator[_Asked]:
     yield _Asked(freedoms / 30.0, "rotor", f"{freedoms} degrees of freedom", "Keep fewer modes, or a lower cut-off.")
     yield _Asked(len(case.shaft) / 1e3, "shaft", f"{len(case.shaft)} sections", "Join neighbours that are alike.")
     yield _Asked(len(case.disks) / 100.0, "disk", f"{len(case.disks)} disks", "Join neighbours.")
-    yield _Asked(len(case.bearings) / 4.0, "bearing", f"{len(case.bearings)} bearings", "Take fewer.")
+    yield _Asked(len(case.given_bearings) / 4.0, "bearing", f"{len(case.given_bearings)} bearings", "Take fewer.")
     yield _Asked(steps / 10.0, "bearing.clearance_steps", f"{steps} steps", "Take fewer: each has its own films.")
 
 

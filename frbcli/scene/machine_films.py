@@ -20,6 +20,7 @@ from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
 from frbcli.film.kinds.elements import ElementFilms
+from frbcli.film.kinds.none import NoFilms
 from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms, TableFilms
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.published.data import element_film
@@ -32,6 +33,7 @@ from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import FilmPlace, centrifugal_pressures, film_places, make_law, volume_film
 from frbcli.scene.forms.cells import CELLS, cells_of
 from frbcli.scene.forms.models import GIVEN
+from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.solutions import SOLUTIONS
 from frbcli.scene.planned import Plan
@@ -45,8 +47,12 @@ SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 4.0, (2e-5, 1e-3)
 def make_films(case: Case, plan: Plan, top_Hz: float | None = None) -> Films:
     """The films of a case as its plan has them, tabulated where they have tables. top_Hz: largest speed of the rotor,
     default that of the run."""
-    makers = {CELLS: _cells, PUBLISHED: _elements, SOLUTIONS: _solutions, GIVEN: _models}
+    makers = {NO_FILM: _none, CELLS: _cells, PUBLISHED: _elements, SOLUTIONS: _solutions, GIVEN: _models}
     return makers.get(plan.form, _rectangles)(case, plan, top_Hz)
+
+
+def _none(_: Case, __: Plan, ___: float | None) -> Films:
+    return NoFilms()
 
 
 def _clearances(case: Case) -> tuple[float, ...]:

@@ -19,15 +19,19 @@ from frbcli.scene.cell_choice import KNEE
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.cost import clock, expected_cost
-from frbcli.scene.coupling import plan_coupling
+from frbcli.scene.coupling import FULL, plan_coupling
+from frbcli.scene.elements import element_decisions
 from frbcli.scene.expected_error import expected_error
 from frbcli.scene.film_choice import FINE_TARGET, LOOSE_TARGET, MIDDLE, FilmChoice, choose_films
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
+from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.plan_faults import plan_faults
 from frbcli.scene.planned import Decision, Plan
 from frbcli.scene.profiles import run_up_profile
+from frbcli.scene.reference_length import reference_length
 from frbcli.scene.supply import unfed_films
+from frbcli.units import display
 
 THEORIES = ("short", "finite")
 # Least steps per revolution of finite-volume films, and of films that are solved at every film call. More steps would
@@ -100,6 +104,8 @@ def _plan(case: Case, target: float) -> Plan:
     _decide_scene(case, decide)
     films = choose_films(case, target)
     model = chosen_model(case)
+    if not case.bearings:
+        return _without_films(case, films, target, decisions, decide)
     if model is not None:
         for decided in model_decisions(model):
             decide(*decided)
@@ -134,6 +140,29 @@ def _plan(case: Case, target: float) -> Plan:
     )
 
 
+def _without_films(case: Case, films: FilmChoice, target: float, decisions: list[Decision], decide: Decide) -> Plan:
+    """The plan of a machine whose bearings are all given by coefficients."""
+    length, reason = reference_length(case)
+    decide("length", display(length, "m"), f"what errors are relative to: {reason}")
+    method, tolerance, steps = _time_integration(case, films, target, decide)
+    return Plan(
+        theory=str(NO_FILM),
+        cavitation=case.film.cavitation,
+        form=NO_FILM,
+        mesh=films.mesh,
+        films=(),
+        cells=None,
+        film_error=0.0,
+        method=method,
+        tolerance=tolerance,
+        steps_per_revolution=steps,
+        coupling=FULL,
+        macro_step=None,
+        decisions=tuple(decisions),
+        length=length,
+    )
+
+
 def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Theory and cavitation."""
     decide("theory", films.theory, films.theory_why)
@@ -144,13 +173,15 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
 
 def _decide_scene(case: Case, decide: Decide) -> None:
     """Bearings, films and gap."""
-    places = film_places(case)
+    places, count = film_places(case), len(case.given_bearings)
     if isinstance(case.rotor, TurbochargerRotor):
-        decide("bearings", f"{len(case.bearings)} of {len(case.bearings)}", "the rotor is not symmetric")
+        decide("bearings", f"{count} of {count}", "the rotor is not symmetric")
     else:
         decide(
             "bearings", "1 of 2", "symmetric rotor and bearings: both journals have the same motion, forces count twice"
         )
+    for decided in element_decisions(case):
+        decide(*decided)
     if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
         decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
     for bearing in rings(case):

@@ -9,6 +9,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.clearance_steps import clearance_faults
 from frbcli.scene.coupling import APART, chosen_coupling, coupling_fault
+from frbcli.scene.elements import changes_with_speed
 from frbcli.scene.film_choice import all_clipped, needs_cells
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places, is_plain
@@ -19,6 +20,8 @@ from frbcli.scene.forms.solutions import solution_fault
 def plan_faults(case: Case) -> list[Fault]:
     """Every part of a case that cannot be modelled in a run."""
     faults = film_faults(case)
+    if not case.bearings:
+        return faults
     if case.film.bearing_model:
         from frbcli.scene.bearing_model_films import model_faults  # numba takes longer to import than a plan to make
 
@@ -39,6 +42,9 @@ def plan_faults(case: Case) -> list[Fault]:
     told = solution_fault(case, all_clipped(case), not (chained or needs_cells(case)))
     faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
     faults += published_faults(case)
+    if chosen_coupling(case.film.coupling, case.film.cavitation) == APART and changes_with_speed(case):
+        problem = "has a rotor of constant coefficients, and those of a bearing depend on the speed."
+        faults.append(Fault("film.coupling", APART, None, problem, "Write auto."))
     faults += signal_faults(case, needs_cells(case) or all_clipped(case))
     may_turn = needs_cells(case) and all(is_plain(p.geometry) for p in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
@@ -64,9 +70,9 @@ def signal_faults(case: Case, flow_known: bool) -> list[Fault]:
 
 def _bearing_faults(case: Case) -> list[Fault]:
     """Faults of the number of bearings."""
-    if len(case.bearings) == 1 or isinstance(case.rotor, TurbochargerRotor):
+    if len(case.bearings) <= 1 or isinstance(case.rotor, TurbochargerRotor):
         return []
-    both = "one [bearing], which stands for both of a symmetric rotor"
+    both = "one bearing with a film, which stands for both of a symmetric rotor, and any with given coefficients"
     return [_missing("bearing", f"{len(case.bearings)} bearings", (both,))]
 
 

@@ -28,7 +28,8 @@ class Plan:
     films: form and mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for
     other films; film_error: expected relative error of the forces; method: name of a time integration method;
     tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
-    COUPLINGS; macro_step: longest one in s of a co-simulation, else None."""
+    COUPLINGS; macro_step: longest one in s of a co-simulation, else None; length: m, in place of the clearance for
+    machines without films, see reference_length.py."""
 
     theory: str
     cavitation: str
@@ -43,6 +44,7 @@ class Plan:
     coupling: str
     macro_step: float | None
     decisions: tuple[Decision, ...]
+    length: float = 0.0
 
     def _repr_html_(self) -> str:
         """In a notebook: its decisions."""

@@ -81,7 +81,7 @@ def signal_count(case: Case) -> int:
     """Signals that a run records; with heat at most."""
     places, floating = film_places(case), rings(case)
     disks = len(case.disks) + isinstance(case.rotor, JeffcottRotor)
-    found = 2 + 2 * (len(case.bearings) + len(floating) + disks) + len(turning_rings(case))
+    found = 2 + 2 * (len(case.given_bearings) + len(floating) + disks) + len(turning_rings(case))
     found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
     found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
     if case.heat is not None:
@@ -117,7 +117,7 @@ def shaft_freedoms(case: Case) -> int:
     """Degrees of freedom of the shaft in a plane, before its reduction; none of a rotor without sections."""
     if not isinstance(case.rotor, TurbochargerRotor):
         return 0
-    return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.bearings))
+    return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.given_bearings))
 
 
 def shaft_mass(case: Case) -> float:

@@ -9,12 +9,13 @@ from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.ring import with_rings
+from frbcli.scene.elements import with_elements, without_journals
 from frbcli.scene.films import rings
 from frbcli.scene.turbocharger import make_turbocharger
 
 
 def make_rotor(case: Case) -> LinearRotor:
-    """The linear system of a case's rotor, with the masses of floating rings."""
+    """The linear system of a case's rotor, with the masses of floating rings and its elements."""
     rotor = case.rotor
     if isinstance(rotor, RigidRotor):
         made = rigid_rotor(rotor.mass, rotor.unbalance, rotor.external_damping, rotor.gravity)
@@ -29,8 +30,10 @@ def make_rotor(case: Case) -> LinearRotor:
             rotor.gravity,
         )
     else:
-        return make_turbocharger(case)
-    if not rings(case):
-        return made
-    masses = [None if isinstance(item, SingleFilmBearing) else item.ring.mass for item in case.bearings]
-    return with_rings(made, masses, rotor.gravity, [bearing.name for bearing in case.bearings])
+        return with_elements(case, make_turbocharger(case))
+    if not case.bearings:
+        made = without_journals(made)
+    if rings(case):
+        masses = [None if isinstance(item, SingleFilmBearing) else item.ring.mass for item in case.bearings]
+        made = with_rings(made, masses, rotor.gravity, [bearing.name for bearing in case.bearings])
+    return with_elements(case, made)

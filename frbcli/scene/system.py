@@ -26,7 +26,7 @@ class System:
     rotor: the linear system; films: see Films; names: of the films. bodies: (films, 2) what lies inside and outside of
     each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing in N m s, the Couette
     torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
-    torque: see FilmModel.
+    torque: see FilmModel; own_length: see length, 0 of a machine with films.
     """
 
     rotor: LinearRotor
@@ -38,11 +38,18 @@ class System:
     ring_count: int = 0
     laws: tuple[str, ...] = ()
     torque: str = "all"
+    own_length: float = 0.0
 
     @property
     def clearances(self) -> tuple[float, ...]:
         """(films,) m."""
         return self.films.clearances
+
+    @property
+    def length(self) -> float:
+        """What displacements count over that are in no film, m: the clearance of the first film, or without films a
+        length of the machine (reference_length.py)."""
+        return self.clearances[0] if self.clearances else self.own_length
 
     @property
     def remembering(self) -> tuple[bool, ...]:
@@ -75,12 +82,13 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
         rotor=rotor,
         films=make_films(case, plan, top_Hz),
         names=tuple(place.name for place in places),
-        bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64),
+        bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64).reshape(-1, 2),
         turning=turning(places, len(ringed), [turns_with_oil(case, place) for place in places]),
         drags=tuple(film_drag(case, place.geometry) for place in places),
         ring_count=len(ringed),
         laws=case.cavitations,
         torque=case.film.torque,
+        own_length=plan.length,
     )
 
 

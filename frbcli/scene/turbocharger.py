@@ -13,10 +13,13 @@ from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.reduction import RIGID, FreeModes, free_modes
 from frbcli.rotor.ring import with_rings
 from frbcli.rotor.turbocharger import Journal, Wheel, turbocharger_rotor, wheels_on_shaft
+from frbcli.scene.elements import element_places
+from frbcli.scene.films import rings
 
 
 def make_turbocharger(case: Case) -> LinearRotor:
-    """The reduced rotor of a case with its rings; films in the order of the bearings, inner before outer ones.
+    """The reduced rotor of a case with its rings, without its elements; films in the order of the bearings, inner
+    before outer ones.
 
     Raises InputError if the case has another rotor.
     """
@@ -29,7 +32,10 @@ def make_turbocharger(case: Case) -> LinearRotor:
         rotor.modal_damping,
         rotor.external_damping,
         rotor.gravity,
+        element_places(case),
     )
+    if not rings(case):
+        return reduced
     masses = [bearing.ring.mass if isinstance(bearing, FloatingRingBearing) else None for bearing in case.bearings]
     return with_rings(reduced, masses, rotor.gravity, [bearing.name for bearing in case.bearings])
 
@@ -57,7 +63,7 @@ def all_modes(case: Case) -> FreeModes:
         for part in case.shaft
     ]
     try:
-        return free_modes(wheels_on_shaft(sections, wheels(case), journals(case)))
+        return free_modes(wheels_on_shaft(sections, wheels(case), (*journals(case), *element_places(case))))
     except NotConverged as error:
         problem = f"is no shaft whose motion can be computed. {error}"
         remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."
@@ -88,5 +94,5 @@ def wheels(case: Case) -> tuple[Wheel, ...]:
 
 
 def journals(case: Case) -> tuple[Journal, ...]:
-    """The journals of a case, one per bearing."""
+    """The journals of a case, one per bearing with a film."""
     return tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in case.bearings)

@@ -43,4 +43,4 @@ def warm_case(case: Case, viscosities: Array, clearances: Array) -> Case:
             inner: RingFilm = altered(bearing.inner, next(values))
             outer: RingFilm = altered(bearing.outer, next(values))
             bearings.append(altered(bearing, {"inner": inner, "outer": outer}))
-    return altered(case, {"bearings": tuple(bearings), "thermal": None})
+    return altered(case.with_bearings(bearings), {"thermal": None})

@@ -28,7 +28,7 @@ from frbcli.solve.cell_films import (
 )
 from frbcli.solve.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.element_films import back_off, element_numbers, left_of_elements, move_elements
-from frbcli.solve.films import Work, have_cells, have_elements, have_scales
+from frbcli.solve.films import Work, have_cells, have_elements, have_none, have_scales
 from frbcli.solve.stage import FilmMotion
 from frbcli.solve.state import Array
 
@@ -122,6 +122,8 @@ def _scaled(
 
 @overload(film_numbers, jit_options=AS_KERNELS | {"forceinline": True}, strict=False)
 def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
+    if have_none(films):  # never asked
+        return lambda films, work, f, motion, g, s, iteration: (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if have_scales(work):
         if isinstance(films, types.UniTuple):  # one call less per film solve: a tenth of the time of a tabulated film
 

@@ -1,4 +1,4 @@
-"""The films in the time loop, compiled. Three kinds ride in it:
+"""The films in the time loop, compiled. Three kinds ride in it, or none at all, an empty tuple:
 
 - FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
 - VolumeFilms, all films together: cells with unknowns of their own, see cell_films.py;
@@ -16,6 +16,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import types
 from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS
@@ -84,6 +85,11 @@ class Scaled(NamedTuple):
 def have_scales(work: Any) -> bool:
     """Whether a type that the compiler knows is that of the work of tabulated films with heat."""
     return getattr(work, "instance_class", None) is Scaled
+
+
+def have_none(films: Any) -> bool:
+    """Whether a type that the compiler knows is that of no films, an empty tuple."""
+    return isinstance(films, types.BaseTuple) and len(films) == 0
 
 
 def have_cells(films: Any) -> bool:

@@ -15,9 +15,32 @@ E_STATIC, E_COS, E_SIN = range(3)
 
 
 @compiled(inline=True)
-def outdated(numbers: Array, g: float, speed: float, gyroscopic: bool) -> bool:
+def outdated(numbers: Array, g: float, speed: float, gyroscopic: bool, follows_speed: bool) -> bool:
     """Whether the inverse that the numbers tell of does not serve a stage with this g and speed."""
+    if follows_speed:
+        return bool(g != numbers[INVERSE_G] or speed != numbers[INVERSE_SPEED])
     return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
+
+
+@compiled()
+def add_table(rotor: RotorData, g: float, speed: float, dynamic: Array, right: Array) -> None:
+    """Add what elements put on the rotor at this speed to M + g D + g^2 K, and to the columns of D and K in `right`."""
+    n, last, below = rotor.mass.shape[0], rotor.table_speeds.shape[0] - 1, 0
+    while below < last and rotor.table_speeds[below + 1] <= speed:
+        below += 1
+    above = min(below + 1, last)
+    width = rotor.table_speeds[above] - rotor.table_speeds[below]
+    share = max(speed - rotor.table_speeds[below], 0.0) / width if width > 0.0 else 0.0
+    for i in range(n):
+        for j in range(n):
+            m, d = rotor.table_mass[below, i, j], rotor.table_damping[below, i, j]
+            k = rotor.table_stiffness[below, i, j]
+            m += share * (rotor.table_mass[above, i, j] - m)
+            d += share * (rotor.table_damping[above, i, j] - d)
+            k += share * (rotor.table_stiffness[above, i, j] - k)
+            dynamic[i, j] += m + g * (d + g * k)
+            right[i, j] += d
+            right[i, n + j] += k
 
 
 @compiled()
@@ -47,6 +70,8 @@ def prepare(
         right[i, 3 * n + 2] = rotor.unbalance_sin[i]
         for k in range(m):
             right[i, 3 * n + 3 + k] = selection[k, i] * rotor.multiplicity[k // 2]
+    if rotor.table_speeds.shape[0] > 0:
+        add_table(rotor, g, speed, dynamic, right)
     solve_dense(dynamic, right)
     for i in range(n):
         for j in range(n):

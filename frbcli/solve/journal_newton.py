@@ -49,7 +49,7 @@ def _solve_small(matrix: Array, film: Array) -> None:
         x, y = film[CORRECTION, 0], film[CORRECTION, 1]
         film[CORRECTION, 0] = (matrix[1, 1] * x - matrix[0, 1] * y) / det
         film[CORRECTION, 1] = (matrix[0, 0] * y - matrix[1, 0] * x) / det
-    else:
+    elif matrix.shape[0] > 0:
         right = film[CORRECTION : CORRECTION + 1].reshape(-1, 1)  # a view: solved in place
         solve_dense(matrix, right)
 

@@ -217,7 +217,7 @@ def _advance(
         for s in range(1, stages):
             t_s = t + moments[s] * step
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
-            if outdated(numbers, g, speed, gyroscopic):
+            if outdated(numbers, g, speed, gyroscopic, rotor.follows_speed):
                 prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
             predict(weights, s, step, q, v, stage_v, stage_a, at)
             start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, film)

@@ -37,6 +37,11 @@ class RotorData(NamedTuple):
     ring_of: NDArray[np.int64]  # (films, 2) ring inside and outside of each film, -1: the rotor or the housing
     drag: Array  # (films,) N m s: eta R^3 B / C of the whole bearing, see drag_integral
     torque_terms: NDArray[np.int64]  # (2,) whether Poiseuille's term counts; cavitation factor of Couette's
+    table_speeds: Array  # (s,) rad/s of what joins the next three, see LinearPart; none without
+    table_mass: Array  # (s, n, n), as the next two
+    table_damping: Array
+    table_stiffness: Array
+    follows_speed: bool  # whether the inverse is renewed at every change of the speed
 
 
 class Control(NamedTuple):

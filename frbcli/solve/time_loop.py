@@ -124,7 +124,7 @@ def _solve_stage(
     acceleration, speed, angle = rotation(
         rotor.profile_times, rotor.profile_speeds, rotor.profile_angles, piece, t_s
     )
-    if outdated(numbers, g, speed, rotor.has_gyroscopic):
+    if outdated(numbers, g, speed, rotor.has_gyroscopic, rotor.follows_speed):
         prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
     predict(weights, s, step, q, v, stage_v, stage_a, at)
     start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, film)

@@ -19,6 +19,7 @@ from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
 from frbcli.scene.coupling import COUPLINGS
+from frbcli.scene.elements import require_a_film
 from frbcli.scene.film_choice import DEFAULT_MESH
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.plan import THEORIES, make_plan
@@ -56,6 +57,7 @@ def accuracy(
     """
     require_films(case)
     _check_names(case, theories, couplings)
+    require_a_film(case, "the ladder is of films")
     if case.film.bearing_model:
         problem = "is a bearing model, which has no theories and meshes to compare."
         fault = Fault(

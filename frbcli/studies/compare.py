@@ -27,6 +27,7 @@ from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
 from frbcli.runs.standing import earlier_run, is_interrupted, standing_run
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.elements import require_a_film
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
@@ -150,6 +151,7 @@ def compare(
     allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
     """
     require_films(case)
+    require_a_film(case, "the comparison is of models of films")
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings, thermals)
     cases = [_with_models(case, variant) for variant in variants]

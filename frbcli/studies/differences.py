@@ -31,7 +31,8 @@ def difference(run: Run, reference: Run) -> Difference:
     count = min(int(np.searchsorted(run["time_s"], until, side="right")), len(run), len(reference))
     if count < 2:
         return Difference(np.nan, np.nan, until, {})
-    room = reference.references["clearance_m"]
+    lengths = reference.references
+    room = lengths["clearance_m"] if "clearance_m" in lengths else lengths["length_m"]
     top = float(np.max(np.abs(reference["speed_Hz"][:count])))
     apart: dict[str, Values] = {}
     for name in reference.signals:
@@ -39,7 +40,8 @@ def difference(run: Run, reference: Run) -> Difference:
             continue
         scale = room if name.endswith("_m") else max(top, 1e-300) if name.endswith("_Hz") else 1.0
         apart[name] = np.abs(run[name][:count] - reference[name][:count]) / scale
-    eccentricities = np.array([values for name, values in apart.items() if name.startswith("eccentricity")])
+    counted = "eccentricity" if "clearance_m" in lengths else ("journal", "disk")  # without films all displacements
+    eccentricities = np.array([values for name, values in apart.items() if name.startswith(counted)])
     return Difference(
         float(eccentricities.max()),
         float(np.sqrt(np.mean(eccentricities**2))),

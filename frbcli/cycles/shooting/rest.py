@@ -56,7 +56,7 @@ def settled(shooting: Shooting, omega: float) -> Rest | None:
     try:
         q = resting_position(system, omega)
         v = np.zeros_like(q)
-        v[list(system.spins)] = ring_speeds(system, held_rotor(system.rotor), omega, system.rotor.journals @ q)
+        v[list(system.spins)] = ring_speeds(system, held_rotor(system.rotor, omega), omega, system.rotor.journals @ q)
         return shooting.rest(wet_at(shooting.flow, q, v, omega), omega)
     except (NotConverged, Unreachable):
         return None

@@ -102,7 +102,7 @@ def _threshold(task: Task) -> SweepPoint:
     cost = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
     at = found.threshold
     if at is None:
-        status = FINISHED if any(point.films for point in found.sweep) else NOT_CONVERGED
+        status = FINISHED if any(point.rests for point in found.sweep) else NOT_CONVERGED
         return SweepPoint(task.number, task.settings, status, found.note, (), cost)
     event = {"kind": THRESHOLD, "film": None, "t_s": None, "speed_Hz": at.speed_Hz,
              "frequency_Hz": at.frequency_Hz, "frequency_ratio": at.whirl_ratio}  # fmt: skip

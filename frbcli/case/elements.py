@@ -1,0 +1,95 @@
+"""Elements of a machine that are no films, among its bearings: what they are given by.
+
+`frbcli/elements/` holds what they do. A new kind of element has its model here and joins `Element`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import Identifier, Label, Position, Quantity, SignedSpeed
+
+Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
+DampingEntry = Annotated[float, Quantity("N*s/m", "1e3 N*s/m")]
+MassEntry = Annotated[float, Quantity("kg", "0.1 kg")]
+AXES = ("xx", "xy", "yx", "yy")
+
+
+def _both_directions(given: object) -> object:
+    """One quantity as that of both directions, without cross-coupling."""
+    if isinstance(given, str | int | float) and not isinstance(given, bool):
+        return [[given, 0.0], [0.0, given]]
+    return given
+
+
+class _OneOrMatrix:
+    """The schema of one quantity or of a matrix, for editors."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return handler(source)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        matrix = handler(schema)
+        entry = matrix["prefixItems"][0]["prefixItems"][0]
+        return {"anyOf": [entry, matrix]}
+
+
+_Matrix = (BeforeValidator(_both_directions), _OneOrMatrix())
+StiffnessMatrix = Annotated[tuple[tuple[Entry, Entry], tuple[Entry, Entry]], *_Matrix]
+DampingMatrix = Annotated[
+    tuple[tuple[DampingEntry, DampingEntry], tuple[DampingEntry, DampingEntry]], *_Matrix
+]
+MassMatrix = Annotated[tuple[tuple[MassEntry, MassEntry], tuple[MassEntry, MassEntry]], *_Matrix]
+
+
+class CoefficientsOverSpeed(Model):
+    """Coefficients at several speeds, as they were read from a file: linear between them, constant beyond."""
+
+    source: Label = Field(default="", description="the file that they were read from")
+    speed: tuple[SignedSpeed, ...] = Field(description="of the rotor, ascending")
+    kxx: tuple[Entry, ...] = Field(description="stiffness at each speed")
+    kxy: tuple[Entry, ...] = Field(description="stiffness: force along -x by a displacement along y")
+    kyx: tuple[Entry, ...] = Field(description="stiffness")
+    kyy: tuple[Entry, ...] = Field(description="stiffness")
+    cxx: tuple[DampingEntry, ...] = Field(description="damping at each speed")
+    cxy: tuple[DampingEntry, ...] = Field(description="damping")
+    cyx: tuple[DampingEntry, ...] = Field(description="damping")
+    cyy: tuple[DampingEntry, ...] = Field(description="damping")
+    mxx: tuple[MassEntry, ...] = Field(default=(), description="mass at each speed; 0 without the four")
+    mxy: tuple[MassEntry, ...] = Field(default=(), description="mass")
+    myx: tuple[MassEntry, ...] = Field(default=(), description="mass")
+    myy: tuple[MassEntry, ...] = Field(default=(), description="mass")
+
+
+class CoefficientsBearing(Model):
+    """Given coefficients between shaft and ground: a seal, a mount, any bearing. The force on the shaft is
+    -K d - C d' - M d'' with the displacement d of the shaft from the middle."""
+
+    kind: Literal["coefficients"] = Field(description="given stiffness, damping and mass, without a film")
+    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
+    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
+    stiffness: StiffnessMatrix | None = Field(
+        default=None, description="[[xx, xy], [yx, yy]], or one quantity for both directions; 0 if not given"
+    )
+    damping: DampingMatrix | None = Field(
+        default=None, description="[[xx, xy], [yx, yy]], or one quantity for both directions; 0 if not given"
+    )
+    mass: MassMatrix | None = Field(
+        default=None, description="[[xx, xy], [yx, yy]], or one quantity for both directions; 0 if not given"
+    )
+    file: Label = Field(
+        default="",
+        description="in place of the three: coefficients over speed, .toml as frb bearing --ross or ROSS writes it, or "
+        ".csv with the columns speed_Hz, kxx, kxy, kyx, kyy, cxx to cyy and perhaps mxx to myy; from the case's folder",
+    )
+    over_speed: CoefficientsOverSpeed | None = Field(
+        default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
+    )
+
+
+Element = CoefficientsBearing
+EMPTY_MATRIX = ((0.0, 0.0), (0.0, 0.0))

@@ -1,0 +1,40 @@
+"""The films of a machine that has none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from frbcli.film.grid import Array
+from frbcli.film.kinds.contract import Films
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.rectangles.film_force import FilmData
+
+
+@dataclass(frozen=True)
+class NoFilms(Films):
+    """No film at all."""
+
+    clearances: tuple[float, ...] = ()
+
+    @property
+    def loop(self) -> Any:
+        """What the time loop takes."""
+        return ()
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        """There is none."""
+        raise IndexError(i)
+
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        """There is none."""
+        raise IndexError(i)
+
+    def heat_ends(self) -> Any:
+        """See Films.heat_ends."""
+        return ()
+
+    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
+        """See Films.smooth."""
+        return ()

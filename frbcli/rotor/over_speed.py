@@ -1,0 +1,80 @@
+"""Linear parts of a rotor: forces -K d - C d' - M d'' that elements put on it, constant or over its speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LinearPart:
+    """Coefficients at s >= 1 speeds of the rotor, linear between them and constant beyond the first and the last.
+
+    speeds: (s,) rad/s, ascending, with the sign of the rotation; stiffness in N/m, damping in N s/m, mass in kg: (s, c,
+    c) on the c coordinates that an element sees, or on all degrees of freedom of a rotor. At one speed they are
+    constant.
+    """
+
+    speeds: Array
+    stiffness: Array
+    damping: Array
+    mass: Array
+
+    @property
+    def constant(self) -> bool:
+        """Whether the coefficients do not depend on the speed."""
+        return len(self.speeds) == 1
+
+    def at(self, omega: float) -> tuple[Array, Array, Array]:
+        """(c, c) stiffness, damping and mass at omega rad/s."""
+        place = int(np.searchsorted(self.speeds, omega, side="right")) - 1
+        below, above = max(place, 0), min(place + 1, len(self.speeds) - 1)
+        width = self.speeds[above] - self.speeds[below]
+        share = (omega - self.speeds[below]) / width if place >= 0 and width > 0.0 else 0.0
+        stiffness, damping, mass = (
+            each[below] + share * (each[above] - each[below]) for each in (self.stiffness, self.damping, self.mass)
+        )
+        return stiffness, damping, mass
+
+    def seen_by(self, place: Array, count: float = 1.0) -> LinearPart:
+        """The part on all degrees of freedom of a rotor. place: (c, n) the coordinates that it sees out of those of the
+        rotor; count: of equal elements that it stands for."""
+        stiffness, damping, mass = (count * (place.T @ each @ place) for each in self._matrices)
+        return LinearPart(self.speeds, stiffness, damping, mass)
+
+    def bordered(self, added: int) -> LinearPart:
+        """The part of a rotor with so many degrees of freedom more, on which it does not act."""
+        wider = ((0, 0), (0, added), (0, added))
+        return LinearPart(self.speeds, *(np.pad(each, wider) for each in self._matrices))
+
+    def cut(self, count: int) -> LinearPart:
+        """The part of a rotor without its last `count` degrees of freedom."""
+        return LinearPart(self.speeds, *(each[:, :-count, :-count] for each in self._matrices))
+
+    @property
+    def _matrices(self) -> tuple[Array, Array, Array]:
+        return self.stiffness, self.damping, self.mass
+
+
+def summed(parts: Sequence[LinearPart]) -> LinearPart | None:
+    """All parts of a rotor as one, at the speeds of all of them: the sum of lines between speeds is such a line. None
+    without any."""
+    if not parts:
+        return None
+    speeds = np.unique(np.concatenate([part.speeds for part in parts]))
+    found = [[part.at(float(omega)) for omega in speeds] for part in parts]
+    stiffness, damping, mass = (
+        np.sum([[matrices[i] for matrices in rows] for rows in found], axis=0) for i in range(3)
+    )
+    return LinearPart(speeds, stiffness, damping, mass)
+
+
+def no_part(size: int) -> LinearPart:
+    """At no speed, for a rotor with so many degrees of freedom."""
+    nothing = np.zeros((0, size, size))
+    return LinearPart(np.zeros(0), nothing, nothing, nothing)

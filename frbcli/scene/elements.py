@@ -1,0 +1,96 @@
+"""The elements of a case in its rotor: where they act, what they add to it, and how the plan tells of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.elements.table import kind_of
+from frbcli.errors import Fault, InputError
+from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.turbocharger import Journal
+from frbcli.scene.keys import element_keys
+
+
+def element_points(case: Case) -> tuple[str, ...]:
+    """What the points of the rotor are called at which the elements act: of a symmetric rotor both journals, which move
+    as one."""
+    if isinstance(case.rotor, TurbochargerRotor):
+        return tuple(f"{kind_of(element).point}_{element.name}" for element in case.elements)
+    return ("journal",) * len(case.elements)
+
+
+def element_places(case: Case) -> tuple[Journal, ...]:
+    """Names and positions of the elements of a turbocharger's shaft."""
+    return tuple(Journal(element.name, element.position or 0.0) for element in case.elements)
+
+
+def with_elements(case: Case, rotor: LinearRotor) -> LinearRotor:
+    """The rotor of a case with the linear parts of its elements. A symmetric rotor has each of them twice."""
+    maps: dict[str, Array] = dict(rotor.points)
+    count = 1.0 if isinstance(case.rotor, TurbochargerRotor) else 2.0
+    parts = [
+        kind_of(element).linear(element).seen_by(maps[point], count)
+        for element, point in zip(case.elements, element_points(case), strict=True)
+    ]
+    return rotor.with_parts(parts) if parts else rotor
+
+
+def changes_with_speed(case: Case) -> bool:
+    """Whether coefficients of an element depend on the speed of the rotor."""
+    return any(not kind_of(element).linear(element).constant for element in case.elements)
+
+
+def element_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
+    """What the plan says of the elements: choice, value, reason."""
+    for element in case.elements:
+        value, reason = kind_of(element).told(element)
+        yield "bearings", f"{element.name}: {value}".removeprefix(": "), reason
+
+
+def element_faults(case: Case) -> list[Fault]:
+    """Every reason why the elements of a case cannot be modelled."""
+    keyed = zip(element_keys(case), case.elements, strict=True)
+    return [fault for key, element in keyed for fault in kind_of(element).faults(key, element)]
+
+
+def element_springs(case: Case, omega: float) -> Array:
+    """(e,) N/m of each element at omega rad/s: the mean of the direct stiffness of both directions, as far as it holds
+    the shaft; cross-coupling, damping and mass are left out."""
+    stiffness = (kind_of(element).linear(element).at(omega)[0] for element in case.elements)
+    return np.array([max(0.5 * float(np.trace(each)), 0.0) for each in stiffness])
+
+
+def without_film(case: Case, what: str) -> list[Fault]:
+    """The fault of a case in which no bearing has a film, where `what` is of films alone."""
+    if case.bearings:
+        return []
+    problem = f"has no film, and {what}."
+    key = element_keys(case)[0]
+    return [Fault(f"{key}.kind", case.elements[0].kind, None, problem, "Add a bearing with a film.")]
+
+
+def require_a_film(case: Case, what: str) -> None:
+    """Raises InputError for a case in which no bearing has a film, see without_film."""
+    if faults := without_film(case, what):
+        raise InputError(case.name or "case", tuple(faults))
+
+
+def speed_dependent(case: Case, what: str) -> list[Fault]:
+    """The faults of elements whose coefficients depend on the speed, where `what` needs constant ones."""
+    problem = f"depends on the speed, and {what}."
+    remedy = "Give constant stiffness, damping and mass, those at the speed of interest."
+    return [
+        Fault(f"{key}.over_speed", element.name, None, problem, remedy)
+        for key, element in zip(element_keys(case), case.elements, strict=True)
+        if not kind_of(element).linear(element).constant
+    ]
+
+
+def without_journals(rotor: LinearRotor) -> LinearRotor:
+    """The rotor without any film: no journal of it moves in one."""
+    return replace(rotor, journals=np.zeros((0, 2, rotor.size)), multiplicity=np.zeros(0))
