@@ -63,9 +63,9 @@ UNBOUNDED = 1e6  # displacement over the length of a machine without films from 
 
 @dataclass(frozen=True)
 class Progress:
-    """The progress of a run. Times in s, speed in Hz; eccentricity: the largest of all films now, NaN without any; cpu_s: so
-    far, and over_plan: over what the plan expected until now; for_error: of the second run,
-    from which the error follows."""
+    """The progress of a run. Times in s, speed in Hz; eccentricity: the largest of all films now, NaN without any;
+    cpu_s: so far, and over_plan: over what the plan expected until now; for_error: of the second run, from which the
+    error follows."""
 
     t_s: float
     end_s: float
