@@ -77,9 +77,10 @@ def progress_line(progress: Progress) -> str:
     """One line of at most 80 columns: time, speed, eccentricity, steps per revolution, pace, time left."""
     per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
     whose, pace = ("its error: ", "") if progress.for_error else ("", f"{progress.simulated_ms_per_hour:.2g} ms/h  ")
+    eps = "" if math.isnan(progress.eccentricity) else f"eps {progress.eccentricity:5.3f}  "
     line = (
         f"{whose}{progress.t_s:.3f}/{progress.end_s:.4g} s  {progress.speed_Hz:5.1f} Hz  "
-        f"eps {progress.eccentricity:5.3f}  {per_turn} steps/rev  {pace}{_clock(progress.left_s)} left"
+        f"{eps}{per_turn} steps/rev  {pace}{_clock(progress.left_s)} left"
     )
     return line if len(line) <= COLUMNS else line[: COLUMNS - 1] + "…"
 

@@ -59,9 +59,9 @@ UNBOUNDED = 1e6  # displacement over the length of a machine without films from 
 
 @dataclass(frozen=True)
 class Progress:
-    """The progress of a run. Times in s, speed in Hz; eccentricity: the largest of all films now; cpu_s: so
-    far, and over_plan: over what the plan expected until now; for_error: of the second run,
-    from which the error follows."""
+    """The progress of a run. Times in s, speed in Hz; eccentricity: the largest of all films now, NaN without any;
+    cpu_s: so far, and over_plan: over what the plan expected until now; for_error: of the second run, from which the
+    error follows."""
 
     t_s: float
     end_s: float
@@ -310,7 +310,7 @@ class March:
             t_s=t,
             end_s=end,
             speed_Hz=float(self._profile.speed(np.array([t]))[0]) / (2 * math.pi),
-            eccentricity=float(np.max(np.hypot(here[:, 0], here[:, 1]), initial=0.0)),
+            eccentricity=float(np.max(np.hypot(here[:, 0], here[:, 1]))) if len(here) else math.nan,
             steps=int(numbers[STEPS]),
             steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
             simulated_ms_per_hour=1e3 * 3600.0 * rate,

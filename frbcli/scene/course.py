@@ -63,8 +63,9 @@ class Course:
     solves: Array
 
     def share(self, time: float) -> float:
-        """Share of the film solves until a time in s."""
-        return float(np.interp(time, self.times, self.solves) / max(self.solves[-1], 1e-300))
+        """Share of the film solves until a time in s, without films of the steps."""
+        done = self.solves if self.solves[-1] > 0.0 else self.steps
+        return float(np.interp(time, self.times, done) / max(done[-1], 1e-300))
 
 
 def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> Course:
