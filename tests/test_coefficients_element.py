@@ -472,7 +472,8 @@ def test_the_file_of_a_bearing_sheet_and_a_csv_give_the_same(tmp_path: Path) -> 
     sheet = bearing_sheet(in_film(), [40.0, 80.0, 120.0])
     frame = sheet.to_pandas()
     write_ross(frame, tmp_path / "bearing.toml")
-    names = {f"{letter}{axes}": f"{letter}_{axes}_{unit}" for letter, unit in (("k", "N_m"), ("c", "Ns_m"))
+    kinds = (("k", "stiffness", "N_m"), ("c", "damping", "N_s_m"))
+    names = {f"{letter}{axes}": f"{kind}_{axes}_{unit}" for letter, kind, unit in kinds
              for axes in ("xx", "xy", "yx", "yy")}  # fmt: skip
     lines = [",".join(["speed_Hz", *names])]
     lines += [",".join(repr(float(row[c])) for c in ("speed_Hz", *names.values())) for _, row in frame.iterrows()]
