@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
     from frbcli.cycles.maps.stability_map import stability_map as stability_map
     from frbcli.cycles.over_key import limit_cycles_over as limit_cycles_over
+    from frbcli.equilibrium.warm_machine import warm_machine as warm_machine
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
     from frbcli.errors import InputError as InputError
@@ -37,7 +38,6 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
     from frbcli.linear.critical_map import critical_map as critical_map
     from frbcli.linear.damped_modes import damped_modes as damped_modes
-    from frbcli.linear.heat import warm_machine as warm_machine
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
@@ -115,7 +115,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
-    "warm_machine": "frbcli.linear.heat",
+    "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
     "write_report": "frbcli.report.page",

@@ -15,10 +15,10 @@ import pytest
 
 from frbcli.case.load import load_case, load_case_text
 from frbcli.cli.main import run as frb
+from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.linear.bearing_sheet import BearingSheet, bearing_sheet, sommerfeld_chart
 from frbcli.linear.film_state import FilmState
-from frbcli.linear.heat import warm_machine
 from frbcli.linear.stability import stability
 
 Row = dict[str, float]

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 import frbcli
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
+from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
 from frbcli.film.state import OIL
-from frbcli.linear.resting import resting_position
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.march import March
 from frbcli.scene.clearance_steps import case_at

@@ -17,12 +17,12 @@ import pytest
 import frbcli
 from frbcli.case.load import case_from_dict, load_case_text
 from frbcli.case.machine_keys import machine_fault
+from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.resting import resting_films
 from frbcli.errors import InputError
-from frbcli.linear.coefficients import coefficients_of
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.modes import natural_modes
 from frbcli.linear.response import response
-from frbcli.linear.resting import resting_films
 from frbcli.linear.stability import eigenvalues, stability, stability_points
 from frbcli.rotor.over_speed import LinearPart
 from frbcli.runs.run import runup

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from frbcli.case.listing import values
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
+from frbcli.equilibrium.resting import resting_position, ring_speeds
+from frbcli.equilibrium.ring_speed import concentric_ratios
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import InputError
-from frbcli.linear.resting import resting_position, ring_speeds
-from frbcli.linear.ring_speed import concentric_ratios
 from frbcli.linear.stability import stability
-from frbcli.linear.static_machine import StaticMachines
 from frbcli.results.store import Run
 from frbcli.rotor.held import held_rotor
 from frbcli.runs.run import runup

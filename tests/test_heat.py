@@ -14,6 +14,7 @@ from frbcli.bearing_tests.kinematic import rotation, squeeze
 from frbcli.case.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
+from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError, NotConverged
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
@@ -22,7 +23,6 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow
 from frbcli.film.rectangles.film import make_film
-from frbcli.linear.heat import warm_machine
 from frbcli.linear.stability import stability
 from frbcli.materials.oils import OILS
 from frbcli.scene.plan import make_plan

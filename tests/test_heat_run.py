@@ -13,8 +13,8 @@ from test_heat import RING, ring_case, single
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
+from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import NotConverged
-from frbcli.linear.heat import warm_machine
 from frbcli.materials.oils import OILS
 from frbcli.plot.heat import heat_figure
 from frbcli.results.store import Run

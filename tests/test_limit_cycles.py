@@ -24,11 +24,11 @@ from frbcli.cycles.equilibria import resting_curve
 from frbcli.cycles.films import smooth_films
 from frbcli.cycles.linearised import state_space
 from frbcli.cycles.machine import film_loads, transfer
+from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.linear.stability import stability
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.speed_profile import speed_profile

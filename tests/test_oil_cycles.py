@@ -16,7 +16,7 @@ from frbcli.cycles.shooting.fixed_point import Conditions, SlowSpace, fixed_poin
 from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, Wet, period_map, turned_back
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting, largest
-from frbcli.linear.resting import resting_position
+from frbcli.equilibrium.resting import resting_position
 
 FED = ('bearing.supply.pressure="2 bar"', "speed.from=74 Hz", "speed.to=84 Hz")
 

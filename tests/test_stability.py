@@ -13,13 +13,13 @@ from films import system_of
 
 import frbcli
 from frbcli.case.load import load_case
+from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.errors import InputError, NotConverged
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.untabulated import direct_force
-from frbcli.linear.resting import resting_position
 from frbcli.linear.stability import Stability, StabilityPoint, eigenvalues, stability
-from frbcli.linear.static_machine import MachineAtRest
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import make_system

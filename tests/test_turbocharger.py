@@ -17,8 +17,8 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
+from frbcli.equilibrium.coefficients import RestingFilm
 from frbcli.errors import InputError
-from frbcli.linear.coefficients import RestingFilm
 from frbcli.linear.modes import film_springs, natural_modes
 from frbcli.linear.stability import eigenvalues
 from frbcli.plot.modes import modes_figure

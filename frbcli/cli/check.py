@@ -99,8 +99,8 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
 
 def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
     """Temperatures at the top speed, when everything is warm."""
+    from frbcli.equilibrium.warm_machine import warm_machine
     from frbcli.errors import NotConverged
-    from frbcli.linear.heat import warm_machine
 
     try:
         warm = warm_machine(case)

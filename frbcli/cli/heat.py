@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from frbcli.cli.common import Terminal
-    from frbcli.linear.heat import WarmMachine
+    from frbcli.equilibrium.warm_machine import WarmMachine
     from frbcli.thermal.steady import SteadyHeat
 
 ZERO_CELSIUS = 273.15

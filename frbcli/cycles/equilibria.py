@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from frbcli.cycles.continuation import Place, Strides, Unreachable, corrected, follow, oriented, unit_vector
 from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine, film_loads, transfer
-from frbcli.linear.resting import resting_position, ring_speeds
+from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.order import first_largest
 from frbcli.scene.system import System

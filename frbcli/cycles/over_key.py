@@ -23,8 +23,8 @@ from frbcli.cycles.faults import check
 from frbcli.cycles.linearised import StateSpace, state_space
 from frbcli.cycles.machine import Machine
 from frbcli.cycles.result import LimitCycles
+from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.errors import NotConverged
-from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.remedies import advised
 

@@ -18,14 +18,14 @@ import numpy as np
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
+from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, resting_film
+from frbcli.equilibrium.resting import ring_speeds
+from frbcli.equilibrium.static_films import StaticFilms, static_films
+from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
-from frbcli.linear.coefficients import RestingFilm, coefficient_error, resting_film
 from frbcli.linear.columns import SHEET
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
-from frbcli.linear.resting import ring_speeds
-from frbcli.linear.static_films import StaticFilms, static_films
-from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.elements import require_a_film
 from frbcli.scene.film_faults import film_faults

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from frbcli.case.model import altered
 from frbcli.case.schema import Case, FilmModel
+from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import FrbError, NotConverged
-from frbcli.linear.coefficients import coefficients_of
 from frbcli.linear.stability import eigenvalues
-from frbcli.linear.static_machine import StaticMachines
 from frbcli.scene.films import rings
 
 Array = NDArray[np.float64]

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
+from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.linearised import state_matrix
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
-from frbcli.linear.coefficients import coefficients_of
 from frbcli.linear.columns import DAMPED_MODES
-from frbcli.linear.linearised import state_matrix
 from frbcli.linear.stability import OSCILLATING, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import EQUAL, first_largest, ranks

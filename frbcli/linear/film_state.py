@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
+from frbcli.equilibrium.coefficients import RestingFilm, force_error, settled_force
+from frbcli.equilibrium.static_films import StaticFilms
 from frbcli.errors import NotConverged
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import loads
@@ -19,8 +21,6 @@ from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.linear.coefficients import RestingFilm, force_error, settled_force
-from frbcli.linear.static_films import StaticFilms
 from frbcli.scene.system import System
 
 Array = NDArray[np.float64]

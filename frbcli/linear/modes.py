@@ -26,7 +26,7 @@ from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbochar
 if TYPE_CHECKING:
     import pandas as pd
 
-    from frbcli.linear.coefficients import RestingFilm
+    from frbcli.equilibrium.coefficients import RestingFilm
 
 Array = NDArray[np.float64]
 

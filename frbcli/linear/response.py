@@ -22,12 +22,12 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.columns import Table, spread_table
+from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.linearised import linearised
 from frbcli.errors import Fault, InputError
 from frbcli.film.parabola import summit
 from frbcli.html import Tabular
-from frbcli.linear.coefficients import coefficients_of
 from frbcli.linear.columns import RESPONSE_POINTS
-from frbcli.linear.linearised import linearised
 from frbcli.linear.stability import StabilityPoint, default_speeds, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins

@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
+from frbcli.equilibrium.coefficients import RestingFilm, coefficients_of
+from frbcli.equilibrium.linearised import state_matrix
+from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
+from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.html import Tabular
-from frbcli.linear.coefficients import RestingFilm, coefficients_of
 from frbcli.linear.columns import point_columns
-from frbcli.linear.heat import WarmMachine
-from frbcli.linear.linearised import state_matrix
-from frbcli.linear.static_machine import MachineAtRest, StaticMachines
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import fastest_first, ranks
 from frbcli.rotor.ring import without_spins

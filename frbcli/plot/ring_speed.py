@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from frbcli.analysis.signals import joined, points
 from frbcli.case.load import load_case_text
+from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
-from frbcli.linear.ring_speed import concentric_ratios
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.envelope import extremes
 from frbcli.plot.signals import case_tables, ends, heading

@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from frbcli.case.schema import Start
+from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.errors import NotConverged
-from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import unbalance_shares
 from frbcli.rotor.over_speed import no_part

@@ -17,9 +17,9 @@ import numpy as np
 from frbcli.cycles.continuation import Unreachable
 from frbcli.cycles.shooting.period_map import wet_at
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, PLACES, Rest, Shooting
+from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.errors import NotConverged
 from frbcli.film.parabola import parabola_roots
-from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 
 RESTS = 15  # resting positions of a diagram

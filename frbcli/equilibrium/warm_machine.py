@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.errors import Fault, InputError
 from frbcli.film.grid import Array
-from frbcli.linear.resting import resting_position, ring_speeds
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.heat import Heat, heat_of

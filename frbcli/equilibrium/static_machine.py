@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm, coefficient_error, films_at_rest, resting_film
+from frbcli.equilibrium.resting import resting_films
+from frbcli.equilibrium.static_films import Films, StaticFilms, static_films
+from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
-from frbcli.linear.coefficients import FilmsAtRest, RestingFilm, coefficient_error, films_at_rest, resting_film
-from frbcli.linear.heat import WarmMachine, WarmMachines
-from frbcli.linear.resting import resting_films
-from frbcli.linear.static_films import Films, StaticFilms, static_films
 from frbcli.scene.plan import make_plan
 from frbcli.scene.system import System, make_system
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.equilibrium.resting import ring_speeds
+from frbcli.equilibrium.static_films import StaticFilms
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.linear.resting import ring_speeds
-from frbcli.linear.static_films import StaticFilms
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.system import System
 

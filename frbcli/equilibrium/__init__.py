@@ -1,0 +1,1 @@
+"""Where a machine rests at a speed, with the speeds of its rings and its temperatures; coefficients of its films."""
