@@ -6,6 +6,7 @@ import re
 import tomllib
 from pathlib import Path
 
+import analysis_matrix
 import case_reference
 import column_tables
 import hard_cases_page
@@ -30,6 +31,12 @@ def test_every_key_of_the_case_file_has_a_meaning() -> None:
 def test_case_file_page_is_what_the_schema_says() -> None:
     assert case_reference.PAGE.read_text(encoding="utf-8") == case_reference.page(), (
         "run `cd tests && python -m case_reference`"
+    )
+
+
+def test_the_matrix_page_is_what_the_gates_say() -> None:
+    assert analysis_matrix.PAGE.read_text(encoding="utf-8") == analysis_matrix.page(), (
+        "run `cd tests && python -m analysis_matrix`"
     )
 
 

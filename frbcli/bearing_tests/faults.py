@@ -47,8 +47,9 @@ def bearing_faults(case: Case, test: str) -> list[Fault]:
         return [Fault("thermal.model", "lumped", None, problem, remedy)]
     bearing = case.bearings[0]
     if not isinstance(bearing, SingleFilmBearing):
-        problem = "is not modelled in this version of kinematic tests."
-        return [Fault("bearing.kind", bearing.kind, None, problem, 'Modelled is: "single-film".')]
+        problem = "has two films in series: a kinematic test moves the journal of one."
+        remedy = 'Write kind = "single-film", with the dimensions of one of its films.'
+        return [Fault("bearing.kind", bearing.kind, None, problem, remedy)]
     supply = bearing.supply
     turns = test == "rotation" and case.motion is not None and case.motion.speed
     if isinstance(supply, Bores) and supply.on == "journal" and turns:

@@ -48,7 +48,7 @@ def _film(path: Path, film: Mapping[str, Any]) -> Iterator[Breach]:
         problem = "has no effect: [thermal] finds the film's temperature."
         yield Breach((*path, "temperature"), problem, 'Remove it, or write thermal.model = "none".')
     if "clearance_steps" in film:
-        problem = "is not modelled together with [thermal]."
+        problem = "is not modelled together with [thermal], by which the clearance follows the temperatures."
         yield Breach((*path, "clearance_steps"), problem, 'Remove it, or write thermal.model = "none".')
 
 

@@ -70,7 +70,7 @@ def bearing_sheet(
     Floating rings turn as their torques balance (4.17). Raises InputError if the case has no film on cells, no load or
     no speed, or heat and a load that is not that of its rotor.
     """
-    _check(case)
+    check_sheet(case)
     if case.heat is not None and (load is not None or case.given_rotor is None):
         problem = "needs the load of a [rotor], and takes no other."
         remedy = 'Leave --load out and add [rotor] and [speed], or write thermal.model = "none".'
@@ -103,7 +103,7 @@ def sommerfeld_chart(
     speed_Hz: of the rotor, default the highest of the case; floating rings turn as they do in concentric films. Raises
     as bearing_sheet.
     """
-    _check(case)
+    check_sheet(case)
     if case.heat is not None:
         remedy = 'Choose --over speed, or write thermal.model = "none": films then have oil.temperature.'
         problem = "is not modelled over eccentricity: the temperatures belong to the load of the rotor."
@@ -144,14 +144,15 @@ def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: fl
     return resting_film(system.names[i], force, place / system.clearances[i], coefficient_error(force, others))
 
 
-def _check(case: Case) -> None:
+def check_sheet(case: Case) -> None:
+    """Raises InputError if the bearings of a case have no sheet."""
     require_a_film(case, "the sheet is of films")
     faults = film_faults(case)
     if case.film.bearing_model:
         problem = "is a bearing model: it tells the force, and neither pressures nor oil."
         faults.append(Fault("film.theory", case.film.theory, None, problem, "Write finite or auto."))
     if is_published(case):
-        problem = "is for run-ups and frb rotation."
+        problem = "creates oil: the flows and losses of a sheet would hang on how much."
         faults.append(Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".'))
     if case.given_rotor is None and (len(case.bearings) != 1 or not isinstance(case.bearings[0], SingleFilmBearing)):
         problem = "has more than one film: their loads follow from a rotor, which is missing."

@@ -152,7 +152,7 @@ def stability(
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
-    _check_machine(case, speeds)
+    check_machine(case, speeds)
     machines, sweep = _sweep(case, speeds, observe)
     found = {point.speed_Hz: point for point in sweep}
     threshold, note = _threshold(case, machines, sweep)
@@ -167,12 +167,13 @@ def stability_points(
     observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, a speed
     is not positive, or a film has no eight coefficients.
     """
-    _check_machine(case, speeds_Hz)
+    check_machine(case, speeds_Hz)
     machines, points = _sweep(case, speeds_Hz, observe)
     return machines.system, points
 
 
-def _check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
+def check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
+    """Raises InputError if a case cannot be modelled, a speed is not positive, or a film has no eight coefficients."""
     require_films(case)
     _check_speeds(case, speeds_Hz)
     if faults := _without_coefficients(case):

@@ -43,7 +43,7 @@ def clearance_faults(case: Case) -> list[Fault]:
     """The faults of a case with clearances that change."""
     if not step_times(case) or not is_published(case):
         return []
-    problem = "is not modelled for the published two-phase form."
+    problem = "would change the oil, which the published two-phase form does not balance."
     remedy = 'Write film.two-phase.form = "conservative".'
     return [Fault("bearing.clearance_steps", "", None, problem, remedy)]
 

@@ -72,7 +72,7 @@ def _cells(case: Case, plan: Plan, top_Hz: float | None) -> Films:
         factor=case.film.cavitation_factor,
         states=compared_states(cells),
         viscosity=case.oil_viscosity,
-        exponents=np.array([_exponents(case, *each) for each in zip(places, volumes, strict=True)]),
+        exponents=np.array([_exponents(case, *each) for each in zip(places, volumes, strict=True) if case.heat]),
     )
 
 

@@ -114,7 +114,7 @@ def published_faults(case: Case) -> list[Fault]:
         found.append(("film.two-phase.whirl_steepness", value, "is for the conservative form", REMEDY))
     coupling = chosen_coupling(case.film.coupling, TwoPhase.name)
     if coupling != MONOLITHIC:
-        problem = "is not modelled for the published form"
+        problem = "solves the film apart from the rotor, whose elements settle only with it in one step"
         found.append(("film.coupling", coupling, problem, f"Choose {MONOLITHIC} or auto."))
     return [Fault(key, value, None, f"{problem}.", remedy) for key, value, problem, remedy in found]
 
