@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from textwrap import fill
 
-from frbcli.cli.hard import cause_of
+from frbcli.cli.studies.hard import cause_of
 from frbcli.columns import short_number
 from frbcli.studies.hard.cases import HardResult, HardResults, run_hard_cases
 

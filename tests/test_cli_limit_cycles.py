@@ -12,7 +12,7 @@ from frbcli.cli.main import run
 from frbcli.cycles.explain import explanations
 from frbcli.cycles.over_key import limit_cycles_over
 from frbcli.cycles.threshold import threshold_kind
-from frbcli.plot.run_track import run_tracks
+from frbcli.plot.spectra.run_track import run_tracks
 
 
 def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,8 +19,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from frbcli.cli.live import progress_line
 from frbcli.cli.main import run as frb
+from frbcli.cli.runs.live import progress_line
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import Progress
 
@@ -272,7 +272,7 @@ def test_without_a_terminal_a_line_now_and_then_tells_the_progress(
     words = ["runup", "jeffcott", "-o", str(tmp_path / "run.h5"), "--no-picture", "--force"]
     assert frb(words) == 0
     assert "steps/rev" not in capsys.readouterr().err
-    monkeypatch.setattr("frbcli.cli.transient.TOLD_EVERY_s", 0.02)
+    monkeypatch.setattr("frbcli.cli.runs.transient.TOLD_EVERY_s", 0.02)
     assert frb(words) == 0
     assert "steps/rev" in capsys.readouterr().err
     assert frb([*words, "--quiet"]) == 0

@@ -20,9 +20,9 @@ from numba.core.runtime import _nrt_python, rtsys
 import frbcli
 from frbcli.caches import temporary_cache
 from frbcli.case.load import load_case
-from frbcli.cli import compiling
 from frbcli.cli.common import Terminal
-from frbcli.cli.compiling import compilation_shown
+from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.runs.transient import compiling
 from frbcli.runs.run import runup
 from frbcli.scene.preparation import compile_s
 

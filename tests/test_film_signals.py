@@ -11,7 +11,7 @@ import pytest
 import frbcli
 from frbcli.errors import InputError, RunFileError
 from frbcli.linear.bearing_sheet import bearing_sheet
-from frbcli.plot.film_signals import film_signal_figure
+from frbcli.plot.run.film_signals import film_signal_figure
 from frbcli.results.store import Run, read_run
 from frbcli.runs import march
 from frbcli.runs import run as module

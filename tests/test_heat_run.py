@@ -16,7 +16,7 @@ from frbcli.cli.main import run as frb
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import NotConverged
 from frbcli.materials.oils import OILS
-from frbcli.plot.heat import heat_figure
+from frbcli.plot.run.heat import heat_figure
 from frbcli.results.store import Run
 from frbcli.runs.march import March
 from frbcli.runs.run import runup

@@ -17,12 +17,12 @@ from synthetic_run import Rotor, make_run
 
 import frbcli
 from frbcli.cli.main import frb
-from frbcli.cli.picture_options import Look, Size
-from frbcli.plot.campbell import campbell_figure
-from frbcli.plot.eccentricity import eccentricity_figure
+from frbcli.cli.pictures.picture_options import Look, Size
 from frbcli.plot.look import fit
+from frbcli.plot.machine.campbell import campbell_figure
+from frbcli.plot.run.eccentricity import eccentricity_figure
+from frbcli.plot.spectra.waterfall import LevelScale, waterfall_figure
 from frbcli.plot.style import COLOURS
-from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run
 
 DRAWING = ("runup", "rundown", "waterfall", "plot", "compare", "bearing", "stability", "response", "accuracy", "sweep",

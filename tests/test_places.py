@@ -25,7 +25,7 @@ from frbcli.cli.files import here
 from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.plot.animation import animate_orbits
+from frbcli.plot.run.animation import animate_orbits
 from frbcli.results.kinds import PAGE, TABLES
 from frbcli.results.lock import locked
 from frbcli.results.store import Header, Run, RunWriter, read_run

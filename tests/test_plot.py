@@ -17,16 +17,16 @@ from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.case.load import load_case
 from frbcli.errors import InputError, RunFileError
-from frbcli.plot.displacement import displacement_figure
-from frbcli.plot.eccentricity import eccentricity_figure
-from frbcli.plot.envelope import DRAWN_POINTS, Envelope, at_times, curve
-from frbcli.plot.oil_content import oil_content_figure
-from frbcli.plot.orbit import orbit_figure, visible_steps
-from frbcli.plot.ring_speed import ring_speed_figure
+from frbcli.plot.run.displacement import displacement_figure
+from frbcli.plot.run.eccentricity import eccentricity_figure
+from frbcli.plot.run.envelope import DRAWN_POINTS, Envelope, at_times, curve
+from frbcli.plot.run.oil_content import oil_content_figure
+from frbcli.plot.run.orbit import orbit_figure, visible_steps
+from frbcli.plot.run.ring_speed import ring_speed_figure
+from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.signals import clearance, labels, model
+from frbcli.plot.spectra.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.plot.style import new_figure, save_figure
-from frbcli.plot.summary import summary_figure
-from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
@@ -325,7 +325,7 @@ def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:
 
 
 def test_drawing_does_not_import_pyplot() -> None:
-    code = "import sys, frbcli.plot.summary, frbcli.plot.orbit; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, frbcli.plot.run.summary, frbcli.plot.run.orbit; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[1], check=False).returncode == 0
 
 
@@ -347,7 +347,7 @@ def test_letters_of_a_title_are_neither_mathematics_nor_orders_to_a_terminal(run
 def test_a_curve_is_the_same_however_it_is_read(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = curve(run, run.signal("eccentricity"), 100, 150_001)
     between = at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333))
-    monkeypatch.setattr("frbcli.plot.envelope.pieces", lambda first, last: pieces(first, last, 777))
+    monkeypatch.setattr("frbcli.plot.run.envelope.pieces", lambda first, last: pieces(first, last, 777))
     for all_at_once, in_pieces in zip(whole, curve(run, run.signal("eccentricity"), 100, 150_001), strict=True):
         np.testing.assert_array_equal(all_at_once, in_pieces)
     np.testing.assert_array_equal(between, at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333)))
@@ -365,7 +365,7 @@ def test_curves_over_speed_are_the_same_however_they_are_read(ringed: Run, monke
 
 def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     x, y = run.signal("journal_x_m"), run.signal("journal_y_m")
-    monkeypatch.setattr("frbcli.plot.orbit.ALL_DRAWN", 1000)
+    monkeypatch.setattr("frbcli.plot.run.orbit.ALL_DRAWN", 1000)
     begins, ends, gaps = np.stack(visible_steps(x, y, 0, len(run))).reshape(2, -1, 3).T
     assert np.isnan(gaps).all()
     assert len(begins) < 0.1 * len(run)

@@ -22,7 +22,7 @@ import frbcli
 from frbcli.case.shipped import shipped_cases
 from frbcli.cli.main import frb
 from frbcli.errors import InputError, RunFileError
-from frbcli.plot.levels import LOWEST_dB, STEP_dB
+from frbcli.plot.spectra.levels import LOWEST_dB, STEP_dB
 from frbcli.report.page import report
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.results.store import Run

@@ -15,7 +15,7 @@ from frbcli.case.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.linear.response import DOUBTFUL, Response, larger_semi_axis, response, unbalance_motion
-from frbcli.plot.response import response_figure
+from frbcli.plot.machine.response import response_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.runs.run import runup

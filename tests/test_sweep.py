@@ -17,7 +17,7 @@ import pytest
 
 from frbcli import Case, InputError, load_case, read_run, runup, stability, sweep
 from frbcli.cli.main import run as frb
-from frbcli.plot.sweep import can_draw, sweep_figure
+from frbcli.plot.studies.sweep import can_draw, sweep_figure
 from frbcli.studies.sweep.points import grid, product, read_list, split_values
 from frbcli.studies.sweep.sweep import LOG, SweepPoint, Workers, write_table
 from frbcli.studies.sweep.task import Task, solve

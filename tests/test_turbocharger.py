@@ -21,7 +21,7 @@ from frbcli.equilibrium.coefficients import RestingFilm
 from frbcli.errors import InputError
 from frbcli.linear.modes import film_springs, natural_modes
 from frbcli.linear.stability import eigenvalues
-from frbcli.plot.modes import modes_figure
+from frbcli.plot.machine.modes import modes_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import with_rings

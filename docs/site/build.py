@@ -217,7 +217,8 @@ def configuration(source: Path, target: Path) -> str:
     """Of MkDocs: no fonts and scripts from elsewhere."""
     commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
     guides = ("case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements", "report",
-              "bearing-sheet", "rotors", "floating-rings", "elements", "limit-cycles", "couplings", "sweeps")  # fmt: skip
+              "bearing-sheet", "rotors", "floating-rings", "elements", "limit-cycles", "couplings",
+              "sweeps")  # fmt: skip
     science = ("theory", "heat", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
 
     def entries(names: tuple[str, ...]) -> str:

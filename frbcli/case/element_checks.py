@@ -10,7 +10,6 @@ from frbcli.case.elements import EMPTY_MATRIX
 from frbcli.case.lines import Path
 from frbcli.case.tables import Breach, number, table, tables
 
-FILMS = ("single-film", "floating-ring")
 GIVEN = ("stiffness", "damping", "mass")
 REMEDY = "Remove it, or add a bearing with a film."
 # Keys that say how films are computed, recorded or touched.

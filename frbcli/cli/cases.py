@@ -19,7 +19,7 @@ from frbcli.cli.files import OUTPUT, check_outputs
 def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool, terminal: Terminal) -> int | None:
     """List the shipped cases; with NAME print that case's text, or copy it with -o FILE."""
     if run_hard:
-        from frbcli.cli.hard import run_hard as run_them
+        from frbcli.cli.studies.hard import run_hard as run_them
 
         return run_them(names, terminal)
     if not names and output is not None:
@@ -29,7 +29,7 @@ def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: b
     if names:
         _show(names[0], output, hard, terminal)
     elif hard:
-        from frbcli.cli.hard import list_hard
+        from frbcli.cli.studies.hard import list_hard
 
         list_hard(terminal)
     else:
@@ -40,7 +40,7 @@ def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: b
 def _show(name: str, output: Path | None, hard: bool, terminal: Terminal) -> None:
     """Print a case or copy it."""
     if hard:
-        from frbcli.cli.hard import hard_text as text_of
+        from frbcli.cli.studies.hard import hard_text as text_of
     else:
         from frbcli.case.shipped import find_shipped as text_of
     text = text_of(name)

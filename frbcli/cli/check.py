@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from frbcli.cli.bearings.heat import heat_document, tell_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.heat import heat_document, tell_heat
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 import click
 
 from frbcli.cli.files import INPUT, note_read
-from frbcli.cli.picture_options import Look, look_of
+from frbcli.cli.pictures.picture_options import Look, look_of
 from frbcli.cli.streams import OutputLost
 from frbcli.errors import printable
 

@@ -16,30 +16,39 @@ from difflib import get_close_matches
 import click
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.memory import require_memory, reserve, shortage
+from frbcli.cli.runs.memory import require_memory, reserve, shortage
 from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, printable
 from frbcli.version import __version__
 
 # name: (module, one line of help); the module is imported when its command is called
 COMMANDS = {
     "check": ("frbcli.cli.check", "Validate a case; show its loads, speeds and what will be modelled."),
-    "rotation": ("frbcli.cli.rotation", "Turn a journal at a displacement or under a load; compare models."),
-    "squeeze": ("frbcli.cli.squeeze", "Move a journal up and down: force over time."),
-    "whirl": ("frbcli.cli.whirl", "Move a journal on a circle: pressure over time."),
-    "runup": ("frbcli.cli.runup", "Run a rotor up and write the run to a file."),
-    "rundown": ("frbcli.cli.rundown", "Run a rotor up, hold it, run it down."),
-    "waterfall": ("frbcli.cli.waterfall", "Draw the spectra of a run or a measurement over time or speed."),
-    "plot": ("frbcli.cli.plot", "Draw eccentricities, orbits, temperatures or film signals of runs."),
-    "compare": ("frbcli.cli.compare", "Compare models of one case, or a run with a measurement."),
-    "bearing": ("frbcli.cli.bearing", "Resting position, K, D, loss, flow of every film over speed or eccentricity."),
-    "fit": ("frbcli.cli.fit", "Find numbers of a case from a measured run-up."),
-    "stability": ("frbcli.cli.stability", "Resting positions, linear coefficients, eigenvalues, threshold speed."),
-    "response": ("frbcli.cli.response", "Linear unbalance response over speed; map of critical speeds."),
-    "limit-cycles": ("frbcli.cli.limit_cycles", "Hopf points, limit cycles and folds over speed, stable or not."),
-    "accuracy": ("frbcli.cli.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
-    "sweep": ("frbcli.cli.sweep", "Run one case with many settings, on all cores or a cluster."),
-    "report": ("frbcli.cli.report", "Write a run as one page: machine, events, waterfall, orbits, errors."),
-    "export": ("frbcli.cli.export", "Write the signals of a run as CSV, Parquet or MAT."),
+    "rotation": ("frbcli.cli.bearings.rotation", "Turn a journal at a displacement or under a load; compare models."),
+    "squeeze": ("frbcli.cli.bearings.squeeze", "Move a journal up and down: force over time."),
+    "whirl": ("frbcli.cli.bearings.whirl", "Move a journal on a circle: pressure over time."),
+    "runup": ("frbcli.cli.runs.runup", "Run a rotor up and write the run to a file."),
+    "rundown": ("frbcli.cli.runs.rundown", "Run a rotor up, hold it, run it down."),
+    "waterfall": ("frbcli.cli.pictures.waterfall", "Draw the spectra of a run or a measurement over time or speed."),
+    "plot": ("frbcli.cli.pictures.plot", "Draw eccentricities, orbits, temperatures or film signals of runs."),
+    "compare": ("frbcli.cli.studies.compare", "Compare models of one case, or a run with a measurement."),
+    "bearing": (
+        "frbcli.cli.bearings.bearing",
+        "Resting position, K, D, loss, flow of every film over speed or eccentricity.",
+    ),
+    "fit": ("frbcli.cli.studies.fit", "Find numbers of a case from a measured run-up."),
+    "stability": (
+        "frbcli.cli.machines.stability",
+        "Resting positions, linear coefficients, eigenvalues, threshold speed.",
+    ),
+    "response": ("frbcli.cli.machines.response", "Linear unbalance response over speed; map of critical speeds."),
+    "limit-cycles": (
+        "frbcli.cli.machines.limit_cycles",
+        "Hopf points, limit cycles and folds over speed, stable or not.",
+    ),
+    "accuracy": ("frbcli.cli.studies.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
+    "sweep": ("frbcli.cli.studies.sweep", "Run one case with many settings, on all cores or a cluster."),
+    "report": ("frbcli.cli.pictures.report", "Write a run as one page: machine, events, waterfall, orbits, errors."),
+    "export": ("frbcli.cli.pictures.export", "Write the signals of a run as CSV, Parquet or MAT."),
     "cases": ("frbcli.cli.cases", "List, show or copy the shipped cases."),
     "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),
 }

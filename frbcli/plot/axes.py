@@ -14,17 +14,17 @@ from frbcli.analysis.spectrum import Direction
 from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
 from frbcli.linear.response import Response
 from frbcli.linear.stability import Stability
-from frbcli.plot.bearing import draw_coefficient
-from frbcli.plot.campbell import draw_frequencies
 from frbcli.plot.curves import Over, draw_curves, finish
-from frbcli.plot.eccentricity import draw_eccentricity
-from frbcli.plot.film_signals import draw_film_signal
-from frbcli.plot.orbit import LAST_s, draw_orbits
-from frbcli.plot.response import draw_amplitude
+from frbcli.plot.machine.bearing import draw_coefficient
+from frbcli.plot.machine.campbell import draw_frequencies
+from frbcli.plot.machine.response import draw_amplitude
+from frbcli.plot.run.eccentricity import draw_eccentricity
+from frbcli.plot.run.film_signals import draw_film_signal
+from frbcli.plot.run.orbit import LAST_s, draw_orbits
+from frbcli.plot.run.speeds import draw_spectrum_at
 from frbcli.plot.signals import ends
-from frbcli.plot.speeds import draw_spectrum_at
+from frbcli.plot.spectra.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
 from frbcli.plot.style import legend_beside, styled
-from frbcli.plot.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
 from frbcli.results.store import Run
 
 

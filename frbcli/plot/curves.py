@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from frbcli.plot.envelope import Column, Envelope, curve, extremes
+from frbcli.plot.run.envelope import Column, Envelope, curve, extremes
 from frbcli.plot.signals import cut, labels
 from frbcli.plot.style import COLOURS
 from frbcli.results.container import refuse

@@ -16,7 +16,7 @@ from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.toml import TomlFault, parse
 from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
-from frbcli.plot.envelope import extremes
+from frbcli.plot.run.envelope import extremes
 from frbcli.plot.style import plain
 from frbcli.results.container import refuse
 from frbcli.results.records import SPEED, TIME

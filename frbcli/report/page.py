@@ -17,18 +17,18 @@ from frbcli.analysis.signals import films
 from frbcli.case.listing import values
 from frbcli.case.load import load_case_text
 from frbcli.errors import Fault, FrbError, InputError, printable
-from frbcli.plot.displacement import displacement_figure
-from frbcli.plot.eccentricity import eccentricity_figure
-from frbcli.plot.film_signals import film_signal_figure
-from frbcli.plot.levels import levels
-from frbcli.plot.oil_content import SIGNAL as OIL_CONTENT
-from frbcli.plot.oil_content import oil_content_figure
-from frbcli.plot.ring_speed import ring_speed_figure
+from frbcli.plot.run.displacement import displacement_figure
+from frbcli.plot.run.eccentricity import eccentricity_figure
+from frbcli.plot.run.film_signals import film_signal_figure
+from frbcli.plot.run.oil_content import SIGNAL as OIL_CONTENT
+from frbcli.plot.run.oil_content import oil_content_figure
+from frbcli.plot.run.ring_speed import ring_speed_figure
+from frbcli.plot.run.speeds import speeds_figure, times_of_speeds
+from frbcli.plot.run.summary import FEWEST_SAMPLES
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
-from frbcli.plot.speeds import speeds_figure, times_of_speeds
+from frbcli.plot.spectra.levels import levels
+from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, picture
-from frbcli.plot.summary import FEWEST_SAMPLES
-from frbcli.plot.waterfall import level_label, reading, run_spectra
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.kinds import PAGE

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.plot.levels import Levels, LOWEST_dB, STEP_dB, Values, scale_colours, ticks
-from frbcli.plot.waterfall import LEVELS_dB
+from frbcli.plot.spectra.levels import Levels, LOWEST_dB, STEP_dB, Values, scale_colours, ticks
+from frbcli.plot.spectra.waterfall import LEVELS_dB
 from frbcli.report.svg import curve, drawing, element, line, text
 
 WIDTH, HEIGHT = 900.0, 470.0

@@ -1,0 +1,1 @@
+"""What is printed of bearings and their films."""

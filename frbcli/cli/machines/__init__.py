@@ -1,0 +1,1 @@
+"""What is printed of a machine at rest: stability, modes, response, limit cycles."""

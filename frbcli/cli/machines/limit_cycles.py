@@ -1,0 +1,415 @@
+"""`frb limit-cycles`: resting positions, Hopf points and branches of limit cycles over the rotor speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.files import INPUTS, OUTPUT, check_outputs, here
+from frbcli.cli.pictures.picture_options import picture_options
+from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.quantities import SPEED_OPTION
+from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.runs.live import counting, live_lines
+from frbcli.cli.studies.gathered import gathered
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.cycles.maps.stability_map import MapPoint, StabilityMap
+    from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint, SpectralLine, UnbalancedWhirl
+    from frbcli.plot.spectra.run_track import RunTrack
+
+ASKED = "asked"
+MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
+
+
+@dataclass(frozen=True)
+class Range:
+    """The numbers that are varied in place of the speed or beside it, see the options of the command."""
+
+    over: str
+    key: str | None
+    low: str | None
+    high: str | None
+    and_low: str | None
+    and_high: str | None
+    points: int
+
+    @property
+    def second(self) -> tuple[str, str, str] | None:
+        """The key of --and with its range, which is that of --from and --to beside the speed."""
+        low, high = (self.low, self.high) if self.over == "speed" else (self.and_low, self.and_high)
+        return None if self.key is None or low is None or high is None else (self.key, low, high)
+
+
+@click.command()
+@case_argument
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
+              help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
+@click.option("--over", default="speed", metavar="KEY",
+              help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
+@click.option("--and", "key", metavar="KEY",
+              help="Curves of Hopf points and folds over --over and this key, e.g. bearing.clearance.")  # fmt: skip
+@click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
+@click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
+@click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and beside --over KEY.")
+@click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and beside --over KEY.")
+@click.option("--points", type=click.IntRange(2, 500), default=3,
+              help="Number of values of --and whose diagrams tell where curves begin. [3]")  # fmt: skip
+@click.option("--with-unbalance", is_flag=True,
+              help="What stable cycles become with unbalance: whirls of two frequencies or locked in.")  # fmt: skip
+@click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
+              help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
+@click.option("--no-picture", is_flag=True, help="No picture.")
+@click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
+@picture_options
+@output_options
+@gathered("varied", Range)
+def command(
+    case: Case,
+    speeds: tuple[float, ...],
+    varied: Range,
+    with_unbalance: bool,
+    runs: tuple[Path, ...],
+    output: Path | None,
+    no_picture: bool,
+    csv: Path | None,
+    terminal: Terminal,
+) -> None:
+    """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
+
+    Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them, and
+    with --with-unbalance the whirls with it.
+    """
+    from frbcli.cycles.limit_cycles import limit_cycles
+    from frbcli.cycles.over_key import limit_cycles_over
+    from frbcli.results.kinds import TABLES
+
+    if no_picture and output is not None:
+        raise click.UsageError("-o names the picture that --no-picture leaves out.")
+    _check_range(varied)
+    over, key, low, high = varied.over, varied.key, varied.low, varied.high
+    along_speed = over == "speed"
+    if ((key is not None or not along_speed) and (len(speeds) > 1 or runs)) or (key and along_speed and speeds):
+        raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
+    if with_unbalance and (key is not None or not along_speed):
+        raise click.UsageError("--with-unbalance is of the diagram of one case over its speed.")
+    drawn = "limit-cycles" if key is None else "stability-map"
+    picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
+    check_outputs((csv, TABLES["csv"]), picture=picture)
+    at = speeds[0] if speeds else case.speed.end
+    if varied.second is not None:
+        across = None if along_speed or low is None or high is None else (over, low, high, at)
+        _map(terminal, case, (*varied.second, varied.points), across, (picture, csv))
+        return
+    tracks = [track for name in runs for track in _tracks(name)]
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        if not along_speed and low is not None and high is not None:
+            found = limit_cycles_over(case, over, low, high, at, _showing(show))
+        else:
+            found = limit_cycles(case, speeds, _showing(show), with_unbalance)
+    _tell(terminal, found)
+    if csv is not None:
+        from frbcli.results.tables import write_table
+
+        write_table(found.to_pandas(), csv)
+        terminal.result(f"table: {csv}")
+    if picture is not None:
+        from frbcli.plot.machine.limit_cycles import limit_cycles_figure
+
+        picture = draw(terminal, lambda: limit_cycles_figure(found, tracks), picture)
+    terminal.emit(_document(found) | {"picture": picture, "csv": csv})
+
+
+def _check_range(varied: Range) -> None:
+    other, map_ = varied.over != "speed", varied.key is not None
+    if (other or map_) != (varied.low is not None and varied.high is not None):
+        raise click.UsageError("--over KEY and --and KEY go with --from VALUE and --to VALUE.")
+    if (other and map_) != (varied.and_low is not None and varied.and_high is not None):
+        raise click.UsageError("--and-from and --and-to are the range of --and KEY beside --over KEY, both or none.")
+
+
+def _map(
+    terminal: Terminal,
+    case: Case,
+    second: tuple[str, str, str, int],
+    first: tuple[str, str, str, float] | None,
+    files: tuple[Path | None, Path | None],
+) -> None:
+    """The map over the speed or a first number (key, from, to, speed in Hz) and a second one (key, from, to, points).
+
+    files: picture and table.
+    """
+    from frbcli.cycles.maps.stability_map import Across, stability_map
+    from frbcli.scene.films import film_places
+
+    picture, csv = files
+    across = None if first is None else Across(*first)
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = stability_map(case, *second, counting(terminal, show), across)
+    _tell_map(terminal, found)
+    if csv is not None:
+        from frbcli.results.tables import write_table
+
+        write_table(found.to_pandas(), csv)
+        terminal.result(f"table: {csv}")
+    if picture is not None:
+        from frbcli.plot.machine.stability_map import stability_map_figure
+
+        picture = draw(terminal, lambda: stability_map_figure(found), picture)
+    names = tuple(place.name for place in film_places(case))
+    terminal.emit(_map_document(names, found) | {"picture": picture, "csv": csv})
+
+
+def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
+    rows = [
+        (f"{row.value:.4g} {found.unit}".strip(), point.kind, f"{point.value:.6g}", f"{point.frequency_Hz:.2f}",
+         point.criticality or "")
+        for row in found.rows
+        for point in row.special
+    ]  # fmt: skip
+    rows += [
+        (f"{point.value:.4g} {found.unit}".strip(), point.kind, f"{point.over:.6g}", f"{point.frequency_Hz:.2f}",
+         "on a curve")
+        for point in found.special
+    ]  # fmt: skip
+    columns = (found.key, "point", found.over_unit or found.over, "whirl Hz", "")
+    terminal.table(found.case.title or found.case.name, columns, rows)
+    for curve in found.curves:
+        values = [point.value for point in curve.points]
+        told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
+        named = "Hopf points" if curve.kind == "hopf" else "folds"
+        terminal.result(_wrapped(" ".join([f"Curve of {named}: {told}", *curve.notes])))
+    for row in found.rows:
+        if row.problem:
+            terminal.result(_wrapped(f"{row.value:.4g} {found.unit}: {row.problem}"))
+
+
+def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, object]:
+    return {
+        "command": "limit-cycles",
+        "case": found.case.name,
+        "over": found.over,
+        "over_unit": found.over_unit,
+        "and": found.key,
+        "unit": found.unit,
+        "rows": [
+            {
+                "value": row.value,
+                "special": [_special(names, point) for point in row.special],
+                "problem": row.problem or None,
+            }
+            for row in found.rows
+        ],
+        "curves": [
+            {
+                "kind": curve.kind,
+                "points": [_map_point(names, point) for point in curve.points],
+                "notes": curve.notes,
+            }
+            for curve in found.curves
+        ],
+        "special": [_map_point(names, point) for point in found.special],
+    }
+
+
+def _map_point(names: tuple[str, ...], point: MapPoint) -> dict[str, object]:
+    return {
+        "over_value": point.over,
+        "value": point.value,
+        "speed_Hz": point.speed_Hz,
+        "frequency_Hz": point.frequency_Hz,
+        "eccentricity_max": dict(zip(names, point.eccentricity_max, strict=True)),
+        "criticality": point.criticality,
+        "lyapunov_1_s": point.lyapunov,
+        "kind": point.kind or None,
+    }
+
+
+def _tracks(path: Path) -> tuple[RunTrack, ...]:
+    """The way up of a run, and the way down if it has one."""
+    from frbcli.plot.spectra.run_track import run_tracks
+    from frbcli.results.store import read_run
+
+    return run_tracks(read_run(path), path.stem)
+
+
+def _showing(show: Callable[[str], None] | None) -> Callable[[int, float, float], None]:
+    def observe(number: int, value: float, eccentricity: float) -> None:
+        if show is not None:
+            show(f"cycle {number}: at {value:.4g}, eccentricity {eccentricity:.4f}")
+
+    return observe
+
+
+def _tell(terminal: Terminal, found: LimitCycles) -> None:
+    rows = [
+        (
+            point.kind,
+            "-" if point.branch is None else str(point.branch + 1),
+            f"{point.value:.2f}" if found.over == "speed" else f"{point.value:.6g}",
+            f"{point.frequency_Hz:.2f}",
+            f"{point.frequency_Hz / point.speed_Hz:.4f}",
+            f"{point.eccentricity_max.max():.4f}",
+            point.criticality or "",
+        )
+        for point in found.special
+    ]
+    columns = ("point", "branch", found.unit or found.over, "whirl Hz", "ratio", "eps max", "")
+    terminal.table(found.case.title or found.case.name, columns, rows)
+    for number, branch in enumerate(found.branches):
+        values = [point.value for point in branch.points]
+        if not values:
+            terminal.result(_wrapped(f"Branch {number + 1} has no cycles. {branch.note}"))
+            continue
+        stable = sum(point.stable for point in branch.points)
+        told = f"{len(values)} cycles from {min(values):.4g} to {max(values):.4g} {found.unit}, {stable} stable."
+        terminal.result(_wrapped(f"Branch {number + 1}: {told} {branch.note}"))
+    for number, branch in enumerate(found.branches):
+        for point in branch.points:
+            if point.kind == ASKED:
+                how = "stable" if point.stable else "unstable"
+                at = f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {point.frequency_Hz:.3f} Hz, {how}"
+                terminal.result(f"{at}, eccentricity {point.eccentricity_max.max():.5f}")
+    _tell_with_unbalance(terminal, found)
+    for note in (*found.notes, *_left_out(found)):
+        terminal.result(_wrapped(note))
+    terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
+
+
+def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
+    """A table of the whirls with unbalance, if there are any."""
+    rows = [
+        (
+            f"{number + 1}",
+            f"{whirl.speed_Hz:.2f}",
+            f"{whirl.frequency_Hz:.3f}",
+            f"{whirl.eccentricity_max.max():.4f}",
+            f"{whirl.lines[0].amplitude.max():.4f}",
+            f"{whirl.lines[1].amplitude.max():.2g}",
+            "locks in" if whirl.locked else ", ".join(_told(line) for line in whirl.lines[2:3]),
+        )
+        for number, branch in enumerate(found.branches)
+        for whirl in branch.with_unbalance
+    ]
+    if not rows:
+        return
+    columns = ("branch", "Hz", "whirl Hz", "eps max", "at nu", "at Omega", "largest other line")
+    terminal.table("With unbalance", columns, rows)
+    if any(not whirl.locked for branch in found.branches for whirl in branch.with_unbalance):
+        terminal.result("Whether whirls of two frequencies are stable is not computed.")
+
+
+def _told(line: SpectralLine) -> str:
+    return f"{line.amplitude.max():.2g} at {line.name}"
+
+
+def _left_out(found: LimitCycles) -> list[str]:
+    from frbcli.cycles.faults import has_unbalance
+    from frbcli.scene.clearance_steps import step_times
+
+    notes = []
+    if has_unbalance(found.case):
+        asked = any(branch.with_unbalance for branch in found.branches)
+        more = "." if asked else ": with it a whirl has two frequencies (--with-unbalance)."
+        notes.append(f"Branches are those without unbalance{more}")
+    if step_times(found.case):
+        notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
+    return notes
+
+
+def _wrapped(text: str) -> str:
+    return fill(text, 80, break_long_words=False, break_on_hyphens=False)
+
+
+def _document(found: LimitCycles) -> dict[str, object]:
+    return {
+        "command": "limit-cycles",
+        "case": found.case.name,
+        "over": found.over,
+        "unit": found.unit,
+        "equilibria": [
+            {
+                "value": point.value,
+                "speed_Hz": point.speed_Hz,
+                "displacement": point.displacement[0],
+                "stable": point.stable,
+                "films": dict(zip(found.films, point.displacement, strict=True)),
+                "ring_speeds_Hz": point.ring_speeds_Hz,
+            }
+            for point in found.equilibria
+        ],
+        "branches": [
+            {
+                "from": None if branch.start is None else _special(found.films, found.special[branch.start]),
+                "points": [_cycle(found, point) for point in branch.points],
+                "note": branch.note,
+                "with_unbalance": [_whirl(found.films, whirl) for whirl in branch.with_unbalance],
+            }
+            for branch in found.branches
+        ],
+        "synchronous": [_cycle(found, point) for point in found.synchronous],
+        "special": [_special(found.films, point) for point in found.special],
+        "notes": found.notes,
+        "cost": {"cpu_s": found.cost.cpu_s, "cycles": found.cost.cycles},
+    }
+
+
+def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
+    return {
+        "value": point.value,
+        "speed_Hz": point.speed_Hz,
+        "frequency_Hz": point.frequency_Hz,
+        "eccentricity_max": dict(zip(found.films, point.eccentricity_max, strict=True)),
+        "stable": point.stable,
+        "multipliers": [[value.real, value.imag] for value in point.multipliers[:MULTIPLIERS].tolist()],
+        "ring_speeds_Hz": point.ring_speeds_Hz,
+        "torque_N_m": point.torque_N_m,
+        "kind": point.kind or None,
+    } | ({"orbits": _orbits(found, point)} if point.kind == ASKED else {})
+
+
+def _whirl(films: tuple[str, ...], whirl: UnbalancedWhirl) -> dict[str, object]:
+    return {
+        "speed_Hz": whirl.speed_Hz,
+        "frequency_Hz": whirl.frequency_Hz,
+        "locked": whirl.locked,
+        "eccentricity_max": dict(zip(films, whirl.eccentricity_max, strict=True)),
+        "ring_speeds_Hz": whirl.ring_speeds_Hz,
+        "lines": [
+            {
+                "name": line.name,
+                "frequency_Hz": line.frequency_Hz,
+                "amplitude": dict(zip(films, line.amplitude, strict=True)),
+            }
+            for line in whirl.lines
+        ],
+        "stable": whirl.stable,
+    }
+
+
+def _orbits(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
+    return {name: point.orbit(film) for film, name in enumerate(found.films)}
+
+
+def _special(films: tuple[str, ...], point: SpecialPoint) -> dict[str, object]:
+    largest = dict(zip(films, point.eccentricity_max, strict=True))
+    return {
+        "kind": point.kind,
+        "branch": point.branch,
+        "value": point.value,
+        "speed_Hz": point.speed_Hz,
+        "frequency_Hz": point.frequency_Hz,
+        "criticality": point.criticality,
+        "lyapunov_1_s": point.lyapunov,
+        "lyapunov_uncertainty_1_s": point.lyapunov_uncertainty,
+        "speed_uncertainty_Hz": point.uncertainty_Hz,
+        "eccentricity_max": largest,
+    }

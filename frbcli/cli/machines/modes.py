@@ -1,0 +1,94 @@
+"""Natural frequencies of a turbocharger rotor in the output of `frb stability`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from frbcli.cli.pictures.pictures import draw
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from frbcli.case.schema import Case
+    from frbcli.cli.common import Terminal
+    from frbcli.linear.modes import Mode, Modes
+
+LONGEST_TABLE = 13  # rows of the text
+TOLD = 3  # slowest modes of each direction
+
+
+def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], picture: Path | None) -> None:
+    """Table, picture and JSON of the rotor, free and on springs of a stiffness in N/m, at speeds in Hz."""
+    from frbcli.linear.modes import natural_modes
+    from frbcli.plot.machine.modes import modes_figure
+
+    found = [natural_modes(case, None, [0.0]), natural_modes(case, stiffness, speeds or None)]
+    for modes in found:
+        tell_modes(terminal, modes)
+    if picture is not None:
+        drawn = natural_modes(case, stiffness) if speeds else found[1]
+        picture = draw(terminal, lambda: modes_figure(drawn), picture, "Natural modes")
+    terminal.emit(
+        {
+            "command": "stability",
+            "case": case.name,
+            "points": [],
+            "threshold": None,
+            "natural_frequencies": [modes_document(modes) for modes in found],
+            "picture": picture,
+        }
+    )
+
+
+def tell_modes(terminal: Terminal, modes: Modes) -> None:
+    """The modes as text."""
+    from frbcli.units import display
+
+    if not modes.stiffness_N_m:
+        bending = ", ".join(f"{frequency:.4g}" for frequency in modes.free_Hz[:TOLD])
+        terminal.result(f"Free rotor of {modes.mass_kg:.4g} kg: bending modes of {bending} Hz at rest.")
+        return
+    springs = ", ".join(display(spring, "N/m") for spring in dict.fromkeys(modes.stiffness_N_m))
+    every = -(-len(modes.points) // LONGEST_TABLE)
+    rows = [
+        (f"{point.speed_Hz:.4g}", *_cells(point.directed("forward")), *_cells(point.directed("backward")))
+        for point in modes.points[::every]
+    ]
+    columns = ("Hz", *("forward",) * TOLD, *("backward",) * TOLD)
+    title = f"Natural frequencies on {springs}: conical, cylindrical, bending"
+    terminal.table(title, columns, rows)
+    if modes.error is not None:
+        missing = 100 * modes.error.frequency
+        kept = f"{modes.kept} modes of each plane"
+        terminal.result(f"The reduction to {kept} changes these frequencies by {missing:.2g} %.")
+
+
+def _cells(modes: Sequence[Mode]) -> list[str]:
+    cells = [f"{mode.frequency_Hz:.4g} {mode.kind[:3]}" for mode in modes[:TOLD]]
+    return cells + [""] * (TOLD - len(cells))
+
+
+def modes_document(modes: Modes) -> dict[str, object]:
+    """The modes in JSON."""
+    error = modes.error
+    return {
+        "stiffness_N_m": list(modes.stiffness_N_m),
+        "mass_kg": modes.mass_kg,
+        "free_bending_Hz": list(modes.free_Hz),
+        "points": [
+            {
+                "speed_Hz": point.speed_Hz,
+                "modes": [
+                    {"frequency_Hz": mode.frequency_Hz, "direction": mode.direction, "kind": mode.kind}
+                    for mode in point.modes
+                ],
+            }
+            for point in modes.points
+        ],
+        "reduction": {
+            "modes": modes.kept,
+            "frequency_relative": None if error is None else error.frequency,
+            "missing_flexibility_m_N": None if error is None else error.missing_flexibility,
+        },
+    }

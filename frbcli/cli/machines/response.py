@@ -1,0 +1,178 @@
+"""`frb response`: linear unbalance response over the rotor speed."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.bearings.coefficient_error import errors_of, tell_coefficient_error
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.files import INPUT, OUTPUT, check_outputs, here
+from frbcli.cli.pictures.picture_options import picture_options
+from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.quantities import SPEED_OPTION
+from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.runs.live import counting, live_lines
+from frbcli.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from frbcli.analysis.order_tracking import OrderTrack
+    from frbcli.case.schema import Case
+    from frbcli.linear.response import Array, Response
+    from frbcli.plot.style import Picture
+    from frbcli.results.store import Run
+
+COLUMNS = 80
+MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
+EXPLANATION = (
+    "um: larger semi-axis of the orbit; deg: phase of the forward motion to the\n"
+    "angle of the rotor; growth: of the least damped whirl in 1/s, which hides the\n"
+    "rest where it is above 0; eps: largest eccentricity of a journal on its orbit."
+)
+MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
+
+
+@click.command()
+@case_argument
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
+              help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [120 over the range of the case]')  # fmt: skip
+@click.option("--run", "run_file", type=INPUT, metavar="RUN.h5",
+              help="Draw the synchronous motion of a run of the case over the response.")  # fmt: skip
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-response.png, here]")
+@click.option("--map", "as_map", is_flag=True,
+              help="Draw the undamped critical speed map, over the stiffness of the bearings.")  # fmt: skip
+@click.option("--no-picture", is_flag=True, help="No picture.")
+@click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all amplitudes and phases as a table, too.")
+@picture_options
+@output_options
+def command(
+    case: Case,
+    speeds: tuple[float, ...],
+    run_file: Path | None,
+    output: Path | None,
+    as_map: bool,
+    no_picture: bool,
+    csv: Path | None,
+    terminal: Terminal,
+) -> None:
+    """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping."""
+    from frbcli.columns import spread_table, table_of
+    from frbcli.linear.columns import RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
+    from frbcli.linear.response import response
+    from frbcli.results.kinds import TABLES
+    from frbcli.results.store import read_run
+
+    if no_picture and output is not None:
+        raise click.UsageError("-o names the picture that --no-picture leaves out.")
+    picture = None if no_picture else output or here(case.name, "-critical-map.png" if as_map else "-response.png")
+    check_outputs((csv, TABLES["csv"]), picture=picture)
+    run = None if run_file is None else read_run(run_file)
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = response(case, speeds or None, counting(terminal, show))
+    tracks = () if run is None else _tracks(run, found.points, str(run_file))
+    _tell(terminal, found, bool(speeds))
+    if csv is not None:
+        from frbcli.results.tables import write_table
+
+        write_table(found.to_pandas(), csv)
+        terminal.result(f"table: {csv}")
+    if picture is not None:
+        picture = draw(terminal, lambda: _figure(found, tracks, as_map), picture)
+    films = ((point, film) for point in found.resting for film in point.films)
+    terminal.emit(
+        {
+            "command": "response",
+            "case": case.name,
+            "points": found.table().documents(),
+            "forces": spread_table(RESPONSE_FORCES, found).documents(),
+            "films": spread_table(RESPONSE_FILMS, found).documents(),
+            "coefficients": table_of(RESPONSE_COEFFICIENTS, films).documents(),
+            "critical_speeds_Hz": found.critical_speeds_Hz,
+            "picture": picture,
+            "csv": csv,
+        }
+    )
+
+
+def _figure(found: Response, tracks: tuple[OrderTrack, ...], as_map: bool) -> Picture:
+    """The critical speed map, or the response with the synchronous motion of a run."""
+    from frbcli.linear.critical_map import critical_map
+    from frbcli.plot.machine.critical_map import critical_map_figure
+    from frbcli.plot.machine.response import response_figure
+
+    if as_map:
+        return critical_map_figure(critical_map(found.case, None, found.resting))
+    return response_figure(found, tracks)
+
+
+def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ...]:
+    """The synchronous motion of the journals and disks of a run that are points of the response.
+
+    Raises InputError if none is, which is then a run of another machine."""
+    from frbcli.analysis.order_tracking import order_track
+    from frbcli.analysis.signals import joined, points
+
+    recorded = [joined(kind, node) for kind in ("journal", "disk") for node in points(run.signals, kind)]
+    named = [node for node in recorded if node in known]
+    if not named:
+        problem = f"has the points {', '.join(recorded)}, of which the case has none."
+        fault = Fault("--run", name, None, problem, f"Give a run with {', '.join(known)}.")
+        raise InputError("response", (fault,))
+    return tuple(order_track(run, 1.0, name) for name in named)
+
+
+def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
+    from frbcli.linear.columns import RESPONSE
+
+    shown = found.points[:MOST_POINTS]
+    every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
+    count, validity, cells = len(found.points), found.validity, found.table().cells(RESPONSE)
+    in_films, rows = bool(found.films), []
+    for i in range(every - 1, len(found.speeds_Hz), every):
+        speed, _, _, growth, eccentricity = cells[i * count]
+        motions = (f"{amplitude} {phase}" for _, amplitude, phase, *_ in cells[i * count : i * count + len(shown)])
+        rows.append((speed, *motions, growth, *([f"{eccentricity}{MARKS[validity[i]]}"] if in_films else [])))
+    named = [name.replace("_", " ") for name in shown]
+    columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", *(["eps"] if in_films else []))
+    terminal.table(found.case.title or found.case.name, columns, rows)
+    if len(found.points) > len(shown):
+        rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
+        terminal.result(f"{rest}: in the picture, --csv and --json.")
+    terminal.result(EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + ".")
+    for sentence in _doubts(found):
+        terminal.result(fill(sentence, COLUMNS))
+    peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)
+    terminal.result(f"Peaks at {peaks} Hz." if peaks else "No peak in the range.")
+    tell_coefficient_error(terminal, errors_of(found.resting))
+
+
+def _doubts(found: Response) -> list[str]:
+    """What is to be said of motions that linear coefficients do not describe."""
+    from frbcli.linear.response import BEYOND_GAP, DOUBTFUL, DOUBTFUL_MOTION
+
+    sentences = []
+    speeds, validity = found.speeds_Hz, found.validity
+    doubtful, beyond = ([s for s, v in zip(speeds, validity, strict=True) if v == kind]
+                        for kind in (DOUBTFUL_MOTION, BEYOND_GAP))  # fmt: skip
+    if doubtful:
+        sentences.append(
+            f"?: doubtful at {_among(doubtful, speeds)}. A journal moves over more than {DOUBTFUL:g} of the gap that "
+            "its resting position leaves: its amplitude may be wrong by more than 15 %."
+        )
+    if beyond:
+        sentences.append(
+            f"!: not possible at {_among(beyond, speeds)}. The orbit of a journal leaves its gap, up to an "
+            f"eccentricity of {found.eccentricity_max.max():.3g}; a run-up with this unbalance tells the motion."
+        )
+    return sentences
+
+
+def _among(some: list[float], speeds: Array) -> str:
+    """Some of the speeds of a response as a reader takes them."""
+    if len(some) == 1:
+        return f"{some[0]:.4g} Hz"
+    return f"{len(some)} of {len(speeds)} speeds, {min(some):.4g} to {max(some):.4g} Hz"

@@ -1,0 +1,186 @@
+"""`frb stability`: resting positions, linear coefficients, eigenvalues over speed, threshold speed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from frbcli.cli.bearings.coefficient_error import errors_of, tell_coefficient_error
+from frbcli.cli.bearings.heat import heat_document, tell_heat
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.files import OUTPUT, check_outputs, here
+from frbcli.cli.machines.modes import emit_modes, modes_document, tell_modes
+from frbcli.cli.machines.shapes import emit_shapes
+from frbcli.cli.machines.stability_table import tell_points
+from frbcli.cli.pictures.picture_options import picture_options
+from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
+from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.runs.live import counting, live_lines
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.cycles.threshold import ThresholdKind
+    from frbcli.linear.stability import Stability, StabilityPoint
+
+
+@click.command()
+@case_argument
+@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
+              help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [60 over the range of the case]')  # fmt: skip
+@click.option("--stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
+              help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
+@click.option("--shapes", type=SPEED_OPTION, metavar="SPEED",
+              help='Only the damped modes at this rotor speed, with their shapes, e.g. "200 Hz".')  # fmt: skip
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
+@click.option("--no-picture", is_flag=True, help="No Campbell diagram.")
+@picture_options
+@output_options
+def command(
+    case: Case,
+    speeds: tuple[float, ...],
+    stiffness: float | None,
+    shapes: float | None,
+    output: Path | None,
+    no_picture: bool,
+    terminal: Terminal,
+) -> int | None:
+    """Resting positions, coefficients of the films and eigenvalues of CASE over speed, and the threshold of stability.
+
+    For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
+    """
+    from frbcli.cycles.threshold import threshold_kind
+    from frbcli.errors import NotConverged
+    from frbcli.linear.modes import natural_modes
+    from frbcli.linear.stability import stability
+
+    if no_picture and output is not None:
+        raise click.UsageError("-o names the picture that --no-picture leaves out.")
+    if shapes is not None and (stiffness is not None or speeds):
+        raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")
+    drawn = "shapes" if shapes is not None else "campbell" if stiffness is None else "modes"
+    picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
+    check_outputs(picture=picture)
+    if shapes is not None:
+        with compilation_shown(terminal, case):
+            emit_shapes(terminal, case, shapes, picture)
+        return None
+    if stiffness is not None:
+        emit_modes(terminal, case, stiffness, speeds, picture)
+        return None
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        found = stability(case, speeds or None, counting(terminal, show))
+        kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
+    _tell(terminal, found, kind, bool(speeds))
+    if picture is not None:
+        from frbcli.plot.machine.campbell import campbell_figure
+
+        picture = draw(terminal, lambda: campbell_figure(found), picture, "Campbell diagram")
+    natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
+    for modes in natural:
+        tell_modes(terminal, modes)
+    if len(natural) == 1 and found.points[-1].rests:
+        at = f"{found.points[-1].speed_Hz:.4g} Hz"
+        terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
+    terminal.emit(
+        {
+            "command": "stability",
+            "case": case.name,
+            "points": [_point(point) for point in found.points],
+            "threshold": _threshold(found),
+            "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
+            "note": found.note,
+            "picture": picture,
+        }
+        | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
+    )
+    return None if any(point.rests for point in found.points) else NotConverged.exit_code
+
+
+def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, every_speed: bool) -> None:
+    from frbcli.scene.clearance_steps import step_times
+    from frbcli.scene.supply import unfed_films
+
+    tell_points(terminal, found, every_speed)
+    tell_coefficient_error(terminal, errors_of(found.points))
+    terminal.result(_sentence(found))
+    warmest = found.points[-1]
+    if warmest.warm is not None:
+        tell_heat(terminal, warmest.warm, f"heat at {warmest.speed_Hz:.4g} Hz")
+    if kind is not None:
+        terminal.result(_character(kind))
+    for film in unfed_films(found.case):
+        terminal.result(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
+    if step_times(found.case):
+        terminal.result("Note: the clearances are the initial ones; bearing.clearance_steps changes them during a run.")
+
+
+def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
+    """Stiffness of the bearings and speed in Hz at which the modes of a turbocharger's rotor are of interest."""
+    from frbcli.linear.modes import film_springs
+
+    if found.case.rotor.kind != "turbocharger":
+        return []
+    wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
+    for point in found.points[-1:]:
+        springs = film_springs(found.case, point.films) if point.films else ()
+        if springs or (point.rests and not found.case.bearings):
+            wanted.append((springs, point.speed_Hz))
+    return wanted
+
+
+def _sentence(found: Stability) -> str:
+    threshold = found.threshold
+    if threshold is None:
+        return found.note
+    return (
+        f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, initially with "
+        f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed.{found.note}"
+    )
+
+
+def _character(kind: ThresholdKind) -> str:
+    """Whether a threshold is soft or hard."""
+    if kind.criticality == "supercritical":
+        return "The threshold is soft (supercritical): the whirl grows with the speed from nothing."
+    if kind.fold_Hz is None:
+        return "The threshold is hard (subcritical): the whirl jumps to a large one."
+    return (
+        "The threshold is hard (subcritical): the whirl jumps to a large one, which a\n"
+        f"disturbance leads to from {kind.fold_Hz:.1f} Hz on."
+    )
+
+
+def _point(point: StabilityPoint) -> dict[str, Any]:
+    """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
+    from frbcli.columns import keys, table_of
+    from frbcli.linear.columns import FILM, MODES, POINT
+
+    (document,) = table_of(POINT, [point]).documents()
+    films = table_of(FILM, point.films).documents()
+    document |= films[0] if films else dict.fromkeys(keys(FILM))
+    if len(films) > 1:
+        named = zip(point.films, films, strict=True)
+        document["films"] = [{"film": film.name} | values for film, values in named]
+    if point.ring_speeds_Hz:
+        document["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
+    if point.warm is not None:
+        document["thermal"] = heat_document(point.warm)
+    if point.problem:
+        document["problem"] = point.problem
+    document["modes"] = table_of(MODES, point.modes.tolist()).documents()
+    return document | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
+
+
+def _threshold(found: Stability) -> dict[str, float] | None:
+    threshold = found.threshold
+    if threshold is None:
+        return None
+    return {
+        "speed_Hz": threshold.speed_Hz,
+        "frequency_Hz": threshold.frequency_Hz,
+        "whirl_ratio": threshold.whirl_ratio,
+    }

@@ -1,0 +1,152 @@
+"""`frb waterfall`: the spectra of a run over time or rotor speed, or its amplitudes by order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
+from frbcli.cli.pictures.picture_options import Span, picture_options
+from frbcli.cli.pictures.pictures import draw_wanted
+from frbcli.cli.quantities import TIME_OPTION
+from frbcli.cli.runs.events import EVENT_COLUMNS, event_row
+from frbcli.cli.studies.gathered import gathered
+from frbcli.cli.studies.measured import measured_options, run_of
+
+if TYPE_CHECKING:
+    from frbcli.analysis.measured import Measurement
+    from frbcli.analysis.order_tracking import OrderTrack
+    from frbcli.analysis.spectrum import Direction
+    from frbcli.plot.spectra.waterfall import Over
+
+MICRO = 1e6
+
+
+class Orders(click.ParamType[tuple[float, ...]]):
+    """Multiples of the rotor speed, separated by commas."""
+
+    name = "orders"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        if isinstance(value, tuple):
+            return value
+        try:
+            return tuple(float(number) for number in str(value).split(","))
+        except ValueError:
+            self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
+
+
+@dataclass(frozen=True)
+class View:
+    """How a run is looked at, see the options of the command."""
+
+    over: Over | None
+    cascade: bool
+    window: float | None
+    direction: Direction
+    log: bool
+    levels: tuple[float, float] | None
+    linear: bool
+    lines: tuple[float, ...] | None
+
+
+@click.command()
+@click.argument("run_file", metavar="RUN", type=INPUT)
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-waterfall.png]")
+@click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME, disk_NAME.")
+@click.option(
+    "--order",
+    "orders",
+    metavar="1,0.5",
+    type=Orders(),
+    help="Amplitudes by order in place of spectra; exact also in a ramp of the speed.",
+)
+@click.option("--over", type=click.Choice(["time", "speed"]), help="The axis. [time; speed with --order]")
+@click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
+@click.option("--window", type=TIME_OPTION, help="Length of one spectrum. [from the ramp, up to 0.2 s]")
+@click.option(
+    "--direction",
+    type=click.Choice(["x", "y", "forward"]),
+    default="x",
+    show_default=True,
+    help="One coordinate, or the motion that turns with the rotor.",
+)
+@click.option("--log", is_flag=True, help="Logarithmic frequency; with --order amplitude.")
+@click.option("--levels", type=Span(), metavar="A,B", help="Range of the colours in dB, with --linear in um. [-60,0]")
+@click.option("--linear", is_flag=True, help="Amplitudes in um in place of levels in dB.")
+@click.option("--lines", type=Orders(), metavar="1,0.5", help="Orders whose lines are drawn in. [those of free whirls]")
+@measured_options
+@picture_options
+@output_options
+@gathered("view", View)
+def command(
+    run_file: Path,
+    output: Path | None,
+    signal: str,
+    orders: tuple[float, ...] | None,
+    view: View,
+    measurement: Measurement | None,
+    terminal: Terminal,
+) -> None:
+    """Draw the spectra of RUN in dB relative to the clearance, over time or rotor speed; or, with --order, its
+    amplitudes by order.
+
+    RUN is a run file, or a measurement as CSV, WAV or MAT, whose columns --x, --speed and so on name.
+    """
+    if orders is not None and (view.cascade or view.window is not None):
+        raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
+    if orders is not None and (view.levels is not None or view.linear or view.lines is not None):
+        raise click.UsageError("--levels, --linear and --lines belong to spectra, not to --order.")
+    target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
+    check_outputs(picture=target)
+    run = run_of(run_file, measurement)
+    told: dict[str, Any]
+    if orders is None:
+        from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure
+
+        axis: Over = view.over or "time"
+        found = run_spectra(run, signal, view.window, view.direction)
+        scale = LevelScale(view.linear, view.levels, view.lines)
+        draw_wanted(
+            terminal,
+            lambda: waterfall_figure(
+                run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale
+            ),
+            target,
+            "waterfall",
+        )
+        terminal.result(reading(found))
+        told = {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
+    else:
+        from frbcli.analysis.order_tracking import order_tracks
+        from frbcli.plot.spectra.orders import orders_figure
+
+        axis = view.over or "speed"
+        tracks = order_tracks(run, orders, signal)
+        draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, view.direction, view.log), target, "orders")
+        told = {"orders": [_largest(track, view.direction) for track in tracks]}
+        for row in told["orders"]:
+            most = f"{MICRO * row['amplitude_max_m']:.3g} um at {row['speed_Hz']:.1f} Hz"
+            terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
+    if measurement is not None:
+        told["events"] = run.events
+        if run.events:
+            terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
+    document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
+    terminal.emit({**document, "direction": view.direction, **told})
+
+
+def _largest(track: OrderTrack, direction: Direction) -> dict[str, float]:
+    """Where the motion of an order is largest."""
+    amplitude = track.amplitude(direction)
+    at = int(amplitude.argmax())
+    return {
+        "order": track.order,
+        "amplitude_max_m": float(amplitude[at]),
+        "t_s": float(track.time_s[at]),
+        "speed_Hz": float(track.speed_Hz[at]),
+    }

@@ -1,0 +1,1 @@
+"""Run-up and run-down: progress, compiling, memory."""

@@ -1,0 +1,218 @@
+"""What run-up and run-down share: options, live progress, the closing table, the JSON document, the exit code."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from frbcli.cli.common import Terminal
+from frbcli.cli.files import OUTPUT, beside, check_outputs, here
+from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.runs.events import EVENT_COLUMNS, event_row
+from frbcli.cli.runs.live import COLUMNS, LONGEST_LEFT_s, TOLD_EVERY_s, live_lines, progress_line
+from frbcli.cli.studies.gathered import gathered
+from frbcli.cli.studies.onset_spread import spread_shown
+from frbcli.errors import FrbError
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.results.store import Run
+    from frbcli.runs.march import Progress
+    from frbcli.runs.run import Observer
+    from frbcli.scene.cost import ExpectedCost
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Transient = Callable[..., "Run"]
+
+EXIT_CODES = {"finished": 0, "input-error": 2, "interrupted": 130}
+ENDED_EARLY = 3  # for any other reason, which is named
+SUMMARY = "-summary.png"
+TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
+SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What is asked of a run, see run_options."""
+
+    output: Path | None
+    resume: bool
+    force: bool
+    picture: bool
+    verify: bool
+    explain: bool
+
+
+def run_options(function: Function) -> Function:
+    """Give a command --output, --resume, --force, --no-picture, --verify and --explain; it receives
+    `options: RunOptions`."""
+    output = click.option(
+        "--output", "-o", type=OUTPUT, default=None, metavar="RUN.h5", help="Run file. Default: CASE.h5 here."
+    )
+    resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
+    force = click.option("--force", is_flag=True, help="Replace the run in the run file.")
+    picture = click.option("--picture/--no-picture", default=True, help="A summary picture beside the run.")
+    verify = click.option(
+        "--verify", is_flag=True, help="Run again with half the tolerance and step size, and report the change."
+    )
+    explain = click.option(
+        "--explain", is_flag=True, help="Name the Hopf point or fold behind each onset and offset of a whirl."
+    )
+    return output(resume(force(picture(verify(explain(gathered("options", RunOptions)(function)))))))
+
+
+def transient(
+    command: str,
+    run_case: Transient,
+    case: Case,
+    options: RunOptions,
+    terminal: Terminal,
+    spread: bool = False,
+) -> int:
+    """Run a case with progress on the terminal, report, and return the exit code."""
+    from frbcli.results.store import check_output
+    from frbcli.runs.run import run_cost
+    from frbcli.runs.standing import INTERRUPTED, standing_run
+
+    path = options.output or here(case.name, ".h5")
+    check_output(path)
+    if options.picture:
+        check_outputs(picture=beside(path, SUMMARY))
+    standing = standing_run(command, case, path, options.resume, options.force)
+    if standing is not None and standing.status != INTERRUPTED:
+        terminal.remark(f"{path} holds this run already; --force computes it again.")
+    cost = run_cost(command, case)
+    if cost.total_s > TOLD_s:
+        terminal.remark(cost_line(cost))
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+        run = run_case(case, path, resume=options.resume, observe=_watch(terminal, show), force=options.force)
+    _report(case, run, terminal)
+    terminal.result(f"run: {path}")
+    verified = _verified(case, run, terminal) if options.verify and run.status != "interrupted" else None
+    onset = spread_shown(case, run, terminal) if spread and run.status != "interrupted" else None
+    explained = _explained(case, run, terminal) if options.explain and run.status != "interrupted" else None
+    terminal.emit(
+        {
+            "command": command,
+            "run": str(path),
+            "status": run.status,
+            "t_end_s": run.t_end_s,
+            "events": run.events,
+            "cost": run.cost,
+            "error": run.error if verified is None else {**run.error, "verified": verified},
+            **({} if onset is None else {"onset_spread": onset}),
+            **({} if explained is None else {"explanations": explained}),
+        }
+    )
+    if options.picture and len(run) > 1:
+        from frbcli.plot.run.summary import summary_figure
+
+        draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))
+    interrupted = any(again is not None and again["status"] == "interrupted" for again in (verified, onset))
+    return exit_code("interrupted" if interrupted else run.status)
+
+
+def cost_line(cost: ExpectedCost) -> str:
+    """Expected cost of a run."""
+    from frbcli.scene.cost import clock
+    from frbcli.scene.limits import memory
+
+    before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > TOLD_BEFORE_s else ""
+    return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
+
+
+def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
+    """Shows the progress on a terminal, elsewhere as a line every now and then, and warns once if a run takes much
+    longer than its plan expected."""
+    from frbcli.scene.cost import clock
+
+    said, told_s = False, 0.0
+
+    def observe(progress: Progress) -> None:
+        nonlocal said, told_s
+        if show is not None:
+            show(progress_line(progress))
+        elif progress.cpu_s > told_s + TOLD_EVERY_s:
+            told_s = progress.cpu_s
+            terminal.remark(progress_line(progress))
+        if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
+            said = True
+            left = (
+                f"about {clock(progress.left_s)} left"
+                if progress.left_s < LONGEST_LEFT_s
+                else "and the end cannot be estimated"
+            )
+            terminal.remark(
+                f"Warning: this run takes {progress.over_plan:.0f} times as long as its plan expected, {left}.\n"
+                "Ctrl-C ends it and keeps the results so far."
+            )
+
+    return observe
+
+
+def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
+    """The change in a finer run, as text and as part of the JSON document."""
+    from frbcli.studies.verify import verify
+
+    try:
+        with live_lines(terminal) as show:
+            watch = None if show is None else lambda progress: show(f"again\n{progress_line(progress)}")
+            found = verify(case, run, watch)
+    except KeyboardInterrupt:
+        terminal.remark("Interrupted before the end of the verification.")
+        return {"status": "interrupted"}
+    onset = "" if math.isnan(found.onset_Hz) else f", and the onset of whirl by {abs(found.onset_Hz):.2g} Hz"
+    what = "eccentricity changes" if case.bearings else "displacements change, over their length,"
+    terminal.result(
+        f"verified: with half the tolerance and step size the {what} by {found.eccentricity:.1e}\n"
+        f"until {found.until_s:.3g} s{onset} ({found.status}, {found.cpu_s:.3g} s of CPU time)."
+    )
+    if found.coupling is not None:
+        terminal.result(f"with rotor and films solved together it changes by {found.coupling:.1e}.")
+    return {
+        "status": found.status,
+        "eccentricity": found.eccentricity,
+        "quiet_until_s": found.until_s,
+        "onset_speed_Hz": found.onset_Hz,
+        "coupling": found.coupling,
+        "cpu_s": found.cpu_s,
+    }
+
+
+def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
+    """What causes the whirls of a run, as text and for the JSON document."""
+    from frbcli.cycles.explain import explanations
+    from frbcli.cycles.limit_cycles import limit_cycles
+
+    try:
+        told = explanations(limit_cycles(case), run.events)
+    except FrbError as error:
+        told = (f"Not explained: {error}",)
+    for sentence in told:
+        terminal.result(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
+    return told
+
+
+def exit_code(status: str) -> int:
+    """The exit code for a run that ended so."""
+    return EXIT_CODES.get(status, ENDED_EARLY)
+
+
+def _report(case: Case, run: Run, terminal: Terminal) -> None:
+    """Status with its cause and remedy, events, cost and error, as text."""
+    from frbcli.runs.account import account
+    from frbcli.runs.advice import run_advice, run_end
+
+    terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
+    for sentence in run_advice(case, run_end(run)):
+        terminal.remark(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
+    if run.events:
+        terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
+    terminal.table("cost and error", ("", "", ""), account(run))

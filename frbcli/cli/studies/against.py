@@ -1,0 +1,70 @@
+"""A measurement beside a run in the output of `frb compare`."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from frbcli.cli.common import Terminal
+from frbcli.cli.files import beside, check_outputs
+from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.studies.measured import run_of
+
+if TYPE_CHECKING:
+    from frbcli.analysis.measured import Measurement
+    from frbcli.studies.against import AgainstMeasured
+
+KINDS = ("critical-speed", "self-excited", "onset", "offset", "lock-in")
+
+
+def beside_measured(
+    terminal: Terminal, run_file: Path, file: Path, measurement: Measurement | None, signal: str, output: Path | None,
+    picture: bool,
+) -> None:  # fmt: skip
+    """Tables, picture and JSON of a run and a measurement."""
+    from frbcli.results.store import read_run
+    from frbcli.studies.against import against_measured
+
+    target = (output or beside(run_file, "-measured.png")) if picture else None
+    check_outputs(picture=target)
+    found = against_measured(read_run(run_file), run_of(file, measurement), signal)
+    _tell(terminal, found)
+    if target is not None:
+        from frbcli.plot.spectra.ridges import against_figure
+
+        target = draw(terminal, lambda: against_figure(found), target)
+    terminal.emit(
+        {
+            "command": "compare",
+            "run": run_file,
+            "measured": file,
+            "events": {"computed": found.computed_events, "measured": found.measured_events},
+            "deviations": [
+                {"what": what, "rms": rms, "of": size} for what, rms, size in found.deviations()
+            ],
+            "picture": target,
+        }
+    )
+
+
+def _tell(terminal: Terminal, found: AgainstMeasured) -> None:
+    rows = []
+    for kind in KINDS:
+        speeds = [
+            next((event["speed_Hz"] for event in events if event["kind"] == kind), None)
+            for events in (found.computed_events, found.measured_events)
+        ]
+        if any(speed is not None for speed in speeds):
+            rows.append((kind, *("-" if speed is None else f"{speed:.1f} Hz" for speed in speeds)))
+    where = found.point.replace("_", " ")
+    terminal.table(f"first events of the {where}, rotor speed", ("event", "computed", "measured"), rows)
+    terminal.table("ridges", ("what", "deviation, rms", "measured, rms"), [
+        (what, _shown(rms, what), _shown(size, what)) for what, rms, size in found.deviations()
+    ])
+
+
+def _shown(value: float, what: str) -> str:
+    if math.isnan(value):
+        return "-"
+    return f"{value:.3g} Hz" if what.startswith("frequency") else f"{1e6 * value:.3g} um"

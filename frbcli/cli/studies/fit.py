@@ -1,0 +1,137 @@
+"""`frb fit`: numbers of a case from a measured run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Names, Terminal, case_argument, output_options
+from frbcli.cli.files import INPUT, OUTPUT, check_outputs, here
+from frbcli.cli.pictures.picture_options import picture_options
+from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.runs.live import live_lines
+from frbcli.cli.studies.measured import measured_options, run_of
+
+if TYPE_CHECKING:
+    from frbcli.analysis.measured import Measurement
+    from frbcli.case.schema import Case
+    from frbcli.studies.fit import Fit, Fitted
+
+EXPLANATION = (
+    "error: standard error; what lies at a bound has none. The errors are of the\n"
+    "measurement's scatter: what the case leaves out is not in them."
+)
+POOR = 2.0  # times the scatter of the measurement: the case does not describe it
+
+
+@click.command()
+@case_argument
+@click.option("--measured", "file", required=True, metavar="FILE", type=INPUT,
+              help="A measured run-up: CSV, WAV or MAT, see --x; or a run.")  # fmt: skip
+@click.option("--vary", type=Names(), required=True, metavar="KEY,KEY", help="The numbers of CASE that are sought.")
+@click.option("--bounds", multiple=True, metavar="KEY=LOW,HIGH", help="In the units of the case. Repeatable. [a third, "
+              "three times]")  # fmt: skip
+@click.option("--signal", default="journal", show_default=True, help="Of the run: journal, or journal_NAME.")
+@click.option("--save", metavar="CASE.toml", type=OUTPUT, help="Write the case with the numbers found.")
+@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-fit.png, here]")
+@click.option("--no-picture", is_flag=True, help="No picture.")
+@measured_options
+@picture_options
+@output_options
+def command(
+    case: Case,
+    file: Path,
+    vary: tuple[str, ...],
+    bounds: tuple[str, ...],
+    signal: str,
+    save: Path | None,
+    output: Path | None,
+    no_picture: bool,
+    measurement: Measurement | None,
+    terminal: Terminal,
+) -> None:
+    """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
+    amplitude of the whirl, its onset."""
+    from frbcli.results.kinds import NEW
+    from frbcli.studies.fit import fit
+
+    picture = None if no_picture else output or here(case.name, "-fit.png")
+    check_outputs((save, NEW), picture=picture)
+    limits = _bounds(case, bounds)
+    measured = run_of(file, measurement)
+    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+
+        def watch(number: int, values: Mapping[str, float]) -> None:
+            if show is not None:
+                show(f"run {number}: " + ", ".join(f"{key} {value:.5g}" for key, value in values.items()))
+
+        found = fit(case, measured, vary, limits, signal, watch)
+    _tell(terminal, found)
+    if save is not None:
+        from frbcli.results.write import write
+
+        write(save, NEW, found.case.source_text)
+        terminal.result(f"case: {save}")
+    if picture is not None:
+        from frbcli.plot.spectra.ridges import fit_figure
+
+        picture = draw(terminal, lambda: fit_figure(found), picture)
+    terminal.emit(
+        {
+            "command": "fit",
+            "case": case.name,
+            "numbers": [
+                {"key": n.key, "unit": n.unit, "start": n.start, "value": n.value, "error": n.error, "low": n.low,
+                 "high": n.high, "at_bound": n.at_bound}
+                for n in found.numbers
+            ],
+            "correlation": found.correlation,
+            "chi": found.chi,
+            "runs": found.runs,
+            "case_file": save,
+            "picture": picture,
+        }
+    )  # fmt: skip
+
+
+def _tell(terminal: Terminal, found: Fit) -> None:
+    columns = ("key", "at first", "found", "error", "between")
+    terminal.table(found.case.title or found.case.name, columns, map(_row, found.numbers))
+    terminal.result(EXPLANATION)
+    terminal.result(f"{found.runs} runs; residuals of {found.chi:.2g} times the scatter of the measurement.")
+    if found.chi > POOR:
+        terminal.result("They are larger than the scatter: the case does not describe all of what was measured.")
+
+
+def _row(number: Fitted) -> tuple[str, ...]:
+    def shown(value: float) -> str:
+        from frbcli.units import display
+
+        return display(float(f"{value:.5g}"), number.unit) if number.unit else f"{value:.5g}"
+
+    error = "at a bound" if number.at_bound else f"{100.0 * number.error / number.value:.2g} %"
+    return number.key, shown(number.start), shown(number.value), error, f"{shown(number.low)} to {shown(number.high)}"
+
+
+def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
+    """Bounds by keys, in SI: each is read as a value of the case."""
+    from frbcli.case.listing import values
+
+    found = {}
+    for text in given:
+        key, _, span = text.partition("=")
+        low, comma, high = span.partition(",")
+        if not comma:
+            raise click.UsageError(f"--bounds {text} is not of the form KEY=LOW,HIGH.")
+        read = []
+        for side in (low, high):
+            changed = case.with_settings(f"{key}={side.strip()}")
+            read.append(next((v.value for v in values(changed) if v.key == key), None))
+        if not all(isinstance(value, float) for value in read):
+            raise click.UsageError(f"--bounds {text}: {key} is no number of the case.")
+        found[key.strip()] = (float(read[0] or 0.0), float(read[1] or 0.0))
+    return found

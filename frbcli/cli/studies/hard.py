@@ -1,0 +1,110 @@
+"""The hard cases on the terminal: their list, and their results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from textwrap import fill
+from typing import Any
+
+from frbcli.case.hard import HardCase, hard_cases
+from frbcli.cli.common import Terminal
+from frbcli.cli.runs.live import live_lines
+from frbcli.columns import short_number
+from frbcli.errors import INTERRUPTED
+from frbcli.studies.hard.cases import HardResult, run_hard_cases
+
+NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
+COLUMNS = ("case", "difficulty", "end", "error", "stated", "CPU s")
+WIDTH = 80
+EXPLANATION = """\
+error: largest deviation of the eccentricities from a fine reference until a
+whirl begins or the run ends; relative deviation of a force; stated: error that
+the run or test states. `frb cases --hard NAME` prints a case."""
+
+
+def list_hard(terminal: Terminal) -> None:
+    """The table of all hard cases."""
+    found = hard_cases()
+    terminal.table("hard cases", ("case", "difficulty", "ends"), [(h.name, h.hard, h.end) for h in found])
+    terminal.remark("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
+    terminal.emit({"command": "cases", "hard": [_entry(hard) for hard in found]})
+
+
+def hard_text(name: str) -> str:
+    """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
+    a case that has to be refused is given as its base and its settings."""
+    (hard,) = hard_cases([name])
+    settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
+    head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
+    return head + (hard.case().source_text if hard.end != "input-error" else "# which has to be refused.\n")
+
+
+def run_hard(names: Sequence[str], terminal: Terminal) -> int:
+    """Run hard cases, all of them for no name, and report; returns the exit code."""
+    with live_lines(terminal) as show:
+        found = run_hard_cases(names, _progress(terminal, show))
+    terminal.table("hard cases", COLUMNS, map(_cells, found.results))
+    terminal.result(EXPLANATION)
+    for result in found.results:
+        if result.message:
+            terminal.result(fill(f"{result.hard.name}: {cause_of(result)}", WIDTH))
+    wrong = [result for result in found.results if not result.ok]
+    for result in wrong:
+        terminal.result(fill(f"NOT AS LISTED: {result.hard.name}: {'; '.join(result.problems)}", WIDTH))
+    cpu_s = sum(result.cpu_s for result in found.results)
+    done = len(found.results)
+    terminal.result(f"{done - len(wrong)} of {done} end as listed; {cpu_s:.0f} s of CPU time.")
+    if not found.complete:
+        terminal.result("Interrupted: the other cases were not run.")
+    whole = {} if found.complete else {"status": "interrupted"}
+    documents = [_document(result) for result in found.results]
+    terminal.emit({"command": "cases", **whole, "hard": documents, "ok": found.ok})
+    if not found.complete:
+        return INTERRUPTED
+    return 0 if found.ok else NOT_AS_LISTED
+
+
+def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[HardResult, int, int], None]:
+    def tell(result: HardResult, done: int, whole: int) -> None:
+        line = f"{done}/{whole}  {result.hard.name}: {result.status}{'' if result.ok else ', NOT AS LISTED'}"
+        terminal.progress(line, show)
+
+    return tell
+
+
+def cause_of(result: HardResult) -> str:
+    """Why a case ended early: its message, and the cause from the list."""
+    return "; ".join(text.rstrip(".") for text in (result.message, result.hard.why) if text)
+
+
+def _cells(result: HardResult) -> tuple[str, ...]:
+    hard = result.hard
+    end = result.status if result.status == hard.end else f"{result.status}, not {hard.end}"
+    return hard.name, hard.hard, end, short_number(result.error), short_number(result.reported), f"{result.cpu_s:.1f}"
+
+
+def _entry(hard: HardCase) -> dict[str, object]:
+    return {"name": hard.name, "topic": hard.topic, "hard": hard.hard, "command": hard.words, "expected": hard.end,
+            "why": hard.why}  # fmt: skip
+
+
+def _document(result: HardResult) -> dict[str, Any]:
+    """A result in JSON."""
+    hard = result.hard
+    return {
+        "name": hard.name,
+        "topic": hard.topic,
+        "hard": hard.hard,
+        "command": hard.words,
+        "expected": hard.end,
+        "status": result.status,
+        "message": result.message,
+        "events": result.events,
+        "error": result.error,
+        "reported": result.reported,
+        "certain": result.certain,
+        "until_s": result.until_s,
+        "cpu_s": result.cpu_s,
+        "ok": result.ok,
+        "problems": result.problems,
+    }

@@ -1,0 +1,212 @@
+"""`frb sweep`: one case with many settings, on all cores or on a cluster."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, here
+from frbcli.cli.pictures.picture_options import picture_options
+from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.runs.live import live_lines
+from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
+from frbcli.cli.studies.gathered import gathered
+from frbcli.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from frbcli.studies.sweep.sweep import Sweep, SweepPoint
+
+LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Where the points are computed, see the options of the command."""
+
+    jobs: int
+    backend: str
+    scheduler: str
+
+
+@click.command()
+@click.argument("source", metavar="CASE", type=INPUT)
+@click.option("--set", "settings", multiple=True, metavar="KEY=V1,V2",
+              help="Values of a key; several keys make a grid. One value holds for all. Repeatable.")  # fmt: skip
+@click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
+              help="Points one by one: keys in the first line, values below.")  # fmt: skip
+@click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
+@click.option("--stability", is_flag=True, help="The threshold speed alone, in place of a run-up.")
+@click.option("--no-runs", is_flag=True, help="Keep no run files.")
+@click.option("--format", "table_format", default="csv", show_default=True, metavar="FORMAT", help="csv or parquet.")
+@click.option("--picture/--no-picture", default=True, help="A curve over one key, a map over two.")
+@click.option("--jobs", type=int, default=-1, metavar="N", help="Processes. [one for each core]")
+@click.option("--backend", default="loky", show_default=True, metavar="NAME", help="loky (this machine) or dask.")
+@click.option("--scheduler", default="", metavar="ADDRESS", help="Of the dask cluster, e.g. tcp://10.0.0.1:8786.")
+@picture_options
+@output_options
+@gathered("pool", Pool)
+def command(
+    source: Path,
+    settings: tuple[str, ...],
+    list_file: Path | None,
+    output: Path | None,
+    stability: bool,
+    no_runs: bool,
+    table_format: str,
+    picture: bool,
+    pool: Pool,
+    terminal: Terminal,
+) -> int:
+    """Compute CASE at many points: one table, one picture, all runs.
+
+    The same command resumes an interrupted sweep.
+    """
+    from frbcli.case.load import load_case
+    from frbcli.studies.sweep.sweep import Workers, check_table_format, sweep, write_table
+
+    fixed, axes = _axes(settings)
+    case = load_case(source, fixed)
+    points = _points(axes, list_file)
+    check_table_format(table_format)
+    folder = output or here(case.name, "-sweep")
+    table, target = folder / f"sweep.{table_format}", folder / "sweep.png"
+    _check_places(table, target if picture else None)
+    method = "stability" if stability else "runup"
+    with live_lines(terminal) as show:
+        observe = _progress(terminal, show)
+        workers = Workers(pool.backend, pool.jobs, pool.scheduler)
+        found = sweep(case, points, folder, method, not no_runs, workers, observe)
+    _report(found, terminal)
+    write_table(found, table, table_format)
+    terminal.result(f"table: {table}")
+    drawn = _picture(found, target, terminal) if picture else None
+    documents = [_document(point) for point in found.points]
+    terminal.emit({"command": "sweep", "case": case.name, "points": documents, "table": table, "picture": drawn})
+    return _exit_code(found)
+
+
+def _check_places(table: Path, picture: Path | None) -> None:
+    """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
+    if table.parent.is_dir():  # else it is made, or that is refused
+        from frbcli.results.kinds import TABLES
+
+        check_outputs((table, TABLES[table.suffix[1:]]), picture=picture)
+
+
+def _axes(settings: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, ...]]]:
+    """Settings of one value, which hold for all points, and the values of the other keys."""
+    from frbcli.studies.sweep.points import split_values
+
+    fixed: list[str] = []
+    axes: dict[str, tuple[str, ...]] = {}
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        values = split_values(text)
+        if not equals or len(values) < 2:
+            fixed.append(setting)
+        elif key.strip() in axes:
+            raise _fault("--set", setting, "sets a key a second time.", "Write all its values in one --set.")
+        elif not all(values):
+            raise _fault("--set", setting, "has an empty value.", "Write e.g. --set key=v1,v2.")
+        else:
+            axes[key.strip()] = values
+    return fixed, axes
+
+
+def _points(axes: Mapping[str, Sequence[str]], list_file: Path | None) -> Sequence[Mapping[str, str]]:
+    from frbcli.studies.sweep.points import grid, product, read_list
+
+    if list_file is None:
+        if not axes:
+            raise _fault("--set", "", "gives no key several values.", "Write e.g. --set key=v1,v2, or --list FILE.")
+        return grid(axes)
+    listed = read_list(list_file)
+    return product(listed, grid(axes)) if axes else listed
+
+
+def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[SweepPoint, int, int], None]:
+    """A line that is redrawn on a terminal, else one for each point."""
+    began = time.monotonic()
+    before: list[int] = []  # its first entry: the points that an earlier call had computed
+
+    def tell(point: SweepPoint, done: int, whole: int) -> None:
+        before.append(done - 1)
+        computed = done - before[0]
+        left = (time.monotonic() - began) / computed * (whole - done)
+        line = f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {point.message or _result(point)}"
+        terminal.progress(line, show)
+
+    return tell
+
+
+def _named(point: SweepPoint) -> str:
+    return ", ".join(f"{key}={value}" for key, value in point.settings.items())
+
+
+def _result(point: SweepPoint) -> str:
+    event = point.first("threshold") or point.first("onset")
+    return point.status if event is None else f"{event['kind']} {event['speed_Hz']:.1f} Hz"
+
+
+def _report(found: Sweep, terminal: Terminal) -> None:
+    event = "threshold" if found.method == "stability" else "onset"
+    columns = ("", *found.keys, event, "frequency", "status")
+    title = found.case.title or found.case.name
+    terminal.table(title, columns, [_cells(point, found.keys, event) for point in found.points[:LONGEST_TABLE]])
+    if len(found.points) > LONGEST_TABLE:
+        terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
+    failed = [point for point in found.points if point.status != "finished"]
+    if any(point.status == "interrupted" for point in failed):
+        terminal.remark("Interrupted; the same command resumes the sweep.")
+    elif failed:
+        terminal.result(
+            f"{len(failed)} of {len(found.points)} points did not finish; the table's file has the reasons."
+        )
+
+
+def _cells(point: SweepPoint, keys: Sequence[str], kind: str) -> tuple[str, ...]:
+    event = point.first(kind)
+    speed, frequency = ("-", "-") if event is None else (_hertz(event["speed_Hz"]), _hertz(event["frequency_Hz"]))
+    return (str(point.number), *(point.settings.get(key, "") for key in keys), speed, frequency, point.status)
+
+
+def _hertz(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1f} Hz"
+
+
+def _picture(found: Sweep, target: Path, terminal: Terminal) -> Path | None:
+    from frbcli.plot.studies.sweep import can_draw, sweep_figure
+
+    if not can_draw(found):
+        terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
+        return None
+    return draw(terminal, lambda: sweep_figure(found), target)
+
+
+def _document(point: SweepPoint) -> dict[str, Any]:
+    return {
+        "set": point.settings,
+        "status": point.status,
+        "message": point.message,
+        "events": point.events,
+        "cost": point.cost,
+        "run": point.run,
+    }
+
+
+def _exit_code(found: Sweep) -> int:
+    statuses = {point.status for point in found.points}
+    if "interrupted" in statuses:
+        return EXIT_CODES["interrupted"]
+    return 0 if statuses == {"finished"} else ENDED_EARLY
+
+
+def _fault(key: str, value: str, problem: str, remedy: str) -> InputError:
+    return InputError("sweep", (Fault(key, value, None, problem, remedy),))

@@ -1,0 +1,1 @@
+"""Pictures of bearings, modes, stability and limit cycles."""

@@ -1,0 +1,139 @@
+"""The diagram of limit cycles: eccentricity over the rotor speed, stable solid, unstable dashed; below, frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from frbcli.cycles.result import SPEED, CycleBranch, LimitCycles
+from frbcli.plot.spectra.run_track import RunTrack
+from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, plain, styled
+
+Array = NDArray[np.float64]
+COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
+MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
+PIECES = 8  # straight pieces between two cycles
+WHIRL = "whirl with unbalance"
+STABLE, UNSTABLE = "-", (0, (3, 1.5))
+
+
+def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> Figure:
+    """Largest eccentricities of resting positions and cycles over the speed, a panel for each film, and below the
+    frequencies of the cycles with half the rotor speed and the lines of the rings.
+
+    tracks: of runs, drawn over it as thin lines.
+    """
+    case = found.case
+    count = len(found.films)
+    with styled():
+        figure = new_figure(case.title or case.name, "resting positions and limit cycles", 7.2, 2.6 + 2.0 * count)
+        panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
+        for film, axes in enumerate(panels[:-1]):
+            _film(axes, found, film)
+            _runs(axes, tracks, found.films[film])
+        _frequencies(panels[-1], found)
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(*panels[-1].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+        panels[0].legend(handles, labels, fontsize="small", loc="best")
+    return figure
+
+
+def _film(axes: Axes, found: LimitCycles, film: int) -> None:
+    speeds = np.array([point.value for point in found.equilibria])
+    eccentricity = np.array([point.eccentricity[film] for point in found.equilibria])
+    stable = np.array([point.stable for point in found.equilibria])
+    _line(axes, speeds, eccentricity, stable, BLACK, "at rest")
+    if found.synchronous:
+        speeds = np.array([point.value for point in found.synchronous])
+        values = np.array([point.eccentricity_max[film] for point in found.synchronous])
+        stable = np.array([point.stable for point in found.synchronous])
+        _line(axes, speeds, values, stable, GREY, "with unbalance")
+    for number, branch in enumerate(found.branches):
+        values = np.array([point.eccentricity_max[film] for point in branch.points])
+        label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
+        _curve(axes, branch, values, COLOURS[number % len(COLOURS)], label)
+        _whirls(axes, branch, [whirl.eccentricity_max[film] for whirl in branch.with_unbalance], number)
+    for kind, (marker, label) in MARKS.items():
+        points = found.of(kind)
+        at = [point.value for point in points], [point.eccentricity_max[film] for point in points]
+        if points:
+            axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
+    axes.set_ylim(0.0, 1.0)
+    axes.set_ylabel(f"largest eccentricity\n{found.films[film].replace('_', ' ')}".rstrip())
+
+
+def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
+    """The largest eccentricities of runs: up in orange, down in green."""
+    for track in tracks:
+        values = track.largest.get(film)
+        if values is not None:
+            colour = ORANGE if track.rising else GREEN
+            axes.plot(track.speed_Hz, values, color=colour, linewidth=0.7, label=track.label, zorder=1.8)
+
+
+def _frequencies(axes: Axes, found: LimitCycles) -> None:
+    speeds = np.array([point.value for point in found.equilibria])
+    ends = np.array([speeds.min(initial=speeds.max()), speeds.max()])
+    rotor = np.array([point.speed_Hz for point in found.equilibria])
+    axes.plot(speeds, 0.5 * rotor, color=GREY, linestyle=(0, (1, 2)), label="ω/2")
+    rings = np.array([point.ring_speeds_Hz for point in found.equilibria])
+    for ring in range(rings.shape[1] if rings.size else 0):
+        own = rings[:, ring]
+        labels = ("(ω + ω_F)/2", "ω_F/2") if ring == 0 else (None, None)
+        axes.plot(speeds, 0.5 * (rotor + own), color=GREY, linestyle=(0, (5, 3)), label=labels[0])
+        axes.plot(speeds, 0.5 * own, color=GREY, linestyle="-", linewidth=0.7, label=labels[1])
+    for number, branch in enumerate(found.branches):
+        values = np.array([point.frequency_Hz for point in branch.points])
+        _curve(axes, branch, values, COLOURS[number % len(COLOURS)], None)
+        _whirls(axes, branch, [whirl.frequency_Hz for whirl in branch.with_unbalance], number, told=False)
+    for kind, (marker, _) in MARKS.items():
+        points = found.of(kind)
+        at = [point.value for point in points], [point.frequency_Hz for point in points]
+        axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
+    axes.set_xlim(float(ends[0]), float(ends[1]))
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else plain(f"{found.over} in {found.unit}"))
+    axes.set_ylabel("frequency in Hz")
+
+
+def _curve(axes: Axes, branch: CycleBranch, y: Array, colour: str, label: str | None) -> None:
+    """A branch, its cycles joined by cubics along it that go to and fro only where the cycles do."""
+    x = np.array([point.value for point in branch.points])
+    stable = np.array([point.stable for point in branch.points], dtype=bool)
+    if len(x) > 2:
+        lengths = np.hypot(np.diff(x) / max(float(np.ptp(x)), 1e-300), np.diff(y) / max(float(np.ptp(y)), 1e-300))
+        along = np.concatenate([[0.0], np.cumsum(lengths + 1e-9)])
+        pieces = np.arange(PIECES * (len(x) - 1) + 1)
+        fine = np.interp(pieces / PIECES, np.arange(len(x)), along)
+        x, y = PchipInterpolator(along, x)(fine), PchipInterpolator(along, y)(fine)
+        stable = stable[pieces // PIECES] & stable[-(-pieces // PIECES)]
+    _line(axes, x, y, stable, colour, label)
+
+
+def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: int, told: bool = True) -> None:
+    """The whirls of a branch with unbalance: full dots where they have locked in, rings where they have two
+    frequencies."""
+    colour = COLOURS[number % len(COLOURS)]
+    for locked, fill, label in ((False, "white", WHIRL), (True, colour, f"{WHIRL}, locked in")):
+        at = [
+            (whirl.speed_Hz, value)
+            for whirl, value in zip(branch.with_unbalance, values, strict=True)
+            if whirl.locked == locked
+        ]
+        named = told and label not in axes.get_legend_handles_labels()[1]
+        if at:
+            axes.plot(*zip(*at, strict=True), linestyle="", marker="o", markersize=3.2, color=colour,
+                      markerfacecolor=fill, label=label if named else None, zorder=3)  # fmt: skip
+
+
+def _line(axes: Axes, x: Array, y: Array, stable: NDArray[np.bool_], colour: str, label: str | None) -> None:
+    """A curve, solid where stable and dashed where not; a piece between the two belongs to the unstable part."""
+    unstable = ~stable
+    beside = unstable | np.append(unstable[1:], False) | np.insert(unstable[:-1], 0, False)
+    axes.plot(x, np.where(stable, y, np.nan), color=colour, linestyle=STABLE, label=label)
+    axes.plot(x, np.where(beside, y, np.nan), color=colour, linestyle=UNSTABLE)

@@ -1,0 +1,1 @@
+"""Pictures of the signals of a run."""

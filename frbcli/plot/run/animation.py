@@ -1,0 +1,117 @@
+"""The orbits of the journals as a moving picture: GIF, or MP4 where ffmpeg is installed."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from frbcli.analysis.signals import joined, points, speed_at
+from frbcli.errors import Fault, InputError
+from frbcli.plot.run.envelope import at_times
+from frbcli.plot.run.orbit import LAST_s
+from frbcli.plot.signals import MICRO, cut, ends, heading, motion, shell
+from frbcli.plot.style import BLUE, GREY, new_figure, styled
+from frbcli.results.kinds import PICTURES
+from frbcli.results.place import require_places
+from frbcli.results.store import Run
+from frbcli.results.write import written
+
+FORMATS = (".gif", ".mp4")
+FRAMES, PER_SECOND = 80, 20
+BETWEEN = 24  # points of the trail per frame
+TRAIL = 2.0  # revolutions of the rotor that stay seen
+DPI = 90
+
+
+def check_animation(path: Path) -> None:
+    """Raises InputError if a moving picture cannot have this name or this place, or its program is missing."""
+    if path.suffix.lower() not in FORMATS:
+        raise _refuse(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
+    if path.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
+        raise _refuse(path, "needs the program ffmpeg, which is not here.", "Install it, or end the name with .gif.")
+    require_places([(path, PICTURES[path.suffix.lower()])])
+
+
+def animate_orbits(
+    run: Run, path: str | Path, from_time: float | None = None, to_time: float | None = None, frames: int = FRAMES,
+    dpi: int = DPI,
+) -> Path:  # fmt: skip
+    """Write the orbits of all journals from from_time to to_time in s (default: the last 0.1 s) as a moving picture.
+
+    Raises InputError if it cannot be written, RunFileError if the run has no samples between these times.
+    """
+    path = Path(path)
+    check_animation(path)
+    end = ends(run)[1] if to_time is None else to_time
+    begin = max(end - LAST_s, 0.0) if from_time is None else from_time
+    cut(run, begin, end)
+    with styled():
+        film, draw = _scene(run, begin, end, frames)
+        moving = FuncAnimation(film, draw, frames=frames, blit=False)
+        writer: Any = FFMpegWriter(PER_SECOND) if path.suffix.lower() == ".mp4" else PillowWriter(PER_SECOND)
+        with written(path, PICTURES[path.suffix.lower()]) as part, TemporaryDirectory(prefix="frb-") as folder:
+            drawn = Path(folder) / f"orbits{path.suffix.lower()}"  # by which its writers know the format
+            moving.save(str(drawn), writer=writer, dpi=dpi)
+            shutil.copyfile(drawn, part)
+    return path
+
+
+def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Any]:
+    """The figure, and what draws a frame on it by its number."""
+    bearings = list(points(run.signals, "journal")) or [""]
+    title, subtitle = heading([run])
+    figure = new_figure(title, subtitle, 3.8 * len(bearings) + 0.4, 4.4)
+    times = np.linspace(begin, end, frames * BETWEEN)
+    turn = 1.0 / max(abs(speed_at(run, 0.5 * (begin + end))), 1.0 / (end - begin))
+    kept = max(2, int(TRAIL * turn / (times[1] - times[0])))
+    lines = []
+    for axes, bearing in zip(figure.subplots(1, len(bearings), squeeze=False)[0], bearings, strict=True):
+        x, y = (MICRO * at_times(run, part, times) for part in motion(run, joined("journal", bearing)))
+        _prepare(axes, bearing, _radius(run, bearing), float(np.max(np.hypot(x, y))))
+        trail = axes.plot([], [], color=BLUE, linewidth=1.0)[0]
+        dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
+        lines.append((x, y, trail, dot))
+    told = figure.text(0.99, 0.015, "", ha="right", fontsize=9.0)
+
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # it would be sought anew for each frame
+
+    def draw(frame: int) -> None:
+        last = (frame + 1) * BETWEEN
+        first = max(0, last - kept)
+        for x, y, trail, dot in lines:
+            trail.set_data(x[first:last], y[first:last])
+            dot.set_data(x[last - 1 : last], y[last - 1 : last])
+        now = float(times[last - 1])
+        told.set_text(f"{now:.4f} s, {speed_at(run, now):.1f} Hz")
+
+    return figure, draw
+
+
+def _radius(run: Run, bearing: str) -> float:
+    """Of the circle around a journal in um, 0 without a film."""
+    return MICRO * (shell(run, bearing) or 0.0)
+
+
+def _prepare(axes: Axes, bearing: str, radius: float, reach: float) -> None:
+    axes.set_title(bearing)
+    if radius > 0.0:
+        axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
+    widest = 1.08 * max(radius, reach)
+    axes.set_xlim(-widest, widest)
+    axes.set_ylim(-widest, widest)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x in µm")
+    axes.set_ylabel("y in µm")
+
+
+def _refuse(path: Path, problem: str, remedy: str) -> InputError:
+    return InputError(f"picture {path}", (Fault(key="output", value="", line=None, problem=problem, remedy=remedy),))

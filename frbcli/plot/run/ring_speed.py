@@ -1,0 +1,103 @@
+"""Speed of floating rings over that of the rotor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from frbcli.analysis.signals import joined, points
+from frbcli.case.load import load_case_text
+from frbcli.equilibrium.ring_speed import concentric_ratios
+from frbcli.errors import InputError
+from frbcli.plot.curves import Over, draw_curves, finish
+from frbcli.plot.run.envelope import extremes
+from frbcli.plot.signals import case_tables, ends, heading
+from frbcli.plot.style import GREY, legend_below, new_figure, styled
+from frbcli.results.container import refuse
+from frbcli.results.records import SPEED
+from frbcli.results.signals import Signal
+from frbcli.results.store import Run
+
+Values = NDArray[np.float64]
+
+SLOWEST = 0.02  # share of the highest rotor speed below which the ratio is not drawn
+ROOM = 1.15  # above the highest curve
+PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
+START = 0.05  # share of the run after which the highest value is sought: a rotor that falls drags its rings
+
+
+def ring_speed_figure(
+    runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None, over: Over = "time"
+) -> Figure:
+    """omega_F / omega_R of each ring, the runs overlaid, from from_time to to_time in s; dashed the ratio of concentric
+    surfaces, where the torques of both films balance.
+
+    Raises RunFileError if a run has no ring that turns.
+    """
+    for run in runs:
+        ends(run)
+        if not _turning(run):
+            raise refuse(run.path, "has no ring that turns.", "Draw a run of a case with floating rings.")
+    names = _turning(runs[0])
+    curves = [(name, [_Ratio.of(run, name) for run in runs]) for name in names]
+    with styled():
+        figure = new_figure(*heading(runs))
+        axes = figure.subplots()
+        draw_curves(axes, runs, curves, over, (from_time, to_time))
+        concentric = _concentric(runs[0]) if len({run.case_text for run in runs}) == 1 else {}
+        highest = max(
+            extremes(ratio, int(START * len(run)), len(run))[1]
+            for _, each in curves
+            for run, ratio in zip(runs, each, strict=True)
+        )
+        for value in sorted(set(concentric.values())):
+            alike = [name for name, own in concentric.items() if own == value]
+            told = alike[0] if len(alike) < len(concentric) else ""
+            axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
+            axes.annotate(
+                " ".join(word for word in ("concentric", told) if word) + f" {value:.3f}",
+                (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
+                ha="right", va="bottom", color=GREY, bbox=PAPER,
+            )  # fmt: skip
+        axes.set_ylim(0.0, ROOM * max(highest, *concentric.values(), 1e-3))
+        axes.set_ylabel("ring speed over rotor speed")
+        finish(axes, over)
+        legend_below(figure, axes)
+    return figure
+
+
+def _turning(run: Run) -> list[str]:
+    return [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
+
+
+@dataclass(frozen=True)
+class _Ratio:
+    """Speed of a ring over that of the rotor, NaN where the rotor hardly turns: below `least` Hz."""
+
+    ring: Signal
+    rotor: Signal
+    least: float
+
+    @classmethod
+    def of(cls, run: Run, name: str) -> _Ratio:
+        rotor = run.signal(SPEED)
+        fastest = max(map(abs, extremes(rotor, 0, len(run))))
+        return cls(run.signal(joined("ring_speed", name, "Hz")), rotor, SLOWEST * fastest)
+
+    def __getitem__(self, part: slice) -> Values:
+        speed = np.abs(self.rotor[part])
+        ratio: Values = np.full(len(speed), np.nan)
+        return np.divide(self.ring[part], speed, out=ratio, where=speed > self.least)
+
+
+def _concentric(run: Run) -> dict[str, float]:
+    """Of the run's case, none if this version of frb would not run it."""
+    case_tables(run)
+    try:
+        return concentric_ratios(load_case_text(run.case_text))
+    except InputError:
+        return {}

@@ -1,0 +1,103 @@
+"""Orbits and spectra of a run at chosen moments, one beside the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from frbcli.analysis.signals import located, speed_at
+from frbcli.analysis.spectrum import Spectrogram
+from frbcli.plot.signals import MICRO, bearing_of, cut, ends, motion, shell
+from frbcli.plot.spectra.waterfall import orders
+from frbcli.plot.style import BLUE, GREY, styled
+from frbcli.results.records import SPEED
+from frbcli.results.signals import pieces
+from frbcli.results.store import Run
+
+TURNS = 12.0  # revolutions of an orbit
+LONGEST_s, SHORTEST_s = 0.2, 2e-3
+WIDTH, ROW = 7.2, 2.5  # inches
+ENLARGED = 0.1  # of the clearance: a smaller orbit is drawn without it
+AHEAD = 2.2  # of the rotor speed: up to where a spectrum is drawn
+CLOSE, LINE_pt = 0.2, 10.0  # share of an axis within which names stand one below the other, so far apart
+
+
+def speeds_figure(run: Run, times_s: Sequence[float], found: Spectrogram, signal: str = "journal") -> Figure:
+    """A row for each of some moments in s: the orbit of the last revolutions until then, and the spectrum of the
+    window about it, from the spectra of `run_spectra`. Raises RunFileError if the run has no samples there."""
+    with styled():
+        figure = Figure(figsize=(WIDTH, ROW * len(times_s)))
+        rows = figure.subplots(len(times_s), 2, squeeze=False, width_ratios=(1.0, 2.0))
+        for (left, right), time_s in zip(rows, times_s, strict=True):
+            draw_orbit_until(left, run, time_s, signal)
+            draw_spectrum_at(right, run, time_s, found, signal)
+            left.set_title(f"{speed_at(run, time_s):.4g} Hz, {time_s:.4g} s")
+    return figure
+
+
+def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal") -> None:
+    """The orbit of the last revolutions before a time in s, in its clearance if it is that of a journal and not
+    too small to be seen in it."""
+    speed = max(abs(speed_at(run, time_s)), 1e-9)
+    begin, end = ends(run)
+    until = min(max(time_s, begin + SHORTEST_s), end)
+    first, last = cut(run, max(begin, until - min(max(TURNS / speed, SHORTEST_s), LONGEST_s)), until)
+    x, y = (MICRO * part[first:last] for part in motion(run, signal))
+    axes.plot(x, y, color=BLUE, linewidth=0.8)
+    middle, reach = np.zeros(2), float(np.max(np.hypot(x, y)))
+    room = shell(run, bearing_of(run, signal)) if located(run, signal)[0] == "journal" else None
+    if room is not None:
+        radius = MICRO * room
+        axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.0))
+        reach = max(reach, radius)
+    extent = 0.5 * max(float(np.ptp(x)), float(np.ptp(y)))
+    if 0.0 < extent < ENLARGED * reach:
+        middle, reach = np.array([np.min(x) + 0.5 * np.ptp(x), np.min(y) + 0.5 * np.ptp(y)]), 1.15 * extent
+    axes.set_xlim(middle[0] - 1.08 * reach, middle[0] + 1.08 * reach)
+    axes.set_ylim(middle[1] - 1.08 * reach, middle[1] + 1.08 * reach)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x in µm")
+    axes.set_ylabel("y in µm")
+
+
+def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, signal: str = "journal") -> None:
+    """Peak amplitudes over frequency of the spectrum nearest to a time in s, with the frequencies of interest."""
+    column = int(np.argmin(np.abs(found.time_s - time_s)))
+    speed = abs(float(found.speed_Hz[column]))
+    highest = min(float(found.frequency_Hz[-1]), max(AHEAD * speed, 8.0 / found.window_s))
+    kept = found.frequency_Hz <= highest
+    axes.plot(found.frequency_Hz[kept], MICRO * found.amplitude[kept, column], color=BLUE)
+    if highest > 0.0:
+        axes.set_xlim(0.0, highest)
+    axes.set_ylim(bottom=0.0)
+    lines = sorted((float(abs(frequencies[column])), name) for name, frequencies in orders(run, signal, found))
+    last, lower = -np.inf, 0.0
+    for at, name in lines:
+        if 0.0 < at < highest:
+            axes.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (2, 3)))
+            lower = lower + LINE_pt if at - last < CLOSE * highest else 0.0
+            axes.annotate(name, (at, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(2, -2 - lower),
+                          textcoords="offset points", va="top", fontsize=8.0, color=GREY)  # fmt: skip
+            last = at
+    axes.set_xlabel("frequency in Hz")
+    axes.set_ylabel("amplitude in µm")
+
+
+def times_of_speeds(run: Run, speeds_Hz: Sequence[float]) -> list[float]:
+    """The first time in s at which the rotor turns as fast as each of some speeds; those it does not reach are left
+    out."""
+    found = []
+    for wanted in speeds_Hz:
+        before = 0.0
+        for start, stop in pieces(0, len(run)):
+            speed = np.abs(run.read(SPEED, start, stop))
+            reached = np.flatnonzero((speed >= abs(wanted)) & (before <= abs(wanted)))
+            if len(reached):
+                found.append(float(run.read("time_s", start + int(reached[0]), start + int(reached[0]) + 1)[0]))
+                break
+            before = float(speed[-1])
+    return found

@@ -1,0 +1,105 @@
+"""Summary of a run: eccentricity or distance with its events, waterfall, rotor speed."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from frbcli.analysis.signals import films, joined, points
+from frbcli.analysis.subsynchronous import whirl_names
+from frbcli.plot.run.displacement import draw_distances
+from frbcli.plot.run.eccentricity import draw_eccentricity
+from frbcli.plot.run.envelope import curve
+from frbcli.plot.signals import ends, events, heading, is_searchable
+from frbcli.plot.spectra.waterfall import draw_levels, level_label, reading, run_spectra
+from frbcli.plot.style import BLACK, GREY, MOST_MARKED, SKY, legend_beside, mark_times, new_figure, styled
+from frbcli.results.records import SPEED
+from frbcli.results.store import Run
+
+SIGNAL = "journal"
+FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
+
+NAMES = {
+    "critical-speed": "critical speed",
+    "self-excited": "self-excited",
+    "onset": "onset of whirl",
+    "offset": "end of whirl",
+    "lock-in": "lock-in",
+    "contact": "contact",
+    "clearance-step": "clearance step",
+}
+
+
+def summary_figure(run: Run) -> Figure:
+    """Eccentricity, or without films the distance of all points, with the events marked, waterfall of the journal and
+    rotor speed over one time axis.
+
+    Raises RunFileError if the run holds no samples.
+    """
+    begin, end = ends(run)
+    title, subtitle = heading([run])
+    marked = _marks(events(run))
+    words = [subtitle]
+    if not run.events and not is_searchable(run):
+        words.append("too long for a search for events")
+    if len(marked) > MOST_MARKED:
+        words.append(f"the first {MOST_MARKED} of {len(marked)} events")
+    with styled():
+        figure = new_figure(title, ", ".join(word for word in words if word), height=7.6)
+        above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
+        draw = draw_eccentricity if any(True for _ in films(run.signals)) else draw_distances
+        draw(above, [run])
+        above.set_xlim(begin, end)
+        legend_beside(above)
+        if len(run) >= FEWEST_SAMPLES:
+            found = run_spectra(run, SIGNAL, None, "x")
+            mesh = draw_levels(middle, run, SIGNAL, found, "time")
+            bar = figure.colorbar(mesh, ax=[above, middle, below], location="bottom", shrink=0.6, pad=0.02,
+                                  extend="both", aspect=40)  # fmt: skip
+            label = level_label(run, SIGNAL).replace("amplitude", "amplitude of the journal")
+            bar.set_label(f"{label}; {reading(found)}")
+            bar.outline.set_visible(False)
+        _draw_speed(below, run)
+        for axes in (above, middle):
+            axes.set_xlabel("")
+        marked = marked[:MOST_MARKED]
+        mark_times((above, middle), [time for time, _ in marked], [told for _, told in marked])
+    return figure
+
+
+def _draw_speed(axes: Axes, run: Run) -> None:
+    axes.plot(*curve(run, run.signal(SPEED)), color=BLACK, label="rotor")
+    rings = [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
+    for name, colour in zip(rings, itertools.cycle((GREY, SKY)), strict=False):
+        label = ", ".join(word for word in ("ring", name) if word)
+        axes.plot(*curve(run, run.signal(joined("ring_speed", name, "Hz"))), color=colour, label=label)
+    legend_beside(axes)
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("time in s")
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.set_ylabel("speed in Hz")
+
+
+def _marks(found: list[dict[str, Any]]) -> list[tuple[float, str]]:
+    """Time and words of what is marked; of the whirls of floating rings the first onset of each that has a name."""
+    marks, known = [], set()
+    for event, name in zip(found, whirl_names(found), strict=True):
+        if not name:
+            marks.append((event["t_s"], _words(event)))
+        elif event["kind"] == "onset" and name not in known:
+            known.add(name)
+            marks.append((event["t_s"], _words(event | {"kind": name.replace("_i", "$_i$").replace("_o", "$_o$")})))
+    return marks
+
+
+def _words(event: dict[str, Any]) -> str:
+    """Label of an event: kind, speed, frequency."""
+    name = NAMES.get(event["kind"], event["kind"])
+    film = f" {event['film'].replace('_', ' ')}" if event.get("film") else ""
+    ratio = event.get("frequency_ratio")
+    share = f", {ratio:.2f} ω" if ratio is not None and ratio != 1.0 else ""
+    return f"{name}{film}\n{event['speed_Hz']:.1f} Hz{share}"

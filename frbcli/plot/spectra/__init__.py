@@ -1,0 +1,1 @@
+"""Spectra over time and speed."""

@@ -1,0 +1,240 @@
+"""The waterfall: spectra of a run over time or rotor speed."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, ScalarFormatter
+from numpy.typing import NDArray
+
+from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
+from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
+from frbcli.analysis.spectrum import waterfall as spectra
+from frbcli.plot.run.envelope import at_times, extremes
+from frbcli.plot.signals import MICRO, bearing_of, clearance, ends, heading, motion
+from frbcli.plot.spectra.cascade import draw_cascade
+from frbcli.plot.style import LEVEL_MAP, new_figure, styled
+from frbcli.results.container import refuse
+from frbcli.results.records import SPEED, TIME
+from frbcli.results.store import Run
+
+Over = Literal["time", "speed"]
+Values = NDArray[np.float64]
+
+LEVELS_dB = (-60.0, 0.0)  # a thousandth of the clearance, and the clearance
+ABOVE_SYNCHRONOUS = 1.2  # how far the frequency axis goes, relative to the highest rotor speed
+LOWEST_LOG_Hz = 10.0
+FEWEST_LINES = 8  # lines of an unpadded spectrum that the frequency axis shows of a rotor that hardly turns
+MOST_IN_WINDOW = 2**18  # samples
+MOST_VALUES = 3e6  # of a map of levels
+TURNING = 1e-3  # share of the highest speed per window that is a change of speed
+FEWEST_COLUMNS, COLUMNS = 50, 2000  # spectra: the latter are more than a picture has columns of pixels
+SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
+TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
+
+
+@dataclass(frozen=True)
+class LevelScale:
+    """What the colours of a waterfall, or the heights of its cascade, stand for.
+
+    linear: amplitudes in µm in place of levels in dB; limits: in that unit, None for LEVELS_dB or up to the largest;
+    orders: of the lines that are drawn in, None for those of free whirls.
+    """
+
+    linear: bool = False
+    limits: tuple[float, float] | None = None
+    orders: tuple[float, ...] | None = None
+
+    def of(self, found: Spectrogram) -> tuple[Values, tuple[float, float], str]:
+        """Values (k, m), their limits and unit."""
+        if not self.linear:
+            return found.level_dB, self.limits or LEVELS_dB, "dB"
+        values = MICRO * found.amplitude
+        return values, self.limits or (0.0, float(np.max(values)) or 1.0), "µm"
+
+
+DECIBELS = LevelScale()
+
+
+def waterfall_figure(
+    run: Run,
+    over: Over = "time",
+    signal: str = "journal",
+    cascade: bool = False,
+    window_s: float | None = None,
+    direction: Direction = "x",
+    log: bool = False,
+    found: Spectrogram | None = None,
+    scale: LevelScale = DECIBELS,
+) -> Figure:
+    """Levels in dB relative to the clearance, of a floating ring to C_i + C_o, with the rotor speed and the frequencies
+    of free whirls drawn in: half of it, or (omega_R + omega_F)/2 and omega_F/2.
+
+    over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
+    "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum, behind each other; window_s
+    (None: as the ramp asks for) and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency;
+    found: the spectra of `run_spectra`, where they are known already; scale: what the colours or heights are.
+
+    Raises InputError if the run does not have the signal or is shorter than a window.
+    """
+    found = found or run_spectra(run, signal, window_s, direction)
+    parts = _parts(run, found) if over == "speed" else [("", found)]
+    point = joined(*located(run, signal)).replace("_", " ")
+    what = f"{'forward motion' if direction == 'forward' else direction} of the {point}"
+    title, subtitle = heading([run])
+    told = f"{subtitle}, {what}\n{reading(found)}" if subtitle else f"{what}, {reading(found)}"
+    with styled():
+        figure = new_figure(title, told, height=4.0 + 0.6 * len(parts))
+        panels = figure.subplots(1, len(parts), squeeze=False, sharey=not cascade)[0]
+        for axes, (name, part) in zip(panels, parts, strict=True):
+            axes.set_title(name)
+            if cascade:
+                values, limits, unit = scale.of(part)
+                draw_cascade(axes, part, over, values, limits, unit, orders(run, signal, part, scale.orders))
+            else:
+                mesh = draw_levels(axes, run, signal, part, over, log, scale)
+        if not cascade:
+            bar = figure.colorbar(mesh, ax=list(panels), pad=0.02, extend="both")
+            bar.set_label("amplitude in µm" if scale.linear else level_label(run, signal))
+            bar.outline.set_visible(False)
+    return figure
+
+
+def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direction) -> Spectrogram:
+    """The spectra of a run up to the frequency that its pictures show."""
+    time_s, x, y, speed = run.signal(TIME), *motion(run, signal), run.signal(SPEED)
+    begin, end = ends(run)
+    if window_s is None:
+        window_s = window_length(time_s, speed, _apart(run, signal))
+    if window_s > MOST_IN_WINDOW * (end - begin) / (len(run) - 1):
+        raise refuse(run.path, f"has more than {MOST_IN_WINDOW} samples in a window.", "Shorten --window.")
+    fastest = max(map(abs, extremes(speed, 0, len(run))))
+    highest = max(ABOVE_SYNCHRONOUS * fastest, FEWEST_LINES / window_s)
+    most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * window_s))))
+    length = clearance(run, bearing_of(run, signal))
+    return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)
+
+
+def reading(found: Spectrogram) -> str:
+    """Window of the spectra, and the largest loss of the synchronous line."""
+    low = float(np.max(found.low_dB, initial=0.0))
+    told = f": the line ω is up to {low:.1f} dB low, use --order 1" if low >= TOLD_dB else ""
+    return f"window {1e3 * found.window_s:.3g} ms{told}"
+
+
+def _apart(run: Run, signal: str) -> float | None:
+    """How far in Hz the lines are from each other that a picture has to part; None where no ring turns."""
+    bearing = bearing_of(run, signal)
+    if bearing not in points(run.signals, "ring"):
+        return None
+    places = np.unique(np.linspace(0, len(run) - 1, COLUMNS).round().astype(np.int64))
+    speed, ring = samples(run.signal(SPEED), places), samples(RingSpeed(run, bearing), places)
+    size = np.abs(speed)  # a rotor may turn the other way round all the time
+    slow = np.flatnonzero(size >= FROM_SPEED * np.max(size))[0]
+    frequencies = speed[slow], 0.5 * (speed[slow] + ring[slow]), 0.5 * ring[slow]
+    lines = sorted(abs(float(frequency)) for frequency in frequencies)
+    gaps = [above - below for below, above in itertools.pairwise(lines)]
+    return min((gap for gap in gaps if gap > SAME_LINE * lines[-1]), default=None)
+
+
+def level_label(run: Run, signal: str) -> str:
+    """What the levels of a signal are relative to."""
+    if "length_m" in run.references:
+        return f"amplitude relative to {1e6 * clearance(run):.3g} µm in dB"
+    ringed = bearing_of(run, signal) in points(run.signals, "ring")
+    return f"amplitude relative to {'C$_i$ + C$_o$' if ringed else 'the clearance'} in dB"
+
+
+def draw_levels(
+    axes: Axes, run: Run, signal: str, found: Spectrogram, over: Over, log: bool = False, scale: LevelScale = DECIBELS
+) -> QuadMesh:
+    """The map of levels with its lines, on axes of a figure."""
+    across = found.time_s if over == "time" else found.speed_Hz
+    values, limits, _ = scale.of(found)
+    mesh = axes.pcolormesh(
+        across,
+        found.frequency_Hz,
+        values,
+        cmap=LEVEL_MAP,
+        vmin=limits[0],
+        vmax=limits[1],
+        shading="nearest" if len(across) > 1 else "auto",
+        rasterized=True,
+    )
+    bottom = LOWEST_LOG_Hz if log else 0.0
+    axes.set_ylim(bottom, float(found.frequency_Hz[-1]))
+    if log:
+        axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(ScalarFormatter())
+    for label, frequency in orders(run, signal, found, scale.orders):
+        axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
+        _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
+    axes.grid(False)
+    axes.set_xlabel("time in s" if over == "time" else "rotor speed in Hz")
+    axes.set_ylabel("frequency in Hz")
+    return mesh
+
+
+def orders(
+    run: Run, signal: str, found: Spectrogram, chosen: Sequence[float] | None = None
+) -> list[tuple[str, Values]]:
+    """The synchronous line, and the frequencies of free whirls; or lines of chosen orders."""
+    if chosen is not None:
+        return [("ω" if order == 1.0 else f"{order:g} ω", order * found.speed_Hz) for order in chosen]
+    lines = [("ω", found.speed_Hz)]
+    bearing = bearing_of(run, signal)
+    if bearing not in points(run.signals, "ring"):
+        return [*lines, ("ω/2", found.speed_Hz / 2)]
+    turning = joined("ring_speed", bearing, "Hz")
+    ring = at_times(run, run.signal(turning), found.time_s) if turning in run else np.zeros(len(found.time_s))
+    return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
+
+
+def _label_line(axes: Axes, across: Values, frequency: Values, label: str, limits: tuple[float, float]) -> None:
+    """Write the name of a line beside it, where it is highest yet well inside the picture."""
+    span = abs(across[-1] - across[0])
+    middle = np.abs(across - 0.5 * (across[0] + across[-1]))
+    inside = (middle < 0.43 * span) & (frequency > limits[0]) & (frequency < limits[1])
+    if not inside.any():
+        return
+    place = int(np.argmax(np.where(inside, frequency, -np.inf)))
+    axes.annotate(
+        label,
+        (across[place], frequency[place]),
+        xytext=(-3, 4),
+        textcoords="offset points",
+        ha="right",
+        va="bottom",
+        color="white",
+        fontsize=9.0,
+    )
+
+
+def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
+    """The spectra while the speed rises and while it falls, each in the order of speed."""
+    change = np.gradient(found.speed_Hz) if len(found.speed_Hz) > 1 else np.zeros(1)
+    least = TURNING * float(np.max(found.speed_Hz))
+    parts = []
+    for name, chosen in (("run-up", change > least), ("run-down", change < -least)):
+        if np.count_nonzero(chosen) > 1:
+            order = np.flatnonzero(chosen)[np.argsort(found.speed_Hz[chosen])]
+            part = replace(
+                found,
+                time_s=found.time_s[order],
+                speed_Hz=found.speed_Hz[order],
+                amplitude=found.amplitude[:, order],
+                level_dB=found.level_dB[:, order],
+                low_dB=found.low_dB[order],
+            )
+            parts.append((name, part))
+    if not parts:
+        raise refuse(run.path, "was made at constant speed.", "Draw its waterfall over time.")
+    return [("", parts[0][1])] if len(parts) == 1 else parts
