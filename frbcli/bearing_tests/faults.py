@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frbcli.case.bearing import Bores, SingleFilmBearing
+from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case, Motion
 from frbcli.errors import Fault
 
@@ -45,9 +45,8 @@ def bearing_faults(case: Case, test: str) -> list[Fault]:
     if not isinstance(bearing, SingleFilmBearing):
         problem = "is not modelled in this version of kinematic tests."
         return [Fault("bearing.kind", bearing.kind, None, problem, 'Modelled is: "single-film".')]
-    supply = bearing.supply
     turns = test == "rotation" and case.motion is not None and case.motion.speed
-    if isinstance(supply, Bores) and supply.on == "journal" and turns:
+    if bearing.supply.surface == "journal" and turns:
         problem = "turn with the journal: no film is steady in which the journal keeps its place."
         return [Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".')]
     return []
