@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from frbcli.case.supplies.bores import Bores
 
 MIDDLE = 0.5  # of the width
+TURNED = 1.0 - 1e-9  # share of a turn that counts as all of it: angles in degrees have round-off
 SupplyPressure = Annotated[Pressure, Field(description="supply pressure, absolute")]
 Ramp = Annotated[
     RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
@@ -156,7 +157,7 @@ class OilSupply(Model):
             problem = f"is {display(pressure, 'Pa')}, below the ambient pressure of {display(ambient, 'Pa')}."
             yield Breach((*path, "pressure"), problem, "Pressures are absolute: ambient plus gauge pressure.")
         count, angle = number(given, "count", NUMBER, 1.0), number(given, "opening_angle", "rad")
-        if count and angle and count * angle >= 2 * math.pi:
+        if count and angle and count * angle >= TURNED * 2 * math.pi:
             problem = f"leaves no land between {count:.0f} {cls.openings_word}."
             yield Breach((*path, "opening_angle"), problem, "Make it smaller.")
         for key in cls.sizes:
