@@ -25,6 +25,7 @@ TWO_PHASE = "film.cavitation=two-phase"
 GROOVES = 'bearing.supply={kind="axial-grooves", opening_angle="15 deg", pressure="2 bar"}'
 HOLES = 'bearing.supply={{kind="bores", count=6, diameter="2 mm", pressure="2 bar", on="{}"}}'
 POCKET = 'bearing.supply={kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'
+SLOTS = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", length="8 mm", pressure="2 bar"}'
 HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
 OIL = "oil.viscosity={grade='SAE 10W-40'}"
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
@@ -49,6 +50,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "feed holes in the shell": ("jeffcott", (HOLES.format("shell"),)),
     "feed holes in the journal": ("jeffcott", (HOLES.format("journal"),)),
     "pocket": ("jeffcott", (POCKET,)),
+    "axial slots": ("jeffcott", (SLOTS,)),
     "lobes": ("jeffcott", ("bearing.lobes={count=3, preload=0.5}",)),
     "heat": ("jeffcott", (OIL, HEAT)),
     "clearance steps": ("jeffcott", (STEP,)),

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.schema import json_schema
+from frbcli.case.supplies.table import SUPPLIES, kind_of
 from frbcli.film.cavitation.table import SHIPPED
 
 PAGE = Path(__file__).parent.parent / "docs" / "case-file.md"
@@ -54,11 +55,7 @@ TABLES = {
     "clearance = { cold = ... }": "ColdClearance",
     "clearance_steps = [{ ... }]": "ClearanceStep",
     "lobes = { ... }": "Lobes",
-    'supply = { kind = "none" }': "NoSupply",
-    'supply = { kind = "circumferential-groove" }': "CircumferentialGroove",
-    'supply = { kind = "axial-grooves" }': "AxialGrooves",
-    'supply = { kind = "bores" }': "Bores",
-    'supply = { kind = "pocket" }': "Pocket",
+    **{f'supply = {{ kind = "{kind_of(supply)}" }}': supply.__name__ for supply in SUPPLIES},
     "[oil]": "Oil",
     "[oil.vogel]": "Vogel",
     "viscosity = { grade = ... }": "Grade",

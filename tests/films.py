@@ -19,9 +19,9 @@ from frbcli.scene.films import HOUSING, ROTOR
 from frbcli.scene.system import System
 
 CLEARANCE, RADIUS, VISCOSITY, AMBIENT = 40e-6, 12.5e-3, 10e-3, 1e5
-GROOVED = RectangularBearing(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, AMBIENT)
-PLAIN = replace(GROOVED, sections=1, supply_pressure=None)
-SUPPLIED = replace(GROOVED, supply_pressure=2e5)
+GROOVED = RectangularBearing(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, grooved=True)
+PLAIN = replace(GROOVED, sections=1, grooved=False)
+SUPPLIED = replace(GROOVED, groove_pressure=1e5)
 
 # Every kind of film: name -> bearing, theory, cavitation
 KINDS = {

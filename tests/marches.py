@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 MESH = Mesh(6, 96)
 BEARING = RectangularBearing(
     width=20e-3, diameter=25e-3, clearance=35e-6, viscosity=12e-3, sections=2,
-    ambient_pressure=1e5, cavitation_pressure=1e5, supply_pressure=1e5,
+    ambient_pressure=1e5, cavitation_pressure=1e5, grooved=True,
 )  # fmt: skip
 SHORT_FILM = make_film(BEARING, "short", "half-sommerfeld", MESH)
 NO_FILM = SHORT_FILM._replace(force_scale=0.0)

@@ -36,7 +36,7 @@ def name_of(row: dict[str, str]) -> str:
 def bearing_of(row: dict[str, str]) -> RectangularBearing:
     if row["supply"] == "none":
         return PLAIN
-    return replace(GROOVED, supply_pressure=1e5 * float(row["supply_pressure_bar"]))
+    return replace(GROOVED, groove_pressure=1e5 * float(row["supply_pressure_bar"]) - GROOVED.ambient_pressure)
 
 
 def motion_of(row: dict[str, str], clearance: float) -> Motion:

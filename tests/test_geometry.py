@@ -366,6 +366,8 @@ def test_lobes_of_a_case_reach_the_section() -> None:
          "bearing.supply.ramp"),
         ("bearing.supply={kind='axial-grooves', count=3, opening_angle='120 deg', pressure='2 bar'}",
          "bearing.supply.opening_angle"),
+        ("bearing.supply={kind='axial-grooves', count=2, opening_angle='180 deg', pressure='2 bar'}",
+         "bearing.supply.opening_angle"),
         ("bearing={kind='single-film', width='20 mm', diameter='25 mm', clearance='40 um', "
          "lobes={count=3, preload=0.5}, "
          "supply={kind='bores', count=6, diameter='2 mm', pressure='2 bar', on='journal'}}", "bearing.lobes"),

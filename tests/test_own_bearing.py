@@ -47,7 +47,7 @@ from frbcli.scene.system import make_system
 
 PAGE = Path(__file__).parent.parent / "docs" / "adding-a-model.md"
 R, L, C, MU = 0.05, 0.03, 1e-4, 0.01
-JOURNAL = RectangularBearing(L, 2 * R, C, MU, 1, 1e5, 1e5, None)
+JOURNAL = RectangularBearing(L, 2 * R, C, MU, 1, 1e5, 1e5)
 DAMPER = f"""
 bearing = {{ kind = "single-film", width = "{L} m", diameter = "{2 * R} m", clearance = "{C} m", ends = "oil-bath" }}
 oil = {{ viscosity = "{MU} Pa*s", density = "850 kg/m^3" }}
@@ -133,7 +133,7 @@ def added() -> Iterator[None]:
 
 def film_of(model: BearingModel, bearing: RectangularBearing = JOURNAL, keys: tuple[float, ...] = ()) -> Any:
     b = bearing
-    pressures = (b.ambient_pressure, b.cavitation_pressure, b.supply_pressure or b.ambient_pressure)
+    pressures = (b.ambient_pressure, b.cavitation_pressure, b.ambient_pressure + b.groove_pressure)
     size = (b.width, b.diameter, b.clearance, b.viscosity, b.sections, b.section_width)
     return model_film(model, BearingDimensions(*size, *pressures), keys)
 

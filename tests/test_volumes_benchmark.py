@@ -120,7 +120,7 @@ def iteration_seconds(along: int) -> float:
 
 
 def test_iteration_of_the_two_phase_film_against_the_naive_way() -> None:
-    bearing = RectangularBearing(WIDTH, 2.0 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, AMBIENT)
+    bearing = RectangularBearing(WIDTH, 2.0 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, grooved=True)
     naive_film = NaiveFilm(bearing)
     d, v = np.array(ROTATION.d), np.zeros(2)
     naive = seconds(lambda: [naive_film.force(d, v, ROTATION.omega) for _ in range(5)], 5)

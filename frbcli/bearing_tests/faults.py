@@ -1,9 +1,8 @@
 """What a case lacks for a kinematic test, and what no such test can be made of."""
 
-
 from __future__ import annotations
 
-from frbcli.case.bearing import Bores, SingleFilmBearing
+from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case, Motion
 from frbcli.errors import Fault
 from frbcli.scene.elements import without_film
@@ -50,9 +49,8 @@ def bearing_faults(case: Case, test: str) -> list[Fault]:
         problem = "has two films in series: a kinematic test moves the journal of one."
         remedy = 'Write kind = "single-film", with the dimensions of one of its films.'
         return [Fault("bearing.kind", bearing.kind, None, problem, remedy)]
-    supply = bearing.supply
     turns = test == "rotation" and case.motion is not None and case.motion.speed
-    if isinstance(supply, Bores) and supply.on == "journal" and turns:
+    if bearing.supply.surface == "journal" and turns:
         problem = "turn with the journal: no film is steady in which the journal keeps its place."
         return [Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".')]
     return []

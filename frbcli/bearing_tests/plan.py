@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from frbcli.bearing_tests.faults import bearing_faults, motion_faults
-from frbcli.case.bearing import Bores, SingleFilmBearing
+from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
@@ -87,7 +87,7 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
     assert isinstance(bearing, SingleFilmBearing)
     assert case.motion is not None
     section = film_section(case, bearing)
-    rectangle = film_rectangle(bearing, section)
+    rectangle = film_rectangle(section)
     law = law_named(cavitation)
     closed = law.closed and bearing.ends == "free-to-air"
     if closed:
@@ -113,13 +113,12 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = "rotat
         decisions.append(Decision("diffusion", "upwind", reason))
     rate = TWO_PI * abs(case.motion.speed or case.motion.frequency or case.motion.whirl_speed or 1.0)
     turning = 0.0
-    if isinstance(bearing.supply, Bores) and bearing.supply.on == "journal":
+    if bearing.supply.surface == "journal":
         turning = TWO_PI * (case.motion.speed or 0.0)
         decisions.append(Decision("frame", "of the journal", "the feed holes turn with it and are at rest there"))
-    ramp = getattr(bearing.supply, "ramp", 0.0)
     return KinematicPlan(
-        test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning, ramp,
-        published=published,
+        test, cavitation, section, rectangle, cells, STEPS_PER_PERIOD, rate, tuple(decisions), turning,
+        bearing.supply.rise_time, published=published,
     )  # fmt: skip
 
 
@@ -143,7 +142,7 @@ def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
     decisions = [Decision(*decided) for decided in model_decisions(model)]
     if test != "rotation":
         decisions.append(Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"))
-    rectangle = film_rectangle(bearing, section)
+    rectangle = film_rectangle(section)
     return KinematicPlan(
         test, "", section, rectangle, (0, 0), STEPS_PER_PERIOD, rate, tuple(decisions), model=model
     )
@@ -222,7 +221,8 @@ def _model_faults(case: Case, cavitation: str) -> list[Fault]:
     if case.film.theory == "short":
         problem = "is not for kinematic tests, which solve the whole film."
         faults.append(Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".'))
-    ramp = getattr(case.bearings[0].supply, "ramp", 0.0) if isinstance(case.bearings[0], SingleFilmBearing) else 0.0
+    bearing = case.bearings[0]
+    ramp = bearing.supply.ramp if isinstance(bearing, SingleFilmBearing) else 0.0
     if ramp > 0.0 and known and _is_published(case, law_named(cavitation)):
         problem = "is a ramp of the pressure, which the elements of the published form do not follow."
         faults.append(Fault("bearing.supply.ramp", f"{ramp:g} s", None, problem, "Write 0 s."))

@@ -1,4 +1,4 @@
-"""The bearings of a case: one film, a floating ring between two films, or given coefficients; supply and ends.
+"""The bearings of a case: one film, a floating ring between two films, or given coefficients; their ends.
 
 Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are those of the
 whole bearing, both symmetric halves.
@@ -25,77 +25,19 @@ from frbcli.case.quantities import (
     Identifier,
     Length,
     Mass,
-    OpeningAngle,
     Position,
     Preload,
-    Pressure,
     Ratio,
     RingInertia,
-    RiseTime,
     SpecificHeat,
     Temperature,
     ThermalConductivity,
     Viscosity,
 )
+from frbcli.case.supplies.none import NoSupply
+from frbcli.case.supplies.table import Supply
 from frbcli.case.thermal import ROOM_TEMPERATURE, AnyWall, Material
 from frbcli.materials.solids import SOLIDS, Solid
-
-Ramp = Annotated[
-    RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
-]
-
-
-class NoSupply(Model):
-    """No supply: oil enters at the ends only."""
-
-    kind: Literal["none"] = Field(default="none", description="no groove, feed hole or pocket")
-
-
-class CircumferentialGroove(Model):
-    """A groove around the bearing: in the middle, between two lands of half the width, or at one end."""
-
-    kind: Literal["circumferential-groove"] = Field(description="a groove around the bearing")
-    axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
-    pressure: Pressure = Field(description="supply pressure, absolute")
-    ramp: Ramp = 0.0
-
-
-class AxialGrooves(Model):
-    """Axial grooves in the shell, evenly spaced."""
-
-    kind: Literal["axial-grooves"] = Field(description="grooves along the axis, in the shell")
-    count: Annotated[int, Count(1, 24, 1)] = Field(default=1, description="number of grooves")
-    position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
-    opening_angle: OpeningAngle = Field(description="angle of one groove")
-    pressure: Pressure = Field(description="supply pressure, absolute")
-    ramp: Ramp = 0.0
-
-
-class Bores(Model):
-    """Feed holes of equal diameter in the shell or the journal, evenly spaced around it."""
-
-    kind: Literal["bores"] = Field(description="round feed holes")
-    count: Annotated[int, Count(1, 100, 6)] = Field(description="number of feed holes")
-    diameter: Length = Field(description="of a feed hole")
-    axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
-    position: Angle = Field(default=0.0, description="phi of the first feed hole")
-    on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
-    pressure: Pressure = Field(description="supply pressure, absolute")
-    ramp: Ramp = 0.0
-
-
-class Pocket(Model):
-    """A pocket in the shell, in the middle of the width."""
-
-    kind: Literal["pocket"] = Field(description="one rectangular pocket in the shell")
-    position: Angle = Field(description="phi of the middle of the pocket")
-    opening_angle: OpeningAngle = Field(description="angle of the pocket")
-    width: Length = Field(description="axial width of the pocket")
-    pressure: Pressure = Field(description="supply pressure, absolute")
-    ramp: Ramp = 0.0
-
-
-Supply = Annotated[NoSupply | CircumferentialGroove | AxialGrooves | Bores | Pocket, Field(discriminator="kind")]
 
 
 class ColdClearance(Model):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -11,6 +10,7 @@ from pydantic import ValidationError
 from frbcli.case.bearing import ColdClearance
 from frbcli.case.lines import Path
 from frbcli.case.oil import ATMOSPHERE, Grade, Vogel
+from frbcli.case.supplies.table import supply_named
 from frbcli.case.tables import Breach, number, table, tables
 from frbcli.materials.oils import OILS
 from frbcli.materials.viscosity import VogelLaw
@@ -39,9 +39,7 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
         yield from law_breaches(oil, number(film, "temperature", "K"), (*path, "temperature"))
     ambient = number(oil, "ambient_pressure", "Pa", ATMOSPHERE)
     supply = table(film, "supply")
-    yield from _supply((*path, "supply"), supply, width, ambient)
-    if supply.get("kind") == "bores":
-        yield from _bores((*path, "supply"), supply, diameter, width)
+    yield from supply_named(supply.get("kind")).breaches((*path, "supply"), supply, diameter, width, ambient)
     if supply.get("on") == "journal" and "lobes" in film:
         problem = "are in the shell, and the feed holes in the journal: no frame has both at rest."
         yield Breach((*path, "lobes"), problem, 'Remove them, or write supply.on = "shell".')
@@ -78,35 +76,6 @@ def _lobes(path: Path, lobes: Mapping[str, Any], clearance: float, diameter: flo
     if machined >= THICKEST_MACHINED * diameter / 2:
         problem = f"makes a machined clearance of {display(machined, 'm')}, too large for a thin film."
         yield Breach((*path, "preload"), problem, "It is 1 - c_b / c_p, with the assembled clearance c_b.")
-
-
-def _supply(path: Path, supply: Mapping[str, Any], width: float | None, ambient: float | None) -> Iterator[Breach]:
-    pressure = number(supply, "pressure", "Pa")
-    if pressure and ambient and pressure < ambient:
-        problem = f"is {display(pressure, 'Pa')}, below the ambient pressure of {display(ambient, 'Pa')}."
-        yield Breach((*path, "pressure"), problem, "Pressures are absolute: ambient plus gauge pressure.")
-    count, angle = number(supply, "count", NUMBER, 1.0), number(supply, "opening_angle", "rad")
-    if count and angle and count * angle >= 2 * math.pi:
-        yield Breach((*path, "opening_angle"), f"leaves no land between {count:.0f} grooves.", "Make it smaller.")
-    for key in ("width", "diameter"):  # of a pocket, of a bore
-        size = number(supply, key, "m")
-        if size and width and size > width:
-            yield Breach((*path, key), f"is wider than the bearing ({display(width, 'm')}).", "Make it narrower.")
-
-
-def _bores(path: Path, supply: Mapping[str, Any], diameter: float | None, width: float | None) -> Iterator[Breach]:
-    count, bore = number(supply, "count", NUMBER, 1.0), number(supply, "diameter", "m")
-    place = number(supply, "axial_position", NUMBER, 0.5)
-    if count and bore and diameter and count * bore >= math.pi * diameter:
-        problem = f"makes {count:.0f} feed holes overlap on a circumference of {display(math.pi * diameter, 'm')}."
-        yield Breach((*path, "diameter"), problem, "Make it smaller, or take fewer feed holes.")
-    if bore and width and bore <= width and place is not None and 0 <= place <= 1:
-        over = 0.5 * bore - width * min(place, 1.0 - place)
-        if over > 0.0:
-            problem = f"places the feed holes {display(over, 'm')} outside the film."
-            least = 0.5 * bore / width
-            remedy = f"Take a value from {least:.3g} to {1.0 - least:.3g}, or smaller feed holes."
-            yield Breach((*path, "axial_position"), problem, remedy)
 
 
 def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) -> Iterator[Breach]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frbcli.case.bearing import Bores
 from frbcli.case.schema import Case
 from frbcli.cycles.balance import loads_along, unpacked
 from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, Follower, first_place, follow_branch
@@ -113,7 +112,7 @@ def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s
 def _notes(case: Case, walk: Walk) -> list[str]:
     """What is to be said of feed holes, and where no whirl begins."""
     points, notes = walk.resting.points, []
-    if any(isinstance(place.geometry.supply, Bores) for place in film_places(case)):
+    if any(place.geometry.supply.turns for place in film_places(case)):
         notes.append("Feed holes that turn with a ring enter by their mean over the angle.")
     between = f"{points[0].value * walk.scale:.4g} and {points[-1].value * walk.scale:.4g} {walk.unit}".rstrip()
     if walk.resting.hopf:

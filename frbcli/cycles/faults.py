@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from frbcli.case.bearing import Bores
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
@@ -72,8 +71,7 @@ def turning_openings(case: Case) -> bool:
 
 
 def _turn(place: FilmPlace) -> bool:
-    geometry = place.geometry
-    return isinstance(geometry.supply, Bores) and geometry.lobes is None and place.grid_body != HOUSING
+    return place.geometry.lobes is None and place.grid_body != HOUSING
 
 
 def _oil_films(case: Case) -> tuple[Fault, ...]:

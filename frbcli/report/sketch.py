@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.bearing import AxialGrooves, Bores, CircumferentialGroove, FilmGeometry, Pocket, SingleFilmBearing
+from frbcli.case.bearing import FilmGeometry, SingleFilmBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.report.element_symbols import symbol
@@ -19,6 +19,7 @@ from frbcli.scene.films import film_places
 
 WIDTH, MARGIN = 720.0, 46.0  # of the drawing along the axis
 HIGHEST = 135.0  # half of it, at most
+RECESS = 0.25  # depth of a groove, pocket or slot over the thickness of the body around the film
 HOUSING = 0.45  # thickness of a shell over the radius of its film
 SPAN, DISK = 5.0, 2.2  # of a rotor without a shaft: distance of its bearings over their width, disk over their journal
 ROUND, SHOWN = 200.0, 0.16  # size of a film around the axis; clearance there over the radius
@@ -82,17 +83,12 @@ def _shell(film: FilmGeometry, at: float, scale: _Scale, kind: str) -> Iterator[
 
 
 def _supply(film: FilmGeometry, at: float, outer: float, scale: _Scale) -> Iterator[str]:
-    """Where oil enters: a groove or bores through the body outside of the film, a groove along it."""
-    supply, start, inner = film.supply, at - 0.5 * film.width, 0.5 * film.diameter
-    if isinstance(supply, CircumferentialGroove):
-        middle, half = start + supply.axial_position * film.width, 0.06 * film.width
-        yield scale.box(max(middle - half, start), min(middle + half, start + film.width), inner, outer, "oil")
-    elif isinstance(supply, Bores):
-        middle, half = start + supply.axial_position * film.width, 0.5 * supply.diameter
-        yield scale.box(middle - half, middle + half, inner, outer, "oil")
-    elif isinstance(supply, AxialGrooves | Pocket):
-        width = film.width if isinstance(supply, AxialGrooves) else supply.width
-        yield scale.box(at - 0.5 * width, at + 0.5 * width, inner, inner + 0.25 * (outer - inner), "oil")
+    """Where oil enters: through the body outside of the film, or out of a recess in it."""
+    start, inner = at - 0.5 * film.width, 0.5 * film.diameter
+    found = {(each.axial, each.half_width, each.through): None for each in film.supply.outlines(inner, film.width)}
+    for axial, half, through in found:
+        low, high = max(start + axial - half, start), min(start + axial + half, start + film.width)
+        yield scale.box(low, high, inner, outer if through else inner + RECESS * (outer - inner), "oil")
 
 
 def _largest_radius(case: Case) -> float:
@@ -233,7 +229,10 @@ def _around(film: FilmGeometry, name: str) -> str:
     outer = [place(phi, 1.4 * radius) for phi in turn]
     inner = [place(phi, radius * (1.0 + SHOWN * _gap(film, phi))) for phi in turn]
     parts = [curve(outer, "shell", closed=True), curve(inner, "film", closed=True)]
-    for start, end in _openings(film):
+    for opening in film.supply.outlines(0.5 * film.diameter, film.width):
+        start, end = opening.position - opening.half_angle, opening.position + opening.half_angle
+        if opening.half_angle >= math.pi:  # all around: nothing is left to draw it beside
+            continue
         arc = [start + (end - start) * i / 40.0 for i in range(41)]
         rim = [place(phi, radius * (1.0 + SHOWN * _gap(film, phi))) for phi in arc]
         back = [place(phi, 1.27 * radius) for phi in reversed(arc)]
@@ -262,18 +261,3 @@ def _gap(film: FilmGeometry, phi: float) -> float:
     arc = 2.0 * math.pi / lobes.count
     along = (phi - lobes.position + 0.5 * arc) % arc - lobes.offset * arc
     return min(1.0 + lobes.preload / (1.0 - lobes.preload) * (1.0 - math.cos(along)), 2.4)
-
-
-def _openings(film: FilmGeometry) -> Iterator[tuple[float, float]]:
-    """From and to phi in rad."""
-    supply = film.supply
-    if isinstance(supply, AxialGrooves):
-        middles, half = [2.0 * math.pi * i / supply.count for i in range(supply.count)], 0.5 * supply.opening_angle
-    elif isinstance(supply, Bores):
-        middles = [2.0 * math.pi * i / supply.count for i in range(supply.count)]
-        half = supply.diameter / film.diameter
-    elif isinstance(supply, Pocket):
-        middles, half = [0.0], 0.5 * supply.opening_angle
-    else:
-        return
-    yield from ((supply.position + middle - half, supply.position + middle + half) for middle in middles)

@@ -50,7 +50,7 @@ def on_fewer_cells(march: March, until: float, observe: Observer | None = None) 
 
 def _safety(case: Case, system: System) -> float:
     if not system.ring_count:
-        grooved = any(place.geometry.supply.kind == "axial-grooves" for place in film_places(case))
+        grooved = any(place.geometry.supply.divides for place in film_places(case))
         return SAFETY_OF_GROOVES if grooved else SAFETY
     at_rest = case.speed.start != 0.0 and case.start.position != "resting"
     return SAFETY_OF_RINGS_AT_REST if at_rest else SAFETY_OF_RINGS

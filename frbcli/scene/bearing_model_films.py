@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from frbcli.case.bearing import CircumferentialGroove, FilmGeometry
+from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.theories import values_of
 from frbcli.errors import Fault
@@ -25,7 +25,6 @@ def bearing_film(case: Case, bearing: RectangularBearing) -> BearingModelFilm:
     """The film of a bearing, by the chosen model."""
     model = chosen_model(case)
     assert model is not None
-    supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
     dimensions = BearingDimensions(
         width=bearing.width,
         diameter=bearing.diameter,
@@ -35,7 +34,7 @@ def bearing_film(case: Case, bearing: RectangularBearing) -> BearingModelFilm:
         section_width=bearing.section_width,
         ambient_pressure=bearing.ambient_pressure,
         cavitation_pressure=bearing.cavitation_pressure,
-        supply_pressure=supply,
+        supply_pressure=bearing.ambient_pressure + bearing.groove_pressure,
     )
     return model_film(model, dimensions, values_of(model, case.film))
 
@@ -57,7 +56,7 @@ def model_record(case: Case) -> dict[str, str]:
     model = chosen_model(case)
     if model is None:
         return {}
-    rectangles = (film_rectangle(place.geometry, film_section(case, place.geometry)) for place in film_places(case))
+    rectangles = (film_rectangle(film_section(case, place.geometry)) for place in film_places(case))
     omega = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
     forces = ", ".join(fingerprint(bearing_film(case, found), omega) for found in rectangles if found is not None)
     return {RECORD: f"{model.name}, added from Python; forces {forces}"[:200]}
@@ -88,12 +87,12 @@ def _geometry_faults(key: str, film: FilmGeometry) -> list[Fault]:
     """Parts of a bearing that a model cannot represent."""
     faults = []
     supply, remedy = film.supply, "Leave it out: the model stands for the whole bearing."
-    if supply.kind not in ("none", "circumferential-groove"):
+    if not supply.plain:
         problem = "is a supply that a bearing model cannot represent."
         faults.append(Fault(f"{key}.supply.kind", supply.kind, None, problem, remedy))
-    elif isinstance(supply, CircumferentialGroove) and supply.ramp > 0.0:
+    elif supply.rise_time > 0.0:
         problem = "is a ramp of the pressure, which a bearing model cannot represent."
-        faults.append(Fault(f"{key}.supply.ramp", f"{supply.ramp:g} s", None, problem, "Write 0 s."))
+        faults.append(Fault(f"{key}.supply.ramp", f"{supply.rise_time:g} s", None, problem, "Write 0 s."))
     if film.lobes is not None:
         value = f"{film.lobes.count} lobes"
         faults.append(Fault(f"{key}.lobes", value, None, "are a shape that a bearing model cannot represent.", remedy))
@@ -103,7 +102,7 @@ def _geometry_faults(key: str, film: FilmGeometry) -> list[Fault]:
 def _force_faults(case: Case, model: BearingModel, omega: float) -> list[Fault]:
     faults = []
     for place in film_places(case):
-        rectangle = film_rectangle(place.geometry, film_section(case, place.geometry))
+        rectangle = film_rectangle(film_section(case, place.geometry))
         assert rectangle is not None
         if problem := problem_of(model, bearing_film(case, rectangle), omega):
             remedy = "Correct the function of the model, and add it again."

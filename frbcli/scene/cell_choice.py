@@ -119,12 +119,13 @@ def compared_states(cells: tuple[int, int]) -> int:
 def _kind(case: Case, place: FilmPlace) -> CellError:
     law = law_named(case.cavitation(place.geometry))
     keeps = law.keeps_oil
-    if place.feed_holes is not None or place.geometry.supply.kind in ("bores", "pocket"):
+    section = film_section(case, place.geometry, place.feed_holes)
+    if section.holes:
         return BORES_OIL if keeps else BORES
-    if law.empties and no_inflow(film_section(case, place.geometry, place.feed_holes)):
+    if law.empties and no_inflow(section):
         return EMPTYING
     if is_plain(place.geometry):
         return PLAIN
-    if place.geometry.supply.kind == "axial-grooves":
-        return replace(GROOVE, around=GROOVE.around * place.geometry.supply.count)
+    if section.grooves:
+        return replace(GROOVE, around=GROOVE.around * len(section.grooves))
     return LOBES_OIL if keeps else LOBES

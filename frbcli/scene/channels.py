@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from frbcli.case.bearing import Bores, CircumferentialGroove, FloatingRingBearing, RingFilm
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
+from frbcli.case.supplies.bores import Bores
+from frbcli.case.supplies.supply import MIDDLE
 from frbcli.errors import Fault
 from frbcli.film.cells.channels import Channel, FeedHole, channel_resistance
 from frbcli.film.cells.film import VolumeFilm
 
-MIDDLE = 0.5
 INLETS = "a groove around one end of the outer film, or an end in an oil bath"
 
 
@@ -22,13 +23,13 @@ def coupled(bearing: FloatingRingBearing) -> bool:
 
 def opens_to_groove(bearing: FloatingRingBearing) -> bool:
     """Whether the channels open to a groove around the middle of the outer film, which holds its pressure."""
-    return bearing.outer.supply.kind == "circumferential-groove" and _groove_position(bearing.outer) == MIDDLE
+    return bearing.outer.supply.splits
 
 
 def feed_holes_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
     """The feed holes of the outer film at the channels; None if these are not coupled or open to a groove."""
-    supply = bearing.inner.supply
-    if not coupled(bearing) or opens_to_groove(bearing) or not isinstance(supply, Bores):
+    supply = bearing.inner.supply.channels
+    if supply is None or not coupled(bearing) or opens_to_groove(bearing):
         return None
     offset = (supply.axial_position - MIDDLE) * bearing.inner.width / bearing.outer.width
     return altered(supply, {"axial_position": MIDDLE + offset})
@@ -44,8 +45,8 @@ def centrifugal_pressure(case: Case, bearing: FloatingRingBearing) -> float:
 
 def resistance(case: Case, bearing: FloatingRingBearing) -> float:
     """Flow resistance of one channel in Pa s / m^3."""
-    supply = bearing.inner.supply
-    assert isinstance(supply, Bores)
+    supply = bearing.inner.supply.channels
+    assert supply is not None
     length = 0.5 * (bearing.outer.diameter - bearing.inner.diameter)
     return channel_resistance(supply.diameter, length, case.oil_viscosity)
 
@@ -58,8 +59,8 @@ def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel
         if not isinstance(bearing, FloatingRingBearing):
             film += 1
             continue
-        supply = bearing.inner.supply
-        if coupled(bearing) and isinstance(supply, Bores):
+        supply = bearing.inner.supply.channels
+        if coupled(bearing) and supply is not None:
             inner = volumes[film].section.holes[-supply.count :]
             outer = volumes[film + 1].section.holes[-supply.count :]
             for index in range(supply.count):
@@ -68,7 +69,7 @@ def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel
                         inner=FeedHole(film, inner[index]),
                         outer=None if opens_to_groove(bearing) else FeedHole(film + 1, outer[index]),
                         resistance=resistance(case, bearing),
-                        groove_pressure=getattr(bearing.outer.supply, "pressure", 0.0) - case.oil.ambient_pressure,
+                        groove_pressure=bearing.outer.supply.gauge(case.oil.ambient_pressure),
                         centrifugal=centrifugal_pressure(case, bearing),
                     )
                 )
@@ -86,28 +87,21 @@ def channel_faults(case: Case) -> Iterator[Fault]:
 
 
 def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:
-    supply, outer = bearing.inner.supply, bearing.outer
-    if not isinstance(supply, Bores):
+    supply, outer = bearing.inner.supply.channels, bearing.outer
+    if supply is None:
         return "needs channels, and the inner film has no feed holes.", 'Write inner.supply.kind = "bores".'
     if supply.on == "journal":
         return "needs channels through the ring; the feed holes are in the journal.", 'Write inner.supply.on = "shell".'
-    if outer.supply.kind == "none" and not {"oil-bath"} & {bearing.inner.ends, outer.ends}:
+    if not outer.supply.feeds and not {"oil-bath"} & {bearing.inner.ends, outer.ends}:
         return "leaves the bearing without a supply from outside.", f"Give it {INLETS}."
-    if outer.supply.kind == "circumferential-groove":
-        middle = _groove_position(outer) == MIDDLE
-        if middle and supply.axial_position != MIDDLE:
-            problem = "asks for feed holes beside a central groove, which makes two different outer films."
-            return problem, "Put the feed holes in the middle, or the groove at an end of the outer film."
-        if middle:
+    if outer.supply.splits:
+        if supply.axial_position == MIDDLE:
             return "", ""
-    elif bearing.ring.spin == "free" and outer.supply.kind != "none":
+        problem = "asks for feed holes beside a central groove, which makes two different outer films."
+        return problem, "Put the feed holes in the middle, or the groove at an end of the outer film."
+    if bearing.ring.spin == "free" and not outer.supply.plain:
         problem = f"asks for {outer.supply.kind} in the housing, which the feed holes of a turning ring pass."
         return problem, f"Give it {INLETS}, or a ring that does not turn."
     if bearing.ring.spin == "free" and outer.lobes is not None:
         return "asks for lobes in the housing, which the feed holes of a turning ring pass.", "Remove outer.lobes."
     return "", ""
-
-
-def _groove_position(film: RingFilm) -> float:
-    supply = film.supply
-    return supply.axial_position if isinstance(supply, CircumferentialGroove) else MIDDLE

@@ -22,9 +22,6 @@ from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, is_publishe
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
 
-MIDDLE = 0.5  # axial position of a circumferential groove between two equal films
-TABULATED = ("none", "circumferential-groove", "axial-grooves")  # supplies of gaps that are rectangles
-
 # Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
 # call would cost much more for eccentricities close to 1.
 TABLE_HOLDS_TO, SOLVED_HOLDS_TO = 0.95, 0.9
@@ -92,10 +89,10 @@ def choose_films(case: Case, target: float) -> FilmChoice:
     short = short_error(slenderness, SOLVED_HOLDS_TO)
     theory, theory_why = case.film.theory, "set in the case"
     if theory == "auto":
-        fits = short <= FILM_SHARE * target and all(film.supply.kind != "axial-grooves" for film in films)
+        fits = short <= FILM_SHARE * target and not any(film.supply.divides for film in films)
         theory = "short" if fits else "finite"
         theory_why = f"error of the short bearing with b/D = {slenderness:.2g}: {short:.1g} at {SOLVED_HOLDS_TO:g}"
-        if any(film.supply.kind == "axial-grooves" for film in films):
+        if any(film.supply.divides for film in films):
             theory_why = "axial grooves, which the short bearing does not have"
     forms = [film_form(case, film, theory) for film in films]
     form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
@@ -138,10 +135,10 @@ def needs_cells(case: Case) -> bool:
 
 def film_form(case: Case, film: FilmGeometry, theory: str) -> FilmForm:
     """How a film without cells will be computed."""
-    if film.supply.kind == "axial-grooves":
+    if film.supply.divides:
         return CHAINS
-    supply = getattr(film.supply, "pressure", case.oil.ambient_pressure)
-    equal = supply == case.oil.ambient_pressure == case.oil.cavitation_pressure
+    ambient = case.oil.ambient_pressure
+    equal = film.supply.gauge(ambient) == 0.0 and ambient == case.oil.cavitation_pressure
     equal = equal or not law_named(case.cavitation(film)).cavitates
     if theory == "short":
         return CLOSED_FORM if equal else CLIPPED
@@ -150,16 +147,12 @@ def film_form(case: Case, film: FilmGeometry, theory: str) -> FilmForm:
 
 def _rectangular(film: FilmGeometry, several: bool) -> bool:
     """Whether the gap is made of rectangles whose pressure is known along their edges."""
-    supply = film.supply
-    if supply.kind not in TABULATED or film.lobes is not None or (several and supply.kind == "axial-grooves"):
-        return False
-    return getattr(supply, "axial_position", MIDDLE) in (0.0, MIDDLE, 1.0)
+    return film.lobes is None and film.supply.rectangular and not (several and film.supply.divides)
 
 
 def _slenderness(film: FilmGeometry) -> float:
     """Width of a section over the diameter."""
-    halves = film.supply.kind == "circumferential-groove" and getattr(film.supply, "axial_position", MIDDLE) == MIDDLE
-    return film.width / film.diameter / (2 if halves else 1)
+    return film.width / film.diameter / (2 if film.supply.splits else 1)
 
 
 def _mesh(form: FilmForm, slenderness: float, allowed: float) -> tuple[Mesh, float]:

@@ -5,13 +5,12 @@ Faults that concern a run, a kinematic test or a bearing sheet alone stand in th
 
 from __future__ import annotations
 
-from frbcli.case.bearing import CircumferentialGroove
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
-from frbcli.scene.channels import MIDDLE, channel_faults
+from frbcli.scene.channels import channel_faults
 from frbcli.scene.elements import element_faults
 from frbcli.scene.films import FilmPlace, film_places
 from frbcli.scene.heat_faults import heat_faults
@@ -37,10 +36,8 @@ def film_faults(case: Case) -> list[Fault]:
 def _supply_faults(case: Case, key: str, place: FilmPlace) -> list[Fault]:
     """Faults of a film without its neighbours: its supply, its openings, its ends."""
     supply = place.geometry.supply
-    if isinstance(supply, CircumferentialGroove) and supply.axial_position not in (0.0, MIDDLE, 1.0):
-        problem = "is neither in the middle nor at an end: the two films would differ."
-        value = f"{supply.axial_position:g}"
-        return [Fault(f"{key}.supply.axial_position", value, None, problem, "Write 0.5, 0 or 1.")]
+    if own := supply.faults(f"{key}.supply"):
+        return own
     section = film_section(case, place.geometry, place.feed_holes)
     if not law_named(case.cavitation(place.geometry)).keeps_oil:  # such a film makes its oil, and cannot run dry
         section = ends_at_ambient(section)

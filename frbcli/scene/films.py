@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.bearing import Bores, FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
+from frbcli.case.supplies.bores import Bores
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm
@@ -57,10 +58,7 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
 
 def _opening_body(film: FilmGeometry, inside: int, outside: int) -> int:
     """The body that the openings of a film are in."""
-    supply = film.supply
-    if isinstance(supply, Bores):
-        return inside if supply.on == "journal" else outside
-    return HOUSING
+    return {"journal": inside, "shell": outside, "housing": HOUSING}[film.supply.surface]
 
 
 def rings(case: Case) -> tuple[FloatingRingBearing, ...]:
@@ -75,7 +73,7 @@ def turning_rings(case: Case) -> tuple[FloatingRingBearing, ...]:
 
 def is_plain(film: FilmGeometry) -> bool:
     """Whether a gap looks the same from every angle: its cells may turn as they like."""
-    return film.lobes is None and film.supply.kind in ("none", "circumferential-groove")
+    return film.lobes is None and film.supply.plain
 
 
 def turns_with_oil(case: Case, place: FilmPlace) -> bool:

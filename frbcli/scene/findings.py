@@ -82,13 +82,4 @@ def static_loads(case: Case) -> tuple[float, ...]:
 
 def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) -> FilmLoad:
     number = sommerfeld_number(load, film.width, 0.5 * film.diameter, film.clearance, case.viscosity(film), omega)
-    return FilmLoad(name, load, load / (film.width * film.diameter), number, _supply(film))
-
-
-def _supply(film: FilmGeometry) -> str:
-    supply = film.supply
-    words = supply.kind.replace("-", " ").replace("bores", "feed holes")
-    count = getattr(supply, "count", 1)
-    at = getattr(supply, "pressure", None)
-    told = f"{count} {words}" if count > 1 else words
-    return told if at is None else f"{told}, {1e-5 * at:.4g} bar"
+    return FilmLoad(name, load, load / (film.width * film.diameter), number, film.supply.words)

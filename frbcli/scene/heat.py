@@ -18,7 +18,6 @@ from frbcli.scene.films import film_places, turning_rings
 from frbcli.thermal.model import FROM_SUPPLY, HeatModel
 
 OIL_AT = 353.15, 393.15  # K between which the heat capacity of the oil is taken as linear
-BORES_SHARE = 0.6  # beta of the flow of a concentric film: bores feed less than a groove; own choice
 
 
 @dataclass(frozen=True)
@@ -213,12 +212,9 @@ def _volume(film: FilmGeometry) -> float:
 def _concentric(case: Case, film: FilmGeometry) -> float:
     """Q eta / C^3 with Q = 2 beta 2 pi R C^3 dp / (12 eta B/2); of a groove at one end a quarter: one land of B."""
     supply = film.supply
-    gauge = getattr(supply, "pressure", case.oil.ambient_pressure) - case.oil.ambient_pressure
-    groove = supply.kind == "circumferential-groove"
+    gauge = supply.gauge(case.oil.ambient_pressure)
     share = film.side_flow_factor
     if share is None:
-        share = 1.0 if groove else BORES_SHARE
-    if groove and getattr(supply, "axial_position", 0.5) != 0.5:
-        share *= 0.25
-    return 2.0 * share * math.pi * film.diameter * gauge / (6.0 * film.width)
+        share = supply.side_flow_factor
+    return 2.0 * share * supply.land_share * math.pi * film.diameter * gauge / (6.0 * film.width)
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
-from frbcli.case.bearing import AxialGrooves, FilmGeometry
+from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.penalty import Penalty
@@ -15,7 +14,7 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.channel_data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.gap import AxialGroove, Section
+from frbcli.film.gap import Section
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
@@ -25,7 +24,7 @@ from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms, TableFilms
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.published.data import element_film
 from frbcli.film.published.film import PublishedFilm
-from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.bearing import RectangularBearing, rectangular
 from frbcli.film.rectangles.film import make_film
 from frbcli.scene.bearing_model_films import bearing_film
 from frbcli.scene.cell_choice import compared_states
@@ -132,30 +131,6 @@ def _rectangles(case: Case, plan: Plan, _: float | None) -> Films:
     return RectangleFilms(_clearances(case), data, bearings, laws=laws, theory=plan.theory, mesh=plan.mesh)
 
 
-def sections_of(film: FilmGeometry) -> int:
-    """Equal rectangles that the developed gap consists of, see RectangularBearing."""
-    groove = film.supply.kind == "circumferential-groove"
-    return 2 if groove and getattr(film.supply, "axial_position", 0.5) == 0.5 else 1
-
-
 def rectangular_bearing(case: Case, film: FilmGeometry) -> RectangularBearing:
     """A bearing whose gap is made of rectangles."""
-    supply = film.supply
-    grooves: tuple[AxialGroove, ...] = ()
-    if isinstance(supply, AxialGrooves):
-        gauge = supply.pressure - case.oil.ambient_pressure
-        turn = 2 * math.pi / supply.count
-        grooves = tuple(
-            AxialGroove(supply.position + turn * i, supply.opening_angle, gauge) for i in range(supply.count)
-        )
-    return RectangularBearing(
-        width=film.width,
-        diameter=film.diameter,
-        clearance=film.clearance,
-        viscosity=case.viscosity(film),
-        sections=sections_of(film),
-        ambient_pressure=case.oil.ambient_pressure,
-        cavitation_pressure=case.oil.cavitation_pressure,
-        supply_pressure=None if isinstance(supply, AxialGrooves) else getattr(supply, "pressure", None),
-        grooves=grooves,
-    )
+    return rectangular(film_section(case, film))

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from frbcli.case.bearing import CircumferentialGroove, FilmGeometry, FloatingRingBearing
+from frbcli.case.bearing import FilmGeometry, FloatingRingBearing
 from frbcli.case.model import altered
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
@@ -22,7 +22,7 @@ from frbcli.scene.cost import clock, expected_cost
 from frbcli.scene.coupling import FULL, plan_coupling
 from frbcli.scene.elements import element_decisions
 from frbcli.scene.expected_error import expected_error
-from frbcli.scene.film_choice import FINE_TARGET, LOOSE_TARGET, MIDDLE, FilmChoice, choose_films
+from frbcli.scene.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.none import NO_FILM
@@ -266,13 +266,4 @@ def _gap(film: FilmGeometry) -> tuple[str, str]:
     supply = film.supply
     if film.lobes is not None:
         return "developed gap", f"with {film.lobes.count} lobes, supply {supply.kind}"
-    if supply.kind == "axial-grooves":
-        reason = "axial grooves divide the circumference; the film is symmetric about its middle"
-        return f"{supply.count} rectangles", reason
-    if isinstance(supply, CircumferentialGroove):
-        if supply.axial_position == MIDDLE:
-            return "2 equal rectangles", "a central circumferential groove splits the width; one section is solved"
-        return "1 rectangle", "a circumferential groove at one end: one section of the whole width"
-    if supply.kind == "none":
-        return "1 rectangle", "plain bearing: the film is symmetric about its middle"
-    return "developed gap", f"with openings: {supply.kind}"
+    return supply.gap

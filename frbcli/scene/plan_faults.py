@@ -33,12 +33,12 @@ def plan_faults(case: Case) -> list[Fault]:
     if case.film.theory == "short" and (needs_cells(case) or not all_clipped(case)):
         remedy = "finite or auto for this cavitation model and supply; short is for half-sommerfeld on rectangles"
         missing("film.theory", "short", (remedy,))
-    elif case.film.theory == "short" and any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case)):
+    elif case.film.theory == "short" and any(p.geometry.supply.divides for p in film_places(case)):
         missing("film.theory", "short", ("finite or auto for a bearing with axial grooves",))
     faults += clearance_faults(case)
     if case.film.bearing_model:
         return faults + signal_faults(case, False) or _bearing_faults(case)
-    chained = any(p.geometry.supply.kind == "axial-grooves" for p in film_places(case))
+    chained = any(p.geometry.supply.divides for p in film_places(case))
     told = solution_fault(case, all_clipped(case), not (chained or needs_cells(case)))
     faults += filter(None, (coupling_fault(case, needs_cells(case)), told))
     faults += published_faults(case)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
-from frbcli.case.bearing import AxialGrooves, Bores, CircumferentialGroove, FilmGeometry, Pocket
+from frbcli.case.bearing import FilmGeometry
+from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.film.gap import AxialGroove, Hole, Lobes, Section
-from frbcli.film.rectangles.bearing import RectangularBearing
-
-TWO_PI = 2.0 * math.pi
+from frbcli.case.supplies.bores import Bores
+from frbcli.case.supplies.supply import MIDDLE
+from frbcli.film.gap import Lobes, Section
+from frbcli.film.rectangles.bearing import RectangularBearing, rectangular
 
 
 def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = None) -> Section:
@@ -17,29 +16,15 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
 
     feed_holes: of the channels of a ring, which the film has beside its own supply; they are the last of its holes.
     """
-    supply, ends, width = bearing.supply, bearing.ends, bearing.width
-    radius, ambient = 0.5 * bearing.diameter, case.oil.ambient_pressure
-    copies, far, far_pressure = 2, "symmetry", 0.0
-    grooves: tuple[AxialGroove, ...] = ()
-    holes: tuple[Hole, ...] = ()
-    if isinstance(supply, CircumferentialGroove):
-        copies = 2 if supply.axial_position == 0.5 else 1
-        far, far_pressure = "groove", supply.pressure - ambient
-    elif isinstance(supply, AxialGrooves):
-        places = (supply.position + i * TWO_PI / supply.count for i in range(supply.count))
-        grooves = tuple(AxialGroove(place, supply.opening_angle, supply.pressure - ambient) for place in places)
-    elif isinstance(supply, Pocket):
-        half_angle, half_width = 0.5 * supply.opening_angle, 0.5 * supply.width
-        holes = (Hole(supply.position, 0.5 * width, half_angle, half_width, supply.pressure - ambient, round=False),)
-    elif isinstance(supply, Bores):
-        if supply.axial_position != 0.5:
-            copies, far = 1, ends
-        holes = _bores(supply, bearing, ambient)
+    radius, width, ambient = 0.5 * bearing.diameter, bearing.width, case.oil.ambient_pressure
+    opened = bearing.supply.openings(radius, width, bearing.ends, ambient)
+    copies, far, holes = opened.copies, opened.far, opened.holes
     if feed_holes is not None:
-        if far == "symmetry" and feed_holes.axial_position != 0.5:
-            copies, far = 1, ends
-        mirrored = far == "groove" and getattr(supply, "axial_position", 1.0) < 0.5  # the groove lies at z = 1
-        holes += _bores(feed_holes, bearing, ambient, mirrored)
+        if far == "symmetry" and feed_holes.axial_position != MIDDLE:
+            copies, far = 1, bearing.ends
+        if bearing.supply.mirrored:
+            feed_holes = altered(feed_holes, {"axial_position": 1.0 - feed_holes.axial_position})
+        holes += feed_holes.holes(radius, width, ambient)
     return Section(
         radius=radius,
         width=width / copies,
@@ -49,20 +34,13 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
         ambient_pressure=ambient,
         cavitation_pressure=case.oil.cavitation_pressure,
         copies=copies,
-        near=ends,
+        near=bearing.ends,
         far=far,
-        far_pressure=far_pressure,
-        grooves=grooves,
+        far_pressure=opened.far_pressure,
+        grooves=opened.grooves,
         holes=holes,
         lobes=_lobes(bearing),
     )
-
-
-def _bores(supply: Bores, bearing: FilmGeometry, ambient: float, mirrored: bool = False) -> tuple[Hole, ...]:
-    size, radius = 0.5 * supply.diameter, 0.5 * bearing.diameter
-    axial = (1.0 - supply.axial_position if mirrored else supply.axial_position) * bearing.width
-    places = (supply.position + i * TWO_PI / supply.count for i in range(supply.count))
-    return tuple(Hole(p, axial, size / radius, size, supply.pressure - ambient, round=True) for p in places)
 
 
 def _lobes(bearing: FilmGeometry) -> Lobes | None:
@@ -70,17 +48,6 @@ def _lobes(bearing: FilmGeometry) -> Lobes | None:
     return None if given is None else Lobes(given.count, given.preload, given.position, given.offset)
 
 
-def film_rectangle(bearing: FilmGeometry, section: Section) -> RectangularBearing | None:
+def film_rectangle(section: Section) -> RectangularBearing | None:
     """The same as a rectangular gap for the modal film; None if it is none."""
-    if section.grooves or section.holes or section.lobes:
-        return None
-    return RectangularBearing(
-        width=bearing.width,
-        diameter=bearing.diameter,
-        clearance=bearing.clearance,
-        viscosity=section.viscosity,
-        sections=section.copies if section.far == "groove" else 1,
-        ambient_pressure=section.ambient_pressure,
-        cavitation_pressure=section.cavitation_pressure,
-        supply_pressure=section.ambient_pressure + section.far_pressure if section.far == "groove" else None,
-    )
+    return None if section.grooves or section.holes or section.lobes else rectangular(section)

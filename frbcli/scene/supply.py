@@ -65,19 +65,19 @@ def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
 
 def _cause(film: FilmGeometry, oil: Oil) -> str:
     cavities = f"not above the cavitation pressure of {display(oil.cavitation_pressure, 'Pa')}"
-    pressure = getattr(film.supply, "pressure", None)
-    supply = "it has no supply" if pressure is None else f"its supply of {display(pressure, 'Pa')} is {cavities}"
+    pressure, feeds = film.supply.absolute(oil.ambient_pressure), film.supply.feeds
+    supply = f"its supply of {display(pressure, 'Pa')} is {cavities}" if feeds else "it has no supply"
     if film.ends == "free-to-air":
         return f"its ends are free to air, and {supply}"
     bath = f"the bath around its ends of {display(oil.ambient_pressure, 'Pa')}"
-    return f"{supply}, and {bath} is {cavities}" if pressure is None else f"{supply}, nor is {bath}"
+    return f"{supply}, nor is {bath}" if feeds else f"{supply}, and {bath} is {cavities}"
 
 
 def _remedy(film: FilmGeometry, oil: Oil, key: str, cavitation: str) -> str:
     """Changes of the case that let oil flow in."""
     cavities = display(oil.cavitation_pressure, "Pa")
     first = f"Raise {key}.supply.pressure above {cavities}"
-    if film.supply.kind == "none":
+    if not film.supply.feeds:
         example = '{ kind = "circumferential-groove", pressure = "2 bar" }'
         first = f"Give it a supply above {cavities}, e.g. {key}.supply = {example}"
     pushes = not law_named(cavitation).empties or oil.ambient_pressure > oil.cavitation_pressure

@@ -165,7 +165,8 @@ def worst_film_force(supply: str) -> float:
     like = replace(make_system(case, plan).films.bearings[0], sections=sections)
     rows = [row for row in _rows("film-forces.csv") if row["supply"] == supply]
     pressures = {row["supply_pressure_bar"] for row in rows}
-    bearings = {bar: replace(like, supply_pressure=float(bar) * 1e5 if sections == 2 else None) for bar in pressures}
+    gauges = {bar: float(bar) * 1e5 - like.ambient_pressure if sections == 2 else 0.0 for bar in pressures}
+    bearings = {bar: replace(like, grooved=sections == 2, groove_pressure=gauge) for bar, gauge in gauges.items()}
     films = {bar: make_film(bearing, plan.theory, plan.cavitation, plan.mesh) for bar, bearing in bearings.items()}
     return max(_force_error(films[row["supply_pressure_bar"]], like.clearance, row) for row in rows)
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from frbcli.film.gap import AxialGroove
+from frbcli.film.gap import AxialGroove, Section
 
 
 @dataclass(frozen=True)
 class RectangularBearing:
     """A bearing whose developed gap consists of `sections` equal rectangles side by side, SI units.
 
-    sections: 1 for a plain bearing, 2 for one with a central circumferential groove (figure 4.1); supply_pressure: in
-    the groove, None without one. Pressures are absolute. grooves: axial grooves of a plain bearing, which part its
-    rectangle.
+    sections: 1 for a plain bearing, 2 for one with a central circumferential groove (figure 4.1); grooved: whether a
+    circumferential groove is there, groove_pressure: the gauge pressure in it. Ambient and cavitation pressure are
+    absolute. grooves: axial grooves of a plain bearing, which part its rectangle.
     """
 
     width: float
@@ -23,7 +23,8 @@ class RectangularBearing:
     sections: int
     ambient_pressure: float
     cavitation_pressure: float
-    supply_pressure: float | None
+    grooved: bool = False
+    groove_pressure: float = 0.0
     grooves: tuple[AxialGroove, ...] = ()
 
     @property
@@ -41,3 +42,20 @@ class RectangularBearing:
     def force_scale(self) -> float:
         """R b times pressure_scale times the number of sections, N s, see (3.13)."""
         return 0.5 * self.diameter * self.width * self.pressure_scale
+
+
+def rectangular(section: Section) -> RectangularBearing:
+    """The bearing of a section without holes and lobes."""
+    grooved = section.far == "groove"
+    return RectangularBearing(
+        width=section.bearing_width,
+        diameter=2.0 * section.radius,
+        clearance=section.clearance,
+        viscosity=section.viscosity,
+        sections=section.copies if grooved else 1,  # without a groove the modes span the whole width
+        ambient_pressure=section.ambient_pressure,
+        cavitation_pressure=section.cavitation_pressure,
+        grooved=grooved,
+        groove_pressure=section.far_pressure,
+        grooves=section.grooves,
+    )

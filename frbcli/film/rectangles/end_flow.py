@@ -88,12 +88,10 @@ def make_end_flow(bearing: RectangularBearing, film: FilmData) -> EndFlow:
         return ChainEndFlow(
             2.0 * radius**3 / width, film, signs * slopes[:kept], -rest * (width / radius) ** 2, corner
         )
-    grooved = bearing.supply_pressure is not None
-    ends = bearing.sections if grooved else 2  # a groove at one end leaves one
-    supply = (bearing.supply_pressure or bearing.ambient_pressure) - bearing.ambient_pressure
+    ends = bearing.sections if bearing.grooved else 2  # a groove at one end leaves one
     short = isinstance(film, ShortFilm | SuppliedShortFilm)
     table, ring = _slope_table(radius / width, short)
-    return TableEndFlow(ends * radius**3 / width, supply / bearing.pressure_scale, table, ring)
+    return TableEndFlow(ends * radius**3 / width, bearing.groove_pressure / bearing.pressure_scale, table, ring)
 
 
 def _corner(bearing: RectangularBearing, modes: AxialModes, slopes: Array, kept: int) -> float:

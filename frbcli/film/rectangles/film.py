@@ -27,8 +27,7 @@ _force_table, _field_table = lru_cache(maxsize=8)(force_table), lru_cache(maxsiz
 def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: Mesh) -> FilmData:
     """The film of a bearing. theory: "short" | "finite"; cavitation: a law that is closed."""
     clipped = law_named(cavitation).clips
-    supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
-    sigma = (supply - bearing.ambient_pressure) / bearing.pressure_scale
+    sigma = bearing.groove_pressure / bearing.pressure_scale
     level = (bearing.cavitation_pressure - bearing.ambient_pressure) / bearing.pressure_scale
     if bearing.grooves:
         return _grooved_film(bearing, clipped, level, mesh)

@@ -61,7 +61,7 @@ def direct_force(
     """(2,) force in N on the journal by the whole bearing; displacement in m, velocity in m/s, omega in rad/s."""
     motion = _motion(bearing, displacement, velocity, omega)
     pressure = section_pressure(bearing, mesh, motion.eccentricity, motion.w_r, motion.w_t)
-    level = _scaled(bearing, bearing.cavitation_pressure)
+    level = (bearing.cavitation_pressure - bearing.ambient_pressure) / bearing.pressure_scale
     if not law_named(cavitation).clips:  # any level below all pressures: a constant pressure carries nothing
         level = float(pressure.values.min())
     weights, lengths = force_weights(pressure.vertices), element_lengths(pressure.vertices)
@@ -83,8 +83,8 @@ def section_pressure(
     decays = (0.5 * bearing.diameter / bearing.section_width) ** 2 * modes.eigenvalues
     points, weights = np.polynomial.legendre.leggauss(LINES)
     z = 0.5 * (points + 1.0)
-    supply = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
-    values, shapes = np.zeros((2 * len(vertices), LINES)) + _scaled(bearing, supply) * z, modes.at(z)
+    sigma = bearing.groove_pressure / bearing.pressure_scale
+    values, shapes = np.zeros((2 * len(vertices), LINES)) + sigma * z, modes.at(z)
     for first in range(0, len(decays), MODES_AT_ONCE):
         some = slice(first, first + MODES_AT_ONCE)
         fields = unit_fields(vertices, eccentricity, decays[some], modes.loads[some])
@@ -115,15 +115,10 @@ def largest_pressure(
     if 0 < j < LINES - 1:
         gain += _highest(field.z[j - 1 : j + 2], field.values[i, j - 1 : j + 2]) - field.values[i, j]
     highest = float((field.values[i, j] + gain) * bearing.pressure_scale + bearing.ambient_pressure)
-    edge = bearing.ambient_pressure if bearing.supply_pressure is None else bearing.supply_pressure
-    return max(highest, edge)
+    return max(highest, bearing.ambient_pressure + bearing.groove_pressure)
 
 
 def _highest(x: Array, y: Array) -> float:
     """Largest value of the parabola through three points with the largest in the middle."""
     low, middle, high = y.tolist()
     return summit(low, middle, high, float(x[1] - x[0]), float(x[2] - x[1]))[1]
-
-
-def _scaled(bearing: RectangularBearing, pressure: float) -> float:
-    return (pressure - bearing.ambient_pressure) / bearing.pressure_scale

@@ -75,8 +75,8 @@ def table_obstacle(case: Case) -> str:
             return TURNING
         if place.geometry.ends == "free-to-air":
             return "the flow out of free ends is not in the table"
-        supply = getattr(place.geometry.supply, "pressure", oil.ambient_pressure)
-        equal = supply == oil.ambient_pressure == oil.cavitation_pressure
+        gauge = place.geometry.supply.gauge(oil.ambient_pressure)
+        equal = gauge == 0.0 and oil.ambient_pressure == oil.cavitation_pressure
         if film.penalty.pressure == "dimensionless" and not equal:
             return "with the dimensionless pressure, a supply or cavitation pressure would be a fourth axis"
     if film.solution == "auto" and case.accuracy.target < TABLE_TARGET:

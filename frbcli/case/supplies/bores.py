@@ -1,0 +1,73 @@
+"""Round feed holes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from frbcli.case.lines import Path
+from frbcli.case.quantities import Angle, Count, Fraction, Length
+from frbcli.case.supplies.supply import MIDDLE, Openings, Outline, Ramp, SpacedSupply, SupplyPressure
+from frbcli.case.tables import Breach, number
+from frbcli.film.gap import Edge
+from frbcli.units import NUMBER, display
+
+
+class Bores(SpacedSupply):
+    """Feed holes of equal diameter in the shell or the journal, evenly spaced around it."""
+
+    kind: Literal["bores"] = Field(description="round feed holes")
+    count: Annotated[int, Count(1, 100, 6)] = Field(description="number of feed holes")
+    diameter: Length = Field(description="of a feed hole")
+    axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
+    position: Angle = Field(default=0.0, description="phi of the first feed hole")
+    on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
+    pressure: SupplyPressure
+    ramp: Ramp = 0.0
+
+    @property
+    def surface(self) -> Literal["journal", "shell", "housing"]:
+        """See OilSupply."""
+        return self.on
+
+    @property
+    def channels(self) -> Bores | None:
+        """See OilSupply."""
+        return self
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        """See OilSupply."""
+        axial, size = self.axial_position * width, 0.5 * self.diameter
+        return tuple(Outline(at, axial, size / radius, size, round=True, through=True) for at in self.positions)
+
+    def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
+        """See OilSupply."""
+        holes = self.holes(radius, width, ambient)
+        return Openings(holes=holes) if self.axial_position == MIDDLE else Openings(1, ends, holes=holes)
+
+    @property
+    def words(self) -> str:
+        """See OilSupply."""
+        return super().words.replace("bores", "feed holes")
+
+    @classmethod
+    def breaches(
+        cls, path: Path, given: Mapping[str, Any], diameter: float | None, width: float | None, ambient: float | None
+    ) -> Iterator[Breach]:
+        """See OilSupply."""
+        yield from super().breaches(path, given, diameter, width, ambient)
+        count, bore = number(given, "count", NUMBER, 1.0), number(given, "diameter", "m")
+        place = number(given, "axial_position", NUMBER, 0.5)
+        if count and bore and diameter and count * bore >= math.pi * diameter:
+            problem = f"makes {count:.0f} feed holes overlap on a circumference of {display(math.pi * diameter, 'm')}."
+            yield Breach((*path, "diameter"), problem, "Make it smaller, or take fewer feed holes.")
+        if bore and width and bore <= width and place is not None and 0 <= place <= 1:
+            over = 0.5 * bore - width * min(place, 1.0 - place)
+            if over > 0.0:
+                problem = f"places the feed holes {display(over, 'm')} outside the film."
+                least = 0.5 * bore / width
+                remedy = f"Take a value from {least:.3g} to {1.0 - least:.3g}, or smaller feed holes."
+                yield Breach((*path, "axial_position"), problem, remedy)

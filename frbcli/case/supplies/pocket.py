@@ -1,0 +1,25 @@
+"""A rectangular pocket."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from frbcli.case.quantities import Angle, Length, OpeningAngle
+from frbcli.case.supplies.supply import Outline, PressureSupply, Ramp, SupplyPressure
+
+
+class Pocket(PressureSupply):
+    """A pocket in the shell, in the middle of the width."""
+
+    kind: Literal["pocket"] = Field(description="one rectangular pocket in the shell")
+    position: Angle = Field(description="phi of the middle of the pocket")
+    opening_angle: OpeningAngle = Field(description="angle of the pocket")
+    width: Length = Field(description="axial width of the pocket")
+    pressure: SupplyPressure
+    ramp: Ramp = 0.0
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        """See OilSupply."""
+        return (Outline(self.position, 0.5 * width, 0.5 * self.opening_angle, 0.5 * self.width),)

@@ -1,0 +1,208 @@
+"""What every supply of oil is asked: all that differs between the kinds stands in their own files.
+
+Angles are phi of the developed gap, z counts from the end of the bearing in m. The pressure of a supply is absolute in
+the case file; everything that is made of it takes the gauge pressure, over the ambient one, 0 where nothing supplies.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
+
+from pydantic import Field
+
+from frbcli.case.lines import Path
+from frbcli.case.model import Model
+from frbcli.case.quantities import Pressure, RiseTime
+from frbcli.case.tables import Breach, number
+from frbcli.errors import Fault
+from frbcli.film.gap import AxialGroove, Edge, Hole
+from frbcli.units import NUMBER, display
+
+if TYPE_CHECKING:
+    from frbcli.case.supplies.bores import Bores
+
+MIDDLE = 0.5  # of the width
+TURNED = 1.0 - 1e-9  # share of a turn that counts as all of it: angles in degrees have round-off
+SupplyPressure = Annotated[Pressure, Field(description="supply pressure, absolute")]
+Ramp = Annotated[
+    RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
+]
+
+
+class Outline(NamedTuple):
+    """An opening in the developed gap of the whole bearing: phi of its middle, z of its middle, half extents in rad and
+    m. round: an ellipse, else a rectangle; through: it goes through the body around the film, else it is a recess."""
+
+    position: float
+    axial: float
+    half_angle: float
+    half_width: float
+    round: bool = False
+    through: bool = False
+
+
+@dataclass(frozen=True)
+class Openings:
+    """How a supply opens into a film. copies: equal parts of the width, of which one is solved; far: the edge of this
+    in the middle or at z = 1; far_pressure: gauge pressure in a groove there in Pa; grooves, holes: see film/gap.py."""
+
+    copies: int = 2
+    far: Edge = "symmetry"
+    far_pressure: float = 0.0
+    grooves: tuple[AxialGroove, ...] = ()
+    holes: tuple[Hole, ...] = ()
+
+
+class OilSupply(Model):
+    """The base of all supplies, and what those answer that say nothing else."""
+
+    kind: str
+
+    plain: ClassVar[bool] = False  # the gap looks the same from every angle
+    divides: ClassVar[bool] = False  # into a chain of lands between grooves along the axis
+    feeds: ClassVar[bool] = True  # oil comes in, other than at the ends
+    side_flow_factor: ClassVar[float] = 0.6  # beta of the flow of a concentric film: less than of a groove; own choice
+    openings_word: ClassVar[str] = "grooves"  # what several of its openings are called
+    sizes: ClassVar[tuple[str, ...]] = ("width", "diameter")  # keys that are no larger than the width of the bearing
+
+    def absolute(self, ambient: float) -> float:
+        """The absolute pressure of the supply in Pa, that of the air where nothing supplies."""
+        return ambient
+
+    def gauge(self, ambient: float) -> float:
+        """The pressure of the supply over the ambient one, Pa; 0 where nothing supplies."""
+        return self.absolute(ambient) - ambient
+
+    @property
+    def rise_time(self) -> float:
+        """t_1 of (4.11) in s, 0 if the pressure is there at once."""
+        return 0.0
+
+    @property
+    def surface(self) -> Literal["journal", "shell", "housing"]:
+        """What its openings turn with: the journal, the body around the film, or nothing."""
+        return "housing"
+
+    @property
+    def turns(self) -> bool:
+        """Whether its openings are in a body that may turn."""
+        return self.surface != "housing"
+
+    @property
+    def rectangular(self) -> bool:
+        """Whether the gap is made of rectangles whose pressure is known along their edges."""
+        return False
+
+    @property
+    def splits(self) -> bool:
+        """Whether it parts the width into two equal films."""
+        return False
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether its section is solved with z = 0 at the other end of the bearing."""
+        return False
+
+    @property
+    def land_share(self) -> float:
+        """Flow of a concentric film over that of two lands of half the width."""
+        return 1.0
+
+    @property
+    def channels(self) -> Bores | None:
+        """The feed holes that are channels where they are in a ring."""
+        return None
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        """Its openings in the gap of a bearing, radius and width in m."""
+        return ()
+
+    def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
+        """How it opens into a film; radius, width of the bearing in m, its ends, the ambient pressure in Pa."""
+        return Openings(holes=self.holes(radius, width, ambient))
+
+    def holes(self, radius: float, width: float, ambient: float) -> tuple[Hole, ...]:
+        """Its outlines as holes with its pressure."""
+        gauge = self.gauge(ambient)
+        return tuple(
+            Hole(found.position, found.axial, found.half_angle, found.half_width, gauge, found.round)
+            for found in self.outlines(radius, width)
+        )
+
+    @property
+    def words(self) -> str:
+        """What it is and its pressure, for tables."""
+        return self.kind.replace("-", " ")
+
+    @property
+    def gap(self) -> tuple[str, str]:
+        """What a plan says of the gap of a film without lobes: its shape, and why."""
+        return "developed gap", f"with openings: {self.kind}"
+
+    def faults(self, key: str) -> list[Fault]:
+        """What no film can be made of; key: of the supply."""
+        return []
+
+    @classmethod
+    def breaches(
+        cls, path: Path, given: Mapping[str, Any], diameter: float | None, width: float | None, ambient: float | None
+    ) -> Iterator[Breach]:
+        """Rules that its table, as given, breaks; diameter and width of the bearing in m, ambient pressure in Pa, None
+        where they cannot be read."""
+        pressure = number(given, "pressure", "Pa")
+        if pressure and ambient and pressure < ambient:
+            problem = f"is {display(pressure, 'Pa')}, below the ambient pressure of {display(ambient, 'Pa')}."
+            yield Breach((*path, "pressure"), problem, "Pressures are absolute: ambient plus gauge pressure.")
+        count, angle = number(given, "count", NUMBER, 1.0), number(given, "opening_angle", "rad")
+        if count and angle and count * angle >= TURNED * 2 * math.pi:
+            problem = f"leaves no land between {count:.0f} {cls.openings_word}."
+            yield Breach((*path, "opening_angle"), problem, "Make it smaller.")
+        for key in cls.sizes:
+            size = number(given, key, "m")
+            if size and width and size > width:
+                adjective, comparative = ("longer", "shorter") if key == "length" else ("wider", "narrower")
+                problem = f"is {adjective} than the bearing ({display(width, 'm')})."
+                yield Breach((*path, key), problem, f"Make it {comparative}.")
+
+
+class PressureSupply(OilSupply):
+    """A supply with a pressure of its own. Its class declares the keys `pressure` and `ramp` after its other ones."""
+
+    if TYPE_CHECKING:
+        pressure: float
+        ramp: float
+
+    def absolute(self, ambient: float) -> float:
+        """See OilSupply."""
+        return self.pressure
+
+    @property
+    def rise_time(self) -> float:
+        """See OilSupply."""
+        return self.ramp
+
+    @property
+    def words(self) -> str:
+        """See OilSupply."""
+        return f"{super().words}, {1e-5 * self.pressure:.4g} bar"
+
+
+class SpacedSupply(PressureSupply):
+    """A supply with equal openings, evenly spaced around the bearing: `count` of them, the first at `position`."""
+
+    if TYPE_CHECKING:
+        count: int
+        position: float
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """phi of the middles of its openings, rad."""
+        return tuple(self.position + i * 2.0 * math.pi / self.count for i in range(self.count))
+
+    @property
+    def words(self) -> str:
+        """See OilSupply."""
+        return f"{self.count} {super().words}" if self.count > 1 else super().words
