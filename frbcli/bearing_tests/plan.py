@@ -222,7 +222,7 @@ def _model_faults(case: Case, cavitation: str) -> list[Fault]:
         problem = "is not for kinematic tests, which solve the whole film."
         faults.append(Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".'))
     bearing = case.bearings[0]
-    ramp = bearing.supply.ramp if isinstance(bearing, SingleFilmBearing) else 0.0
+    ramp = bearing.supply.rise_time if isinstance(bearing, SingleFilmBearing) else 0.0
     if ramp > 0.0 and known and _is_published(case, law_named(cavitation)):
         problem = "is a ramp of the pressure, which the elements of the published form do not follow."
         faults.append(Fault("bearing.supply.ramp", f"{ramp:g} s", None, problem, "Write 0 s."))
