@@ -14,17 +14,17 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.events import find_events as find_events
     from frbcli.analysis.measured import Measurement as Measurement
     from frbcli.analysis.measured import measured_run as measured_run
-    from frbcli.analysis.order_tracking import order_track as order_track
-    from frbcli.analysis.spectrum import waterfall as waterfall
-    from frbcli.case.load import case_from_dict as case_from_dict
-    from frbcli.case.load import load_case as load_case
-    from frbcli.case.load import load_case_text as load_case_text
+    from frbcli.analysis.orders.order_tracking import order_track as order_track
+    from frbcli.analysis.spectra.spectrum import waterfall as waterfall
+    from frbcli.case.reading.load import case_from_dict as case_from_dict
+    from frbcli.case.reading.load import load_case as load_case
+    from frbcli.case.reading.load import load_case_text as load_case_text
+    from frbcli.case.reading.shipped import shipped_cases as shipped_cases
     from frbcli.case.schema import Case as Case
     from frbcli.case.schema import add_bearing as add_bearing
     from frbcli.case.schema import add_law as add_law
     from frbcli.case.schema import remove_bearing as remove_bearing
     from frbcli.case.schema import remove_law as remove_law
-    from frbcli.case.shipped import shipped_cases as shipped_cases
     from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
     from frbcli.cycles.maps.stability_map import stability_map as stability_map
     from frbcli.cycles.over_key import limit_cycles_over as limit_cycles_over
@@ -54,7 +54,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.results.store import read_run as read_run
     from frbcli.runs.run import rundown as rundown
     from frbcli.runs.run import runup as runup
-    from frbcli.scene.plan import make_plan as make_plan
+    from frbcli.scene.planning.plan import make_plan as make_plan
     from frbcli.studies.accuracy import accuracy as accuracy
     from frbcli.studies.against import against_measured as against_measured
     from frbcli.studies.compare import compare as compare
@@ -79,7 +79,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "add_law": "frbcli.case.schema",
     "against_measured": "frbcli.studies.against",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
-    "case_from_dict": "frbcli.case.load",
+    "case_from_dict": "frbcli.case.reading.load",
     "compare": "frbcli.studies.compare",
     "draw_bearing": "frbcli.plot.axes:bearing",
     "draw_campbell": "frbcli.plot.axes:campbell",
@@ -96,12 +96,12 @@ _PUBLIC = {  # module, or module:attribute of another name
     "fit": "frbcli.studies.fit",
     "limit_cycles": "frbcli.cycles.limit_cycles",
     "limit_cycles_over": "frbcli.cycles.over_key",
-    "load_case": "frbcli.case.load",
-    "load_case_text": "frbcli.case.load",
-    "make_plan": "frbcli.scene.plan",
+    "load_case": "frbcli.case.reading.load",
+    "load_case_text": "frbcli.case.reading.load",
+    "make_plan": "frbcli.scene.planning.plan",
     "measured_run": "frbcli.analysis.measured",
     "natural_modes": "frbcli.linear.modes",
-    "order_track": "frbcli.analysis.order_tracking",
+    "order_track": "frbcli.analysis.orders.order_tracking",
     "read_run": "frbcli.results.store",
     "remove_bearing": "frbcli.case.schema",
     "remove_law": "frbcli.case.schema",
@@ -109,7 +109,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",
     "runup": "frbcli.runs.run",
-    "shipped_cases": "frbcli.case.shipped",
+    "shipped_cases": "frbcli.case.reading.shipped",
     "sommerfeld_chart": "frbcli.linear.bearing_sheet",
     "stability_map": "frbcli.cycles.maps.stability_map",
     "squeeze": "frbcli.bearing_tests.kinematic",
@@ -117,7 +117,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "sweep": "frbcli.studies.sweep.sweep",
     "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",
-    "waterfall": "frbcli.analysis.spectrum",
+    "waterfall": "frbcli.analysis.spectra.spectrum",
     "write_report": "frbcli.report.page",
 }
 

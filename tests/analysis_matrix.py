@@ -10,7 +10,7 @@ from pathlib import Path
 
 import frbcli
 from frbcli.bearing_tests.plan import kinematic_plan
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cycles.faults import check
 from frbcli.errors import Fault, InputError

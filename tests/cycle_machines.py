@@ -6,10 +6,10 @@ import math
 import tomllib
 
 import frbcli
-from frbcli.case.shipped import find_shipped
-from frbcli.cycles.machine import Machine, make_machine
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.case.reading.shipped import find_shipped
+from frbcli.cycles.parts.machine import Machine, make_machine
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 
 def machine_of(case: frbcli.Case) -> Machine:

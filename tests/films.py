@@ -14,9 +14,9 @@ from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.film_choice import DEFAULT_MESH
 from frbcli.scene.films import HOUSING, ROTOR
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
+from frbcli.scene.planning.film_choice import DEFAULT_MESH
 
 CLEARANCE, RADIUS, VISCOSITY, AMBIENT = 40e-6, 12.5e-3, 10e-3, 1e5
 GROOVED = RectangularBearing(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, grooved=True)

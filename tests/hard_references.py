@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.hard import REFERENCES, HardCase, Reference, hard_cases
-from frbcli.case.load import load_case
+from frbcli.case.reading.hard import REFERENCES, HardCase, Reference, hard_cases
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.scene.plan import make_plan
+from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.accuracy import planned_rung
 from frbcli.studies.hard.cases import RUNS, Outcome, apart, outcome
 

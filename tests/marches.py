@@ -17,7 +17,7 @@ from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.start import rotor_data, state_at
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
 from frbcli.solve.state import OUTPUTS, RUNNING, Control, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
@@ -18,7 +18,7 @@ from frbcli.linear.stability import stability
 from frbcli.plot.studies.accuracy import accuracy_figure
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.plan import make_plan
+from frbcli.scene.planning.plan import make_plan
 from frbcli.studies import accuracy as accuracy_module
 from frbcli.studies.accuracy import accuracy, ladder, planned_rung
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult

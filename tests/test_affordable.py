@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from frbcli.case import load
-from frbcli.case.load import load_case
+from frbcli.case.reading import load
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.runs.run import runup
-from frbcli.scene.course import MOST_SAMPLES, longest_step
-from frbcli.scene.plan import make_plan
+from frbcli.scene.costs.course import MOST_SAMPLES, longest_step
+from frbcli.scene.planning.plan import make_plan
 
 
 def test_a_run_of_an_instant_holds_few_samples(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.film.cavitation.barotropic import Barotropic
 from frbcli.film.cavitation.law import FilmOil, Scales
 

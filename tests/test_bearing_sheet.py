@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError

@@ -23,12 +23,12 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, BilinearForm, ElementQuad2, LinearForm, MeshQuad
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
 
 pytestmark = pytest.mark.nightly
 

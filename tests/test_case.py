@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
-from frbcli.case.lines import key_lines
-from frbcli.case.listing import values
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.lines import key_lines
+from frbcli.case.reading.listing import values
+from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.shipped import shipped_cases, shipped_names
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case, json_schema
-from frbcli.case.shipped import shipped_cases, shipped_names
 from frbcli.errors import Fault, InputError
 
 SMALL = """

@@ -12,14 +12,14 @@ import pytest
 
 import frbcli
 from frbcli.case.bearing import SingleFilmBearing
-from frbcli.case.load import case_from_dict, describes, load_case, load_case_text
 from frbcli.case.model import Model
+from frbcli.case.reading.load import case_from_dict, describes, load_case, load_case_text
+from frbcli.case.reading.shipped import shipped_names
+from frbcli.case.reading.text import as_tables
+from frbcli.case.reading.toml import parse
 from frbcli.case.rotor import RigidRotor
 from frbcli.case.schema import Case
-from frbcli.case.shipped import shipped_names
 from frbcli.case.supplies.circumferential_groove import CircumferentialGroove
-from frbcli.case.text import as_tables
-from frbcli.case.toml import parse
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import read_run
 from frbcli.runs.run import runup

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from frbcli.case.lines import key_lines
-from frbcli.case.listing import values
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.lines import key_lines
+from frbcli.case.reading.listing import values
+from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.shipped import find_shipped, shipped_names
+from frbcli.case.reading.toml import to_toml
 from frbcli.case.schema import Case, json_schema
-from frbcli.case.shipped import find_shipped, shipped_names
-from frbcli.case.toml import to_toml
 from frbcli.errors import InputError
 
 BASE = find_shipped("jeffcott")

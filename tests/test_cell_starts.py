@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.case.load import load_case_text
+from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.plan import make_plan
+from frbcli.scene.planning.plan import make_plan
 
 GROOVED = """
 [rotor]

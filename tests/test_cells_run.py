@@ -12,7 +12,7 @@ from marches import control, slope
 from numpy.typing import NDArray
 
 import frbcli
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.data import SETTLED, VolumeFilms
@@ -21,12 +21,12 @@ from frbcli.results.store import read_run
 from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.course import STAGES
-from frbcli.scene.machine_films import settled_share
-from frbcli.scene.plan import make_plan
-from frbcli.scene.planned import Plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.system import System, make_system
+from frbcli.scene.costs.course import STAGES
+from frbcli.scene.machine.machine_films import settled_share
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balances import CHANNELS_NET
@@ -31,9 +31,9 @@ from frbcli.runs.oil import oil_defect
 from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
-from frbcli.scene.plan import make_plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
 from frbcli.solve.films import begin_stage, make_work
 from frbcli.solve.micro_step import _solve_films

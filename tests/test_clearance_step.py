@@ -11,7 +11,7 @@ from flows import net_flow
 from numpy.typing import NDArray
 
 import frbcli
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
@@ -19,10 +19,10 @@ from frbcli.film.state import OIL
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.march import March
 from frbcli.scene.clearance_steps import case_at
-from frbcli.scene.plan import make_plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.segments import Segment, make_segments
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.segments import Segment, make_segments
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import FINISHED, RUNNING, State
 
 Array = NDArray[np.float64]

@@ -14,14 +14,14 @@ from typing import Any
 import click
 import pytest
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
+from frbcli.case.reading.shipped import find_shipped, shipped_names
 from frbcli.case.schema import Case
-from frbcli.case.shipped import find_shipped, shipped_names
 from frbcli.cli import main as cli
 from frbcli.cli.common import Terminal
 from frbcli.cli.main import COMMANDS, run
 from frbcli.errors import FrbError, NotConverged
-from frbcli.scene import plan
+from frbcli.scene.planning import plan
 
 
 @pytest.fixture

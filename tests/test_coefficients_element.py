@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.load import case_from_dict, load_case_text
 from frbcli.case.machine_keys import machine_fault
+from frbcli.case.reading.load import case_from_dict, load_case_text
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.resting import resting_films
 from frbcli.errors import InputError
@@ -26,9 +26,9 @@ from frbcli.linear.response import response
 from frbcli.linear.stability import eigenvalues, stability, stability_points
 from frbcli.rotor.over_speed import LinearPart
 from frbcli.runs.run import runup
-from frbcli.scene.plan import make_plan
-from frbcli.scene.rotors import make_rotor
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.sweep.sweep import sweep
 
 M, U, G = 6.0, 3e-6, 9.81  # kg, kg m, m/s^2

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from synthetic_run import Rotor, as_run, signals
 
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError

@@ -19,12 +19,12 @@ from numba.core.runtime import _nrt_python, rtsys
 
 import frbcli
 from frbcli.caches import temporary_cache
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.cli.common import Terminal
 from frbcli.cli.runs.compiling import compilation_shown
 from frbcli.cli.runs.transient import compiling
 from frbcli.runs.run import runup
-from frbcli.scene.preparation import compile_s
+from frbcli.scene.costs.preparation import compile_s
 
 KERNEL = """
 from frbcli.compiled import compiled

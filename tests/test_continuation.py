@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frbcli.cycles.continuation import Place, Strides, corrected, fold_between, follow, step_from
+from frbcli.cycles.method.continuation import Place, Strides, corrected, fold_between, follow, step_from
 
 
 def test_a_curve_is_followed_through_its_fold() -> None:

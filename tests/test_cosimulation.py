@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.runs.cosimulation import in_turn, micro_cost
@@ -18,9 +18,9 @@ from frbcli.runs.march import control_of
 from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
-from frbcli.scene.plan import make_plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.micro_step import MICRO_STEPS, parabola
 from frbcli.solve.state import FINISHED, STEPS, State, make_output

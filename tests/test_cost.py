@@ -9,22 +9,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.film.grid import Mesh
-from frbcli.runs.header import header
+from frbcli.runs.record.header import header
 from frbcli.runs.run import runup
-from frbcli.scene.cell_choice import ALONG, AROUND, GROOVE, cell_error, cells_time, fewest_cells
-from frbcli.scene.cost import expected_cost
-from frbcli.scene.course import STAGES, whirl_speed
-from frbcli.scene.expected_error import expected_error
-from frbcli.scene.film_choice import choose_films, short_error
+from frbcli.scene.costs.cost import expected_cost
+from frbcli.scene.costs.course import STAGES, whirl_speed
+from frbcli.scene.costs.preparation import signal_count
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.tables import CHAINS, CLOSED_FORM, FIELDS, TABLE
-from frbcli.scene.plan import CELL_SHARE, TIGHT_SHARE, make_plan
-from frbcli.scene.planned import Plan
-from frbcli.scene.preparation import signal_count
-from frbcli.scene.profiles import run_down_profile, run_up_profile
-from frbcli.scene.segments import make_segments
+from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.planning.cell_choice import ALONG, AROUND, GROOVE, cell_error, cells_time, fewest_cells
+from frbcli.scene.planning.expected_error import expected_error
+from frbcli.scene.planning.film_choice import choose_films, short_error
+from frbcli.scene.planning.plan import CELL_SHARE, TIGHT_SHARE, make_plan
+from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.profiles import run_down_profile, run_up_profile
 from frbcli.solve.tableau import METHODS
 
 WITHIN = 2.0  # of the real cost
@@ -184,7 +184,7 @@ def test_the_signals_of_a_run_are_counted(name: str, settings: tuple[str, ...]) 
 MEASURED = """
 import sys
 from pathlib import Path
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.runs.run import run_cost, runup
 settings = ["film.theory=short", "speed.duration=1 s", "speed.to=60 Hz", f"output.step={sys.argv[1]}"]
 case = load_case("jeffcott", settings)

@@ -12,7 +12,7 @@ import column_tables
 import hard_cases_page
 import pytest
 
-from frbcli.case.hard import hard_cases
+from frbcli.case.reading.hard import hard_cases
 from frbcli.cli.main import COMMANDS
 
 ROOT = Path(__file__).parent.parent

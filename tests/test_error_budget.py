@@ -8,26 +8,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
-from frbcli.runs.cell_errors import FewerCells
-from frbcli.runs.error_budget import BEFORE_WHIRL, quiet_until, summed
-from frbcli.runs.fewer_cells import (
+from frbcli.runs.errors.cell_errors import FewerCells
+from frbcli.runs.errors.error_budget import BEFORE_WHIRL, quiet_until, summed
+from frbcli.runs.errors.fewer_cells import (
     SAFETY,
     SAFETY_OF_GROOVES,
     SAFETY_OF_RINGS,
     SAFETY_OF_RINGS_AT_REST,
     on_fewer_cells,
 )
-from frbcli.runs.film_error import FilmErrors
+from frbcli.runs.errors.film_error import FilmErrors
 from frbcli.runs.run import runup
-from frbcli.scene.cell_choice import cell_error
-from frbcli.scene.plan import make_plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.segments import make_segments
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.cell_choice import cell_error
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
 from frbcli.studies.differences import difference

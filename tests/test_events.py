@@ -12,11 +12,11 @@ from scipy.special import expit
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.analysis import signals as signals_of_a_run
-from frbcli.analysis import subsynchronous
 from frbcli.analysis.events import WHIRL_BEGINS, Event, find_events
-from frbcli.analysis.order_tracking import order_track
-from frbcli.analysis.subsynchronous import whirl_names
-from frbcli.case.load import load_case
+from frbcli.analysis.orders import subsynchronous
+from frbcli.analysis.orders.order_tracking import order_track
+from frbcli.analysis.orders.subsynchronous import whirl_names
+from frbcli.case.reading.load import load_case
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.store import Run
 from frbcli.runs.run import runup

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.film.gap import AxialGroove
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.chain import chain_grid, element_matrices, mode_fields
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from films import GROOVED, PLAIN, film_of, polar
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
-from frbcli.scene.film_choice import DEFAULT_MESH
+from frbcli.scene.planning.film_choice import DEFAULT_MESH
 
 FORCES = Path(__file__).parent / "data" / "film-forces.csv"
 Motion = tuple[np.ndarray, np.ndarray, float]

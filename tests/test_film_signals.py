@@ -16,8 +16,8 @@ from frbcli.results.store import Run, read_run
 from frbcli.runs import march
 from frbcli.runs import run as module
 from frbcli.runs.march import March
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 PLAIN = ["force", "film-thickness", "power", "torque"]
 STEADY = ["speed.from=60 Hz", "speed.to=60 Hz", "rotor.unbalance=0 g*mm"]

@@ -7,10 +7,10 @@ import math
 
 import pytest
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
-from frbcli.scene.findings import findings
-from frbcli.scene.system import make_rotor
+from frbcli.scene.machine.findings import findings
+from frbcli.scene.machine.system import make_rotor
 
 
 def test_of_a_jeffcott_rotor() -> None:

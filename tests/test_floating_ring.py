@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from frbcli.case.listing import values
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.listing import values
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.equilibrium.ring_speed import concentric_ratios
@@ -25,8 +25,8 @@ from frbcli.results.store import Run
 from frbcli.rotor.held import held_rotor
 from frbcli.runs.run import runup
 from frbcli.scene.films import centrifugal_pressures
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.compare import compare
 
 Array = NDArray[np.float64]

@@ -19,15 +19,15 @@ import numpy as np
 import pytest
 from synthetic_run import CLEARANCE, UNITS, Rotor, signals
 
-from frbcli.case.load import LARGEST_FILE, load_case
+from frbcli.case.reading.load import LARGEST_FILE, load_case
+from frbcli.case.reading.shipped import find_shipped, shipped_names
 from frbcli.case.schema import json_schema
-from frbcli.case.shipped import find_shipped, shipped_names
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, RunFileError
-from frbcli.results.container import USER_BLOCK, seal
+from frbcli.results.files.container import USER_BLOCK, seal
 from frbcli.results.store import Header, Run, RunWriter, read_run
-from frbcli.scene.plan import make_plan
-from frbcli.scene.planned import Plan
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
 
 MUTATIONS = int(os.environ.get("FRB_MUTATIONS", "400"))
 CASES = [find_shipped(name) for name in shipped_names()]

@@ -30,7 +30,7 @@ from frbcli.film.cells.supply import supplied, supply_share
 from frbcli.film.gap import AxialGroove, Hole, Lobes, Section, gap_height, graded_ring, smallest_gap
 from frbcli.film.operating import reynolds_number, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import BRASS, STEEL
-from frbcli.scene.operating import operating_points
+from frbcli.scene.machine.operating import operating_points
 
 TURN = 2.0 * math.pi
 PLAIN = section_of("none")

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.case.hard import HardCase, Reference, hard_cases, references
-from frbcli.case.load import load_case_text
+from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
+from frbcli.case.reading.load import load_case_text
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.studies.hard.cases import HardResults, hard_case_result, run_hard_cases

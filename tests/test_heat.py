@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from frbcli.bearing_tests.kinematic import rotation, squeeze
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.warm_machine import warm_machine
@@ -25,9 +25,9 @@ from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flo
 from frbcli.film.rectangles.film import make_film
 from frbcli.linear.stability import stability
 from frbcli.materials.oils import OILS
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
-from frbcli.scene.warm import warm_case, warm_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.machine.warm import warm_case, warm_system
+from frbcli.scene.planning.plan import make_plan
 
 DATA = Path(__file__).parent / "data"
 ZERO = 273.15

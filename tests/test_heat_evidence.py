@@ -9,7 +9,7 @@ import pytest
 from energy_film import Bearing, solve
 from test_bearing_sheet import CASE, grooves
 
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.film.cells.data import (
     ALONG,
     AROUND,
@@ -33,8 +33,8 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.bearing_sheet import sommerfeld_chart
 from frbcli.materials.oils import OILS
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 
 @pytest.mark.parametrize("cavitation", ["sommerfeld", "half-sommerfeld", "penalty", "reynolds", "two-phase"])

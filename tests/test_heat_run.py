@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from test_heat import RING, ring_case, single
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.warm_machine import warm_machine
@@ -20,11 +20,11 @@ from frbcli.plot.run.heat import heat_figure
 from frbcli.results.store import Run
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
-from frbcli.scene.heat import heat_of
-from frbcli.scene.plan import make_plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.segments import make_segments
-from frbcli.scene.warm import warm_case
+from frbcli.scene.machine.heat import heat_of
+from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.machine.warm import warm_case
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import RUNNING
 from frbcli.studies.compare import compare
 from frbcli.thermal.exchange import (

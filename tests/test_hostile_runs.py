@@ -16,7 +16,7 @@ from hostile_runs import KINDS
 from hostile_worker import SETTINGS
 from synthetic_run import Rotor, signals
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.results.store import Header, RunWriter
 from frbcli.runs.run import runup
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales

@@ -18,12 +18,12 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import fsolve
 
 import frbcli
-from frbcli.case.load import load_case_text
-from frbcli.cycles.balance import Balance, packed
-from frbcli.cycles.equilibria import resting_curve
-from frbcli.cycles.films import smooth_films
-from frbcli.cycles.linearised import state_space
-from frbcli.cycles.machine import film_loads, transfer
+from frbcli.case.reading.load import load_case_text
+from frbcli.cycles.method.balance import Balance, packed
+from frbcli.cycles.method.equilibria import resting_curve
+from frbcli.cycles.parts.films import smooth_films
+from frbcli.cycles.parts.linearised import state_space
+from frbcli.cycles.parts.machine import film_loads, transfer
 from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.film.cells.frame import turned
 from frbcli.film.cells.steady_force import steady_force
@@ -34,8 +34,8 @@ from frbcli.rotor.held import held_rotor
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
 from frbcli.runs.start import rotor_data, state_at
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

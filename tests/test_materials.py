@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.errors import InputError
 from frbcli.film.cells.channels import channel_resistance
 from frbcli.materials.oils import OILS, conductivity, density, heat_capacity

@@ -11,14 +11,14 @@ from cycle_machines import machine_of, turbocharger
 from rigid_cycles import diagram, rigid
 
 import frbcli
-from frbcli.cycles.balance import packed
 from frbcli.cycles.branch import Cycle, FoldFollower, Follower, first_place, follow_branch
-from frbcli.cycles.equilibria import resting_curve
-from frbcli.cycles.floquet import multipliers
-from frbcli.cycles.linearised import state_space
-from frbcli.cycles.reduced_states import reduced_space
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.cycles.method.balance import packed
+from frbcli.cycles.method.equilibria import resting_curve
+from frbcli.cycles.method.floquet import multipliers
+from frbcli.cycles.parts.linearised import state_space
+from frbcli.cycles.parts.reduced_states import reduced_space
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 
 def test_multipliers_next_to_rest_are_those_of_the_eigenvalues() -> None:

@@ -23,11 +23,11 @@ from typing import Any
 import pytest
 from output_options import CALLS, CASE, RUN, SHORT, TABLE, Option, output_options
 
-from frbcli.case.load import load_case
-from frbcli.case.shipped import find_shipped
+from frbcli.case.reading.load import load_case
+from frbcli.case.reading.shipped import find_shipped
 from frbcli.cli.main import run as frb
-from frbcli.results.kinds import PAGE, PICTURES, TABLES
-from frbcli.results.kinds import RUN as RUN_KIND
+from frbcli.results.files.kinds import PAGE, PICTURES, TABLES
+from frbcli.results.files.kinds import RUN as RUN_KIND
 from frbcli.runs.run import runup
 
 TRIALS = int(os.environ.get("FRB_TRIALS", "5000"))

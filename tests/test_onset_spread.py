@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup

@@ -31,7 +31,7 @@ from scipy.optimize import brentq
 
 import frbcli
 from frbcli.bearing_tests.plan import kinematic_plan
-from frbcli.case.listing import values
+from frbcli.case.reading.listing import values
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.film.bearing_model import table
@@ -43,7 +43,7 @@ from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.plot.signals import model as described
 from frbcli.runs import march
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
 
 PAGE = Path(__file__).parent.parent / "docs" / "adding-a-model.md"
 R, L, C, MU = 0.05, 0.03, 1e-4, 0.01

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.listing import values
-from frbcli.case.load import load_case
+from frbcli.case.reading.listing import values
+from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.compiled import compiled_cells, compiled_law

@@ -19,18 +19,18 @@ import pytest
 from output_options import CALLS, CASE, RUN, SHORT, TABLE, Option, other_paths, output_options
 from synthetic_run import Rotor, signals
 
-from frbcli.case.load import load_case
-from frbcli.case.shipped import find_shipped
+from frbcli.case.reading.load import load_case
+from frbcli.case.reading.shipped import find_shipped
 from frbcli.cli.files import here
 from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.run.animation import animate_orbits
-from frbcli.results.kinds import PAGE, TABLES
-from frbcli.results.lock import locked
+from frbcli.results.files.kinds import PAGE, TABLES
+from frbcli.results.files.lock import locked
+from frbcli.results.files.tables import harmless_text, write_table
+from frbcli.results.files.write import write, written
 from frbcli.results.store import Header, Run, RunWriter, read_run
-from frbcli.results.tables import harmless_text, write_table
-from frbcli.results.write import write, written
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
 
@@ -193,7 +193,7 @@ def frb_compare(case: object) -> None:
     compare(case, ["half-sommerfeld", "sommerfeld"], keep="kept")  # type: ignore[arg-type]
 
 
-HOLDS = "import sys, time; from pathlib import Path; from frbcli.results.lock import locked\n" + (
+HOLDS = "import sys, time; from pathlib import Path; from frbcli.results.files.lock import locked\n" + (
     "with locked(Path(sys.argv[1])):\n    print('held', flush=True); time.sleep(60.0)"
 )
 
@@ -405,7 +405,7 @@ def test_locks_of_a_file_system_without_them_stop_nobody(monkeypatch: pytest.Mon
     def unknown(_: int) -> None:
         raise OSError(95, "Operation not supported")
 
-    monkeypatch.setattr("frbcli.results.lock._lock", unknown)
+    monkeypatch.setattr("frbcli.results.files.lock._lock", unknown)
     with locked(Path("there/a.h5")):
         write(Path("there/a.html"), PAGE, "<!doctype html>")
     assert os.listdir("there") == ["a.html"]

@@ -7,14 +7,14 @@ import math
 
 import pytest
 
-from frbcli.case.hard import hard_cases
-from frbcli.case.listing import values
-from frbcli.case.load import load_case, load_case_text
-from frbcli.case.shipped import shipped_names
+from frbcli.case.reading.hard import hard_cases
+from frbcli.case.reading.listing import values
+from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.shipped import shipped_names
 from frbcli.cli.main import run as frb
 from frbcli.errors import Fault, InputError
 from frbcli.runs.run import run_cost
-from frbcli.scene.operating import operating_points
+from frbcli.scene.machine.operating import operating_points
 
 
 def faults_of(name: str, *settings: str) -> dict[str, Fault]:

@@ -15,7 +15,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.run.displacement import displacement_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
@@ -27,10 +27,10 @@ from frbcli.film.rectangles.film_force import film_force
 from frbcli.film.state import WET
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.runs.march import March
-from frbcli.scene.plan import make_plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.segments import Segment
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.segments import Segment
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.cell_films import BALANCE, EMPTY, LAW, OPEN, cell_numbers, move_cells
 from frbcli.solve.contact import push_back
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work

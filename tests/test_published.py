@@ -14,7 +14,7 @@ from scipy.sparse.linalg import spsolve
 
 from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest, rotation, squeeze, whirl
 from frbcli.bearing_tests.plan import kinematic_plan
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.law import Scales

@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 import frbcli
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.motion import Motion
@@ -25,10 +25,10 @@ from frbcli.film.state import OIL, W
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_created
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.plan import make_plan
-from frbcli.scene.planned import Plan
-from frbcli.scene.profiles import run_up_profile
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.element_films import HERE, MOST_ITERATIONS, ElementWork, make_element_work
 from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U

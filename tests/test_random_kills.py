@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import frbcli.runs.run as solve_run
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.results.store import Run, read_run
 from frbcli.runs import march
 from frbcli.runs.run import runup

@@ -19,7 +19,7 @@ from click.testing import CliRunner
 from synthetic_run import CLEARANCE, Rotor, make_run
 
 import frbcli
-from frbcli.case.shipped import shipped_cases
+from frbcli.case.reading.shipped import shipped_cases
 from frbcli.cli.main import frb
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.spectra.levels import LOWEST_dB, STEP_dB

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.analysis.order_tracking import order_track
-from frbcli.case.load import load_case
+from frbcli.analysis.orders.order_tracking import order_track
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.linear.response import DOUBTFUL, Response, larger_semi_axis, response, unbalance_motion

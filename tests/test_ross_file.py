@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from frbcli.case.listing import values
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.listing import values
+from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.toml import to_toml
 from frbcli.case.schema import Case
-from frbcli.case.toml import to_toml
 from frbcli.errors import Fault, InputError
 from frbcli.linear.modes import natural_modes
 

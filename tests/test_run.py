@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from frbcli.analysis.events import find_events
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.store import Run, read_run

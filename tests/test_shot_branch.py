@@ -9,15 +9,15 @@ import pytest
 from known_flows import KnownFlow, round_cycles
 from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
-from frbcli.cycles.films import smooth_films
-from frbcli.cycles.floquet import Multipliers
+from frbcli.cycles.method.floquet import Multipliers
+from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.shooting.branch import follow_shots
 from frbcli.cycles.shooting.fixed_point import SlowSpace
 from frbcli.cycles.shooting.rest import Threshold, located, thresholds
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, Shooting, Shot, multipliers_of
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 
 def started(shooting: Shooting, flow: KnownFlow, begun: tuple[float, float]) -> tuple[Threshold, Shot]:

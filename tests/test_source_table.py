@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cells.film import VolumeFilm
@@ -23,8 +23,8 @@ from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.scene.films import film_places
-from frbcli.scene.machine_films import source_film
-from frbcli.scene.plan import make_plan
+from frbcli.scene.machine.machine_films import source_film
+from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.section import film_section
 
 READINGS = ("absolute", "dimensionless")

@@ -8,10 +8,11 @@ import sys
 import numpy as np
 import pytest
 
-from frbcli.analysis import signals, spectrum
-from frbcli.analysis.smear import chirp_height
-from frbcli.analysis.spectrum import Direction, FLOOR_dB, Spectrogram, waterfall, window_length
-from frbcli.analysis.windows import fast_length
+from frbcli.analysis import signals
+from frbcli.analysis.spectra import spectrum
+from frbcli.analysis.spectra.smear import chirp_height
+from frbcli.analysis.spectra.spectrum import Direction, FLOOR_dB, Spectrogram, waterfall, window_length
+from frbcli.analysis.spectra.windows import fast_length
 from frbcli.errors import InputError
 
 CLEARANCE = 35e-6
@@ -149,7 +150,8 @@ def test_spectra_are_those_of_scipy_to_round_off(direction: Direction, window_s:
 
 
 def test_spectra_do_without_the_statistics_of_scipy() -> None:
-    code = "import sys, frbcli.analysis.spectrum, frbcli.analysis.events, frbcli.analysis.order_tracking;" \
+    code = "import sys, frbcli.analysis.spectra.spectrum, frbcli.analysis.events;" \
+           " import frbcli.analysis.orders.order_tracking;" \
            "assert not {'scipy.stats', 'scipy.signal', 'scipy.optimize'} & set(sys.modules)"  # fmt: skip
     subprocess.run([sys.executable, "-c", code], check=True)
 

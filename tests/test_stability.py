@@ -12,7 +12,7 @@ import pytest
 from films import system_of
 
 import frbcli
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.errors import InputError, NotConverged
@@ -21,8 +21,8 @@ from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.linear.stability import Stability, StabilityPoint, eigenvalues, stability
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 EQUILIBRIUM = Path(__file__).parent / "data" / "equilibrium.csv"
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}

@@ -11,11 +11,11 @@ from rigid_cycles import UNIT_Hz, diagram, rigid
 from scipy.interpolate import CubicSpline
 
 import frbcli
-from frbcli.case.load import load_case_text
+from frbcli.case.reading.load import load_case_text
 from frbcli.cli.main import run
 from frbcli.cycles.maps.stability_map import Across, StabilityMap
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 
 def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]

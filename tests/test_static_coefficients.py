@@ -10,7 +10,7 @@ import pytest
 from test_bearing_sheet import CASE, OMEGA, Row, grooves, printed
 
 import frbcli
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import StaticMachines

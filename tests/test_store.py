@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from frbcli.errors import InputError, RunFileError
-from frbcli.results.container import USER_BLOCK, write_whole
+from frbcli.results.files.container import USER_BLOCK, write_whole
 from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 
 HEADER = Header(

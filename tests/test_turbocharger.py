@@ -14,7 +14,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from frbcli.case.bearing import FloatingRingBearing
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.coefficients import RestingFilm
@@ -25,7 +25,7 @@ from frbcli.plot.machine.modes import modes_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import with_rings
-from frbcli.scene.turbocharger import all_modes, make_turbocharger
+from frbcli.scene.machine.turbocharger import all_modes, make_turbocharger
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ import pytest
 from cycle_machines import machine_of, ring_case
 
 import frbcli
-from frbcli.case.load import load_case_text
-from frbcli.cycles.balance import unpacked
-from frbcli.cycles.machine import Loads, Machine, film_loads, transfer, unbalance_motion
+from frbcli.case.reading.load import load_case_text
+from frbcli.cycles.method.balance import unpacked
+from frbcli.cycles.parts.machine import Loads, Machine, film_loads, transfer, unbalance_motion
 from frbcli.cycles.result import CyclePoint, UnbalancedWhirl
 from frbcli.cycles.unbalance import two_frequencies
 from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, solved, with_unbalance

@@ -18,13 +18,13 @@ from typing import Any
 import pytest
 
 from frbcli.bearing_tests import kinematic
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
-from frbcli.results.lock import locked
+from frbcli.results.files.lock import locked
 from frbcli.results.store import Run, read_run
-from frbcli.runs.interrupt import deaf
 from frbcli.runs.march import March
+from frbcli.runs.record.interrupt import deaf
 from frbcli.runs.run import rundown, runup
 from frbcli.studies import accuracy as ladder
 from frbcli.studies.compare import compare
@@ -572,7 +572,7 @@ except BaseException:
     print("dropped", flush=True)
 ''')
 sys.path.insert(0, "")
-import frbcli.case.shipped as shipped
+import frbcli.case.reading.shipped as shipped
 def slow():
     import swallowing
     time.sleep(60.0)

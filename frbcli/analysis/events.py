@@ -16,12 +16,12 @@ from typing import Literal
 import numpy as np
 
 from frbcli.analysis import signals
-from frbcli.analysis.peaks import intervals_above
-from frbcli.analysis.resonance import FLOOR, beside, critical_step, resonant, vibrations_beside
-from frbcli.analysis.revolutions import STEPS, Revolutions, Tracked, track
+from frbcli.analysis.orders.resonance import FLOOR, beside, critical_step, resonant, vibrations_beside
+from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked, track
+from frbcli.analysis.orders.subsynchronous import find_whirls
 from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, points
-from frbcli.analysis.subsynchronous import find_whirls
-from frbcli.analysis.windows import hann
+from frbcli.analysis.spectra.peaks import intervals_above
+from frbcli.analysis.spectra.windows import hann
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "clearance-step"]
 

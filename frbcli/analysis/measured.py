@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.sampling import even_steps, times
+from frbcli.analysis.orders.tacho import tacho_speed
 from frbcli.analysis.signals import Values, joined, located
-from frbcli.analysis.tacho import tacho_speed
+from frbcli.analysis.spectra.sampling import even_steps, times
 from frbcli.results.measured import Columns, read_columns, wrong_file
 from frbcli.results.records import LARGEST, SMALLEST, wrong_values
 from frbcli.results.signals import Signal

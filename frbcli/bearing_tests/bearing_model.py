@@ -14,7 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cells.loads import Loads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion
 from frbcli.film.rectangles.film import evaluate
-from frbcli.scene.bearing_model_films import bearing_film
+from frbcli.scene.machine.bearing_model_films import bearing_film
 
 UNKNOWN = math.nan
 

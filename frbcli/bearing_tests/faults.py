@@ -5,7 +5,7 @@ from __future__ import annotations
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case, Motion
 from frbcli.errors import Fault
-from frbcli.scene.elements import without_film
+from frbcli.scene.machine.elements import without_film
 
 
 def motion_faults(motion: Motion | None, test: str) -> list[Fault]:

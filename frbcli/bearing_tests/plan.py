@@ -15,12 +15,12 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
-from frbcli.scene.cell_choice import FEWEST, given_cells
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import make_law
 from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.published import DIFFUSIONS, ELEMENTS
-from frbcli.scene.planned import Decision
+from frbcli.scene.planning.cell_choice import FEWEST, given_cells
+from frbcli.scene.planning.planned import Decision
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
 
@@ -130,7 +130,9 @@ def _model_plan(case: Case, cavitation: str, test: str) -> KinematicPlan:
         faults.append(Fault("--cavitation", cavitation, None, problem, "Leave it out."))
     motion = case.motion
     rate = TWO_PI * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
-    from frbcli.scene.bearing_model_films import model_faults  # numba takes longer to import than a plan to make
+    from frbcli.scene.machine.bearing_model_films import (
+        model_faults,  # numba takes longer to import than a plan to make
+    )
 
     faults += model_faults(case, rate)
     if faults:

@@ -32,7 +32,7 @@ from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.solution import FilmState, PublishedSolution
-from frbcli.scene.machine_films import published_film
+from frbcli.scene.machine.machine_films import published_film
 
 Array = NDArray[np.float64]
 

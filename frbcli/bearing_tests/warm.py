@@ -12,8 +12,8 @@ from frbcli.bearing_tests.steady_film import film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
-from frbcli.scene.heat import heat_of
-from frbcli.scene.warm import warm_case
+from frbcli.scene.machine.heat import heat_of
+from frbcli.scene.machine.warm import warm_case
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
 Placed = Callable[[Case, KinematicPlan], Motion]

@@ -36,8 +36,8 @@ from frbcli.case.quantities import (
     Speed,
     Stiffness,
 )
+from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
-from frbcli.case.text import as_text
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.theories import Theory, adopt_models, check_model
 from frbcli.case.thermal import Thermal
@@ -250,7 +250,7 @@ class Case(Model):
 
     def _repr_html_(self) -> str:
         """In a notebook: its values in SI and as they are written."""
-        from frbcli.case.listing import values  # it is made of cases
+        from frbcli.case.reading.listing import values  # it is made of cases
 
         told = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
         return html_table(self.title or self.name, ("key", "SI", "", "reads"), told, len(told))
@@ -262,7 +262,7 @@ class Case(Model):
         mPa*s"}, whose values are quantities with a unit, numbers in SI, or tables; None leaves a key out. Later ones
         take precedence. Raises InputError with every fault of the settings and of the case that they make.
         """
-        from frbcli.case.load import with_settings  # it reads cases
+        from frbcli.case.reading.load import with_settings  # it reads cases
 
         return with_settings(self, settings)
 

@@ -42,7 +42,7 @@ def _show(name: str, output: Path | None, hard: bool, terminal: Terminal) -> Non
     if hard:
         from frbcli.cli.studies.hard import hard_text as text_of
     else:
-        from frbcli.case.shipped import find_shipped as text_of
+        from frbcli.case.reading.shipped import find_shipped as text_of
     text = text_of(name)
     if output is not None:
         _write(text, output)
@@ -54,7 +54,7 @@ def _show(name: str, output: Path | None, hard: bool, terminal: Terminal) -> Non
 
 
 def _list(terminal: Terminal) -> None:
-    from frbcli.case.shipped import shipped_cases
+    from frbcli.case.reading.shipped import shipped_cases
 
     cases = shipped_cases()
     terminal.table("shipped cases", ("name", "title"), list(cases.items()))
@@ -64,8 +64,8 @@ def _list(terminal: Terminal) -> None:
 
 def _write(text: str, output: Path) -> None:
     """Write a case to a new file."""
-    from frbcli.results.kinds import NEW
-    from frbcli.results.write import write
+    from frbcli.results.files.kinds import NEW
+    from frbcli.results.files.write import write
 
     check_outputs((output, NEW))
     write(output, NEW, text)

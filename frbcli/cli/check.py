@@ -14,13 +14,13 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from frbcli.case.listing import Value as ListedValue
+    from frbcli.case.reading.listing import Value as ListedValue
     from frbcli.case.schema import Case
-    from frbcli.scene.cost import ExpectedCost
-    from frbcli.scene.expected_error import ExpectedError
-    from frbcli.scene.findings import Findings
-    from frbcli.scene.operating import FilmOperation
-    from frbcli.scene.planned import Decision
+    from frbcli.scene.costs.cost import ExpectedCost
+    from frbcli.scene.machine.findings import Findings
+    from frbcli.scene.machine.operating import FilmOperation
+    from frbcli.scene.planning.expected_error import ExpectedError
+    from frbcli.scene.planning.planned import Decision
 
 COLUMNS = 80
 TURN = 2.0 * math.pi
@@ -34,15 +34,15 @@ TURNING_TOLD = 0.02  # of the gap
 def command(case: Case, everything: bool, terminal: Terminal) -> None:
     """Validate CASE; show what it amounts to and the plan: what will be modelled, what is left out, and why."""
     from frbcli.bearing_tests.plan import kinematic_plan
-    from frbcli.case.listing import values
-    from frbcli.scene.cost import expected_cost
-    from frbcli.scene.expected_error import expected_error
-    from frbcli.scene.findings import findings
-    from frbcli.scene.limits import require_affordable
-    from frbcli.scene.operating import operating_points
-    from frbcli.scene.plan import make_plan
-    from frbcli.scene.preparation import compile_B
-    from frbcli.scene.profiles import run_up_profile
+    from frbcli.case.reading.listing import values
+    from frbcli.scene.costs.cost import expected_cost
+    from frbcli.scene.costs.limits import require_affordable
+    from frbcli.scene.costs.preparation import compile_B
+    from frbcli.scene.machine.findings import findings
+    from frbcli.scene.machine.operating import operating_points
+    from frbcli.scene.planning.expected_error import expected_error
+    from frbcli.scene.planning.plan import make_plan
+    from frbcli.scene.planning.profiles import run_up_profile
 
     listed = values(case)
     found = findings(case)
@@ -145,9 +145,9 @@ def _expectations(
     cost: ExpectedCost, error: ExpectedError, compile_B: float, with_films: bool
 ) -> tuple[Decision, ...]:
     """Expected error and cost, the last lines of the plan; compile_B: memory of the first start, which compiles."""
-    from frbcli.scene.cost import clock
-    from frbcli.scene.limits import memory
-    from frbcli.scene.planned import Decision
+    from frbcli.scene.costs.cost import clock
+    from frbcli.scene.costs.limits import memory
+    from frbcli.scene.planning.planned import Decision
 
     solved = f", {cost.film_solves} film solves" if with_films else ""
     solves = f"{cost.steps} steps{solved}, on the machine of docs/accuracy.md"

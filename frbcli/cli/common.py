@@ -231,7 +231,7 @@ def _terminal(context: click.Context, _: click.Parameter, quiet: bool) -> Termin
 
 
 def _load(context: click.Context, _: click.Parameter, source: str) -> Case:
-    from frbcli.case.load import load_case
+    from frbcli.case.reading.load import load_case
 
     note_read(Path(source), context)
     return load_case(source, context.meta.get(_SETTINGS, ()))

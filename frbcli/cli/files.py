@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from frbcli.results.kinds import Kind
+    from frbcli.results.files.kinds import Kind
 
 _READS = "frbcli.reads"  # in the context of a command
 
@@ -64,8 +64,8 @@ def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None)
     files: with their kinds, None is no result; picture: one more that is drawn; whoever wants none does not wait for
     the library that draws.
     """
-    from frbcli.results.kinds import PICTURES
-    from frbcli.results.place import require_places
+    from frbcli.results.files.kinds import PICTURES
+    from frbcli.results.files.place import require_places
 
     wanted = [(file, kind) for file, kind in files if file is not None]
     if picture is not None:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from frbcli.cli.streams import OutputLost, closing_code, take_streams
 from frbcli.errors import INTERRUPTED
-from frbcli.runs.interrupt import SIGNALS
+from frbcli.runs.record.interrupt import SIGNALS
 
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs

@@ -15,8 +15,8 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import Balance, left_out, moments, motion_along, packed, unpacked
-from frbcli.cycles.continuation import (
+from frbcli.cycles.method.balance import Balance, left_out, moments, motion_along, packed, unpacked
+from frbcli.cycles.method.continuation import (
     Equations,
     Place,
     Strides,
@@ -29,11 +29,11 @@ from frbcli.cycles.continuation import (
     step_from,
     unit_vector,
 )
-from frbcli.cycles.equilibria import HopfPoint
-from frbcli.cycles.floquet import HELPS, TRIVIAL, Multipliers, multipliers
-from frbcli.cycles.linearised import StateSpace
-from frbcli.cycles.machine import Machine
-from frbcli.cycles.reduced_states import reduced_space
+from frbcli.cycles.method.equilibria import HopfPoint
+from frbcli.cycles.method.floquet import HELPS, TRIVIAL, Multipliers, multipliers
+from frbcli.cycles.parts.linearised import StateSpace
+from frbcli.cycles.parts.machine import Machine
+from frbcli.cycles.parts.reduced_states import reduced_space
 
 Array = NDArray[np.float64]
 

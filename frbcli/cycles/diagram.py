@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.cycles.balance import loads_along, unpacked
 from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, Follower, first_place, follow_branch
-from frbcli.cycles.continuation import oriented
-from frbcli.cycles.criticality import Lyapunov, lyapunov_coefficient
-from frbcli.cycles.equilibria import Course, Equilibrium, HopfPoint, Resting
-from frbcli.cycles.machine import Machine
+from frbcli.cycles.method.balance import loads_along, unpacked
+from frbcli.cycles.method.continuation import oriented
+from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
+from frbcli.cycles.method.equilibria import Course, Equilibrium, HopfPoint, Resting
+from frbcli.cycles.method.seed import seed_cycle
+from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import (
     SUBCRITICAL,
     SUPERCRITICAL,
@@ -25,7 +26,6 @@ from frbcli.cycles.result import (
     SpecialPoint,
     hertz,
 )
-from frbcli.cycles.seed import seed_cycle
 from frbcli.scene.films import film_places
 
 Observer = Callable[[int, float, float], None]

@@ -7,12 +7,12 @@ import re
 
 from frbcli.case.machine_keys import machine_fault
 from frbcli.case.schema import Case
-from frbcli.cycles.equilibria import Equilibrium, settled
 from frbcli.cycles.faults import check
-from frbcli.cycles.machine import Machine, make_machine
+from frbcli.cycles.method.equilibria import Equilibrium, settled
+from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.errors import Fault, InputError
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
 
 KEPT = 64  # machines
 LONGEST_SHOWN = 40  # characters of a value in a fault

@@ -9,12 +9,12 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.linear.stability import default_speeds
 from frbcli.scene.channels import coupled
-from frbcli.scene.elements import require_a_film, speed_dependent
-from frbcli.scene.film_choice import all_clipped, needs_cells
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
 from frbcli.scene.forms.published import is_published
 from frbcli.scene.keys import cavitation_keys
+from frbcli.scene.machine.elements import require_a_film, speed_dependent
+from frbcli.scene.planning.film_choice import all_clipped, needs_cells
 
 
 def check(case: Case, with_oil: bool = False) -> tuple[float, float]:

@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.cycles.balance import Balance, unpacked
 from frbcli.cycles.branch import MOST_UNKNOWNS, Follower
-from frbcli.cycles.continuation import Equations, Place, Unreachable
 from frbcli.cycles.diagram import Observer, Walk, diagram
-from frbcli.cycles.equilibria import Resting, hopf_points, settled
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
-from frbcli.cycles.linearised import StateSpace, state_space
-from frbcli.cycles.machine import Machine
+from frbcli.cycles.method.balance import Balance, unpacked
+from frbcli.cycles.method.continuation import Equations, Place, Unreachable
+from frbcli.cycles.method.equilibria import Resting, hopf_points, settled
+from frbcli.cycles.parts.linearised import StateSpace, state_space
+from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import LimitCycles
 from frbcli.equilibrium.resting import resting_position, ring_speeds
 from frbcli.errors import NotConverged

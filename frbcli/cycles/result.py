@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.cycles.balance import motion_along
+from frbcli.cycles.method.balance import motion_along
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,7 +13,7 @@ from frbcli.equilibrium.resting import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.rotor.held import held_rotor
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.parabola import share_within
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.rotor.held import HeldRotor, held_rotor
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
 

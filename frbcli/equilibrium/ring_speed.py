@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from frbcli.case.schema import Case
 from frbcli.scene.films import turning_rings
-from frbcli.scene.system import film_drag
+from frbcli.scene.machine.system import film_drag
 
 
 def concentric_ratios(case: Case) -> dict[str, float]:

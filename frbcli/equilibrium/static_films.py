@@ -19,14 +19,14 @@ from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.film_choice import DEFAULT_MESH, all_clipped, choose_films, needs_cells
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.forms.cells import CELLS as ON_CELLS
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.plan import make_plan
-from frbcli.scene.planned import Plan
-from frbcli.scene.system import System, make_system
-from frbcli.scene.warm import warm_case, warm_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.warm import warm_case, warm_system
+from frbcli.scene.planning.film_choice import DEFAULT_MESH, all_clipped, choose_films, needs_cells
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
 
 Array = NDArray[np.float64]
 

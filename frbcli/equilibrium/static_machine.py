@@ -14,8 +14,8 @@ from frbcli.equilibrium.resting import resting_films
 from frbcli.equilibrium.static_films import Films, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
 
 Array = NDArray[np.float64]
 

@@ -13,11 +13,11 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.grid import Array
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.film_faults import require_films
-from frbcli.scene.heat import Heat, heat_of
-from frbcli.scene.plan import make_plan
-from frbcli.scene.planned import Plan
-from frbcli.scene.system import System, make_system
-from frbcli.scene.warm import warm_system
+from frbcli.scene.machine.heat import Heat, heat_of
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.warm import warm_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
 

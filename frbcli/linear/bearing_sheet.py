@@ -27,10 +27,10 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import SHEET
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.rotor.held import held_rotor
-from frbcli.scene.elements import require_a_film
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.published import is_published
+from frbcli.scene.machine.elements import require_a_film
 from frbcli.scene.remedies import advised
 
 Observer = Callable[[int, int], None]

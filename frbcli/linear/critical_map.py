@@ -29,9 +29,9 @@ from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.turbocharger import turbocharger_rotor
 from frbcli.scene.film_faults import require_films
-from frbcli.scene.findings import findings
 from frbcli.scene.keys import element_keys
-from frbcli.scene.turbocharger import all_modes, journals, wheels
+from frbcli.scene.machine.findings import findings
+from frbcli.scene.machine.turbocharger import all_modes, journals, wheels
 
 if TYPE_CHECKING:
     import pandas as pd

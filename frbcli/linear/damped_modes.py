@@ -20,7 +20,7 @@ from frbcli.linear.stability import OSCILLATING, stability_points
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.rotor.ring import without_spins
-from frbcli.scene.turbocharger import all_modes, kept_modes
+from frbcli.scene.machine.turbocharger import all_modes, kept_modes
 
 Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]

@@ -21,7 +21,7 @@ from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
 

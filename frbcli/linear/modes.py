@@ -19,9 +19,9 @@ from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.rotor.order import first_largest, ranks
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, reduction_error, whirl_modes
-from frbcli.scene.elements import element_places, element_springs
 from frbcli.scene.film_faults import require_films
-from frbcli.scene.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
+from frbcli.scene.machine.elements import element_places, element_springs
+from frbcli.scene.machine.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -32,8 +32,8 @@ from frbcli.rotor.ring import without_spins
 from frbcli.scene.channels import coupled
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.keys import bearing_key, cavitation_keys
+from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
-from frbcli.scene.system import System
 
 Array = NDArray[np.float64]
 Eigenvalues = NDArray[np.complex128]

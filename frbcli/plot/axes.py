@@ -10,7 +10,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.spectrum import Direction
+from frbcli.analysis.spectra.spectrum import Direction
 from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
 from frbcli.linear.response import Response
 from frbcli.linear.stability import Stability

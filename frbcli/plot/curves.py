@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from frbcli.plot.run.envelope import Column, Envelope, curve, extremes
 from frbcli.plot.signals import cut, labels
 from frbcli.plot.style import COLOURS
-from frbcli.results.container import refuse
+from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run

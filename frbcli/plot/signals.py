@@ -9,16 +9,16 @@ from dataclasses import asdict
 from typing import Any
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.revolutions import CELLS
+from frbcli.analysis.orders.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, joined, located, points
-from frbcli.case.load import LARGEST_FILE
+from frbcli.case.reading.load import LARGEST_FILE
+from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.case.theories import SHIPPED as THEORIES
-from frbcli.case.toml import TomlFault, parse
 from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import extremes
 from frbcli.plot.style import plain
-from frbcli.results.container import refuse
+from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run

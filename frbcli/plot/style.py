@@ -17,9 +17,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.errors import Fault, InputError, printable
-from frbcli.results.kinds import PICTURES
-from frbcli.results.place import require_places
-from frbcli.results.write import write
+from frbcli.results.files.kinds import PICTURES
+from frbcli.results.files.place import require_places
+from frbcli.results.files.write import write
 
 # Okabe and Ito: distinguishable also for the colour-blind
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"

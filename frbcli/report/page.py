@@ -14,8 +14,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from frbcli.analysis.signals import films
-from frbcli.case.listing import values
-from frbcli.case.load import load_case_text
+from frbcli.case.reading.listing import values
+from frbcli.case.reading.load import load_case_text
 from frbcli.errors import Fault, FrbError, InputError, printable
 from frbcli.plot.run.displacement import displacement_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure
@@ -31,15 +31,15 @@ from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
-from frbcli.results.kinds import PAGE
-from frbcli.results.place import require_places
+from frbcli.results.files.kinds import PAGE
+from frbcli.results.files.place import require_places
+from frbcli.results.files.write import write
 from frbcli.results.records import SPEED, event_place
 from frbcli.results.store import Run
-from frbcli.results.write import write
-from frbcli.runs.account import account
-from frbcli.runs.header import FILM_SIGNALS
-from frbcli.scene.findings import Findings, findings
-from frbcli.scene.plan import make_plan
+from frbcli.runs.errors.account import account
+from frbcli.runs.record.header import FILM_SIGNALS
+from frbcli.scene.machine.findings import Findings, findings
+from frbcli.scene.planning.plan import make_plan
 
 MOST_EVENTS = 60  # of the table and the picture
 CHOSEN = 4  # moments of orbits and spectra, where none are asked for

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import IO, Any
 
 from frbcli.errors import Fault, InputError
-from frbcli.results.kinds import TABLES
+from frbcli.results.files.kinds import TABLES
+from frbcli.results.files.tables import harmless_text
+from frbcli.results.files.write import written
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
-from frbcli.results.tables import harmless_text
-from frbcli.results.write import written
 
 LINES = 50_000  # of CSV that are made at a time
 MOST_COMPRESSED = 4_000_000  # samples of a column of MAT

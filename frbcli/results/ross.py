@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from frbcli.results.kinds import ROSS
-from frbcli.results.write import write
+from frbcli.results.files.kinds import ROSS
+from frbcli.results.files.write import write
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.results.stored import Stored
+from frbcli.results.files.stored import Stored
 
 Values = NDArray[np.float64]
 

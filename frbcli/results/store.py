@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.html import html_table
-from frbcli.results import parts
-from frbcli.results.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
+from frbcli.results.files import parts
+from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
+from frbcli.results.files.stored import Place, Stored, StoredArrays
 from frbcli.results.records import (
     LARGEST,
     MOST_EVENTS,
@@ -33,7 +34,6 @@ from frbcli.results.records import (
     wrong_values,
 )
 from frbcli.results.signals import Signal, Values
-from frbcli.results.stored import Place, Stored, StoredArrays
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,7 +13,7 @@ from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.cosimulation import in_turn
 from frbcli.runs.oil import displacement, grid_angle
 from frbcli.runs.start import FIRST_STEP, accelerations, settled_forces
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
 from frbcli.solve.state import ERROR_BEFORE, STEP, STEP_BEFORE, STEP_DONE, TIME, State
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from frbcli.case.schema import Case
-from frbcli.scene.course import longest_step
-from frbcli.scene.planned import Plan
+from frbcli.scene.costs.course import longest_step
+from frbcli.scene.planning.planned import Plan
 from frbcli.solve.state import Control
 
 

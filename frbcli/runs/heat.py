@@ -9,13 +9,13 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.kinds.contract import Films
-from frbcli.runs.film_numbers import FilmNumbers
-from frbcli.runs.restored import array
+from frbcli.runs.record.film_numbers import FilmNumbers
+from frbcli.runs.record.restored import array
 from frbcli.scene.films import film_places
-from frbcli.scene.heat import Heat, heat_of
-from frbcli.scene.planned import Plan
-from frbcli.scene.system import System
-from frbcli.scene.warm import warm_system
+from frbcli.scene.machine.heat import Heat, heat_of
+from frbcli.scene.machine.system import System
+from frbcli.scene.machine.warm import warm_system
+from frbcli.scene.planning.planned import Plan
 from frbcli.solve.heat import NARROWEST, NO_HEAT, TOLD, LumpedHeat, NoHeat, columns_of
 from frbcli.solve.state import Array
 from frbcli.thermal.exchange import (

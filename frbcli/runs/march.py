@@ -12,23 +12,23 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
 from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.runs.cell_errors import FewerCells
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.control import control_of
 from frbcli.runs.cosimulation import in_turn, micro_cost
-from frbcli.runs.error_budget import budget_of_segments, quick_budget, summed
-from frbcli.runs.film_signals import OF_THE_STEPS, Samples, film_signals
-from frbcli.runs.header import FLOW, named, ring_names
+from frbcli.runs.errors.cell_errors import FewerCells
+from frbcli.runs.errors.error_budget import budget_of_segments, quick_budget, summed
 from frbcli.runs.heat import RunHeat
-from frbcli.runs.restored import array, check_samples, restored
+from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, film_signals
+from frbcli.runs.record.header import FLOW, named, ring_names
+from frbcli.runs.record.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.cost import expected_cost
-from frbcli.scene.course import expected_course
-from frbcli.scene.planned import Plan
-from frbcli.scene.preparation import film_error_s
+from frbcli.scene.costs.cost import expected_cost
+from frbcli.scene.costs.course import expected_course
+from frbcli.scene.costs.preparation import film_error_s
+from frbcli.scene.machine.segments import Segment, make_segments
+from frbcli.scene.machine.system import System
+from frbcli.scene.planning.planned import Plan
 from frbcli.scene.remedies import advised
-from frbcli.scene.segments import Segment, make_segments
-from frbcli.scene.system import System
 from frbcli.solve.macro_step import advance_in_turn
 from frbcli.solve.state import (
     CONTACT,
@@ -79,7 +79,7 @@ class Progress:
 class March:
     """A run: the constant parts, the state, the clock.
 
-    Its machine may change (scene/segments.py): all segments exist from the start, and one is current.
+    Its machine may change (scene/machine/segments.py): all segments exist from the start, and one is current.
     """
 
     def __init__(self, case: Case, plan: Plan, segments: Sequence[Segment], profile: SpeedProfile) -> None:

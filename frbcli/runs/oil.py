@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.film.cells.frame import turned
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
 from frbcli.solve.state import GRID, State
 
 

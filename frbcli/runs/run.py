@@ -9,23 +9,23 @@ from pathlib import Path
 
 from frbcli.case.schema import Case
 from frbcli.linear.critical_speeds import linear_critical_speeds
-from frbcli.results.container import refuse
-from frbcli.results.lock import locked
+from frbcli.results.files.container import refuse
+from frbcli.results.files.lock import locked
 from frbcli.results.store import Header, Run, RunWriter, check_output
 from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.runs.error_budget import quiet_until
-from frbcli.runs.fewer_cells import on_fewer_cells
-from frbcli.runs.header import header
-from frbcli.runs.interrupt import held_back
+from frbcli.runs.errors.error_budget import quiet_until
+from frbcli.runs.errors.fewer_cells import on_fewer_cells
 from frbcli.runs.march import March, Progress
-from frbcli.runs.restored import WrongCheckpoint
-from frbcli.runs.standing import standing_run
-from frbcli.scene.cost import ExpectedCost, expected_cost
-from frbcli.scene.limits import require_affordable
-from frbcli.scene.plan import make_plan
-from frbcli.scene.planned import Plan
-from frbcli.scene.profiles import run_down_profile, run_up_profile
-from frbcli.scene.segments import Segment, make_segments
+from frbcli.runs.record.header import header
+from frbcli.runs.record.interrupt import held_back
+from frbcli.runs.record.restored import WrongCheckpoint
+from frbcli.runs.record.standing import standing_run
+from frbcli.scene.costs.cost import ExpectedCost, expected_cost
+from frbcli.scene.costs.limits import require_affordable
+from frbcli.scene.machine.segments import Segment, make_segments
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.profiles import run_down_profile, run_up_profile
 from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0

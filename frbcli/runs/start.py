@@ -14,7 +14,7 @@ from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import unbalance_shares
 from frbcli.rotor.over_speed import no_part
 from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.scene.system import System
+from frbcli.scene.machine.system import System
 from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
 

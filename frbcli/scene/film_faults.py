@@ -11,10 +11,10 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.channels import channel_faults
-from frbcli.scene.elements import element_faults
 from frbcli.scene.films import FilmPlace, film_places
 from frbcli.scene.heat_faults import heat_faults
 from frbcli.scene.keys import film_keys
+from frbcli.scene.machine.elements import element_faults
 from frbcli.scene.section import film_section
 
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from frbcli.case.load import load_case_text
+from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.stability import default_speeds, stability
@@ -19,12 +19,12 @@ from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
 from frbcli.scene.coupling import COUPLINGS
-from frbcli.scene.elements import require_a_film
-from frbcli.scene.film_choice import DEFAULT_MESH
 from frbcli.scene.film_faults import require_films
-from frbcli.scene.plan import THEORIES, make_plan
-from frbcli.scene.planned import Plan
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.elements import require_a_film
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.film_choice import DEFAULT_MESH
+from frbcli.scene.planning.plan import THEORIES, make_plan
+from frbcli.scene.planning.planned import Plan
 from frbcli.studies.differences import difference, onset_speed
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
 

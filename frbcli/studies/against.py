@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frbcli.analysis.measured import events_at
-from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import Values, bearing_clearance, joined, located
+from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.results.records import SPEED

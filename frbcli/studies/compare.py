@@ -22,14 +22,14 @@ from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
 from frbcli.html import Tabular
 from frbcli.results.store import Run, check_output
-from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
+from frbcli.runs.record.header import POWER
+from frbcli.runs.record.standing import earlier_run, is_interrupted, standing_run
 from frbcli.runs.run import runup
-from frbcli.runs.standing import earlier_run, is_interrupted, standing_run
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
-from frbcli.scene.elements import require_a_film
 from frbcli.scene.film_faults import require_films
-from frbcli.scene.plan import THEORIES, make_plan
+from frbcli.scene.machine.elements import require_a_film
+from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
 
 if TYPE_CHECKING:

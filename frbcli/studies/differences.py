@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.results.store import Run
-from frbcli.runs.error_budget import quiet_until
+from frbcli.runs.errors.error_budget import quiet_until
 
 Values = NDArray[np.float64]
 

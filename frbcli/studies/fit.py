@@ -20,11 +20,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import Values, bearing_clearance
-from frbcli.analysis.spectrum import window_length
-from frbcli.case.listing import values as listed
+from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
+from frbcli.analysis.spectra.spectrum import window_length
 from frbcli.case.machine_keys import machine_fault
+from frbcli.case.reading.listing import values as listed
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, FrbError, InputError
 from frbcli.html import Tabular

@@ -19,8 +19,8 @@ from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
-from frbcli.scene.plan import make_plan
-from frbcli.scene.planned import Plan
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
 from frbcli.studies.differences import onset_speed
 
 BEYOND = 1.2  # of the speed of the onset, from the first speed on: how far each run goes

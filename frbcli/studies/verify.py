@@ -13,7 +13,7 @@ from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import rundown, runup
 from frbcli.scene.coupling import APART, SEMI, chosen_coupling
-from frbcli.scene.plan import make_plan
+from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.differences import difference, onset_speed
 
 INTERRUPTED = "interrupted"

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.bearing_tests.kinematic import rotation
-from frbcli.case.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.errors import InputError, NotConverged
 
 Array = NDArray[np.float64]

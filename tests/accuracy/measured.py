@@ -7,13 +7,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.plot.studies.accuracy import accuracy_figure
 from frbcli.plot.style import save_figure
 from frbcli.runs.run import runup
-from frbcli.scene.cost import expected_cost
-from frbcli.scene.plan import make_plan
-from frbcli.scene.profiles import run_up_profile
+from frbcli.scene.costs.cost import expected_cost
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.studies.accuracy import accuracy
 from frbcli.studies.ladder import RungResult
 

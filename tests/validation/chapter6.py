@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from frbcli.analysis.ridges import ridge_speeds, ridges
+from frbcli.analysis.spectra.ridges import ridge_speeds, ridges
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
 from validation.measures import SETTLED_s, WINDOW_s, first_event, kept_runup, rise

@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 from pathlib import Path
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from validation.chapter6 import RunUp, at_rest, eccentricity, held, largest_pressure_bar, run_up, slow_onset
 from validation.measured import Measured, listed, number, rises
 from validation.measures import eccentricity_at_1s, threshold_Hz

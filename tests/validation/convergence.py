@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from frbcli.scene.plan import make_plan
+from frbcli.scene.planning.plan import make_plan
 from validation.chapter6 import SECONDS, first_seconds, run_up
 from validation.chapter6_rows import CIRCUMFERENTIAL
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
@@ -20,9 +20,9 @@ from frbcli.film.rectangles.untabulated import largest_pressure
 from frbcli.linear.stability import Stability, stability
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.plan import make_plan
-from frbcli.scene.rotors import make_rotor
-from frbcli.scene.system import make_system
+from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 DATA = Path(__file__).parent.parent / "data"
 

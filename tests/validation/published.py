@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.case.load import load_case
+from frbcli.case.reading.load import load_case
 from frbcli.results.store import Run
 from validation.chapter6 import LOOSE, RAMP_Hz
 from validation.measured import listed

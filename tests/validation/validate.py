@@ -11,8 +11,8 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from frbcli.case.load import load_case
-from frbcli.scene.plan import make_plan
+from frbcli.case.reading.load import load_case
+from frbcli.scene.planning.plan import make_plan
 from validation import chapter6_rows, chapter_7_page, convergence, forms, measures, published
 from validation.measured import Measured, number, speeds
 from validation.measured import rises as rising

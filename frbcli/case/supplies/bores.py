@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from frbcli.case.lines import Path
 from frbcli.case.quantities import Angle, Count, Fraction, Length
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach, number
 from frbcli.case.supplies.supply import MIDDLE, Openings, Outline, Ramp, SpacedSupply, SupplyPressure
-from frbcli.case.tables import Breach, number
 from frbcli.film.gap import Edge
 from frbcli.units import NUMBER, display
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field
 
-from frbcli.case.lines import Path
 from frbcli.case.model import Model
 from frbcli.case.quantities import Pressure, RiseTime
-from frbcli.case.tables import Breach, number
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach, number
 from frbcli.errors import Fault
 from frbcli.film.gap import AxialGroove, Edge, Hole
 from frbcli.units import NUMBER, display

@@ -57,7 +57,7 @@ def command(
     from frbcli.errors import NotConverged
     from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
     from frbcli.linear.film_state import heat_capacity
-    from frbcli.results.kinds import ROSS, TABLES
+    from frbcli.results.files.kinds import ROSS, TABLES
 
     _check_options(over, speeds, load, output, no_picture, ross)
     picture = None if no_picture else output or here(case.name, "-bearing.png")
@@ -70,7 +70,7 @@ def command(
             found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=counting(terminal, show))
     _tell(terminal, found)
     if csv is not None:
-        from frbcli.results.tables import write_table
+        from frbcli.results.files.tables import write_table
 
         write_table(found.to_pandas(), csv)
         terminal.result(f"table: {csv}")

@@ -90,7 +90,7 @@ def command(
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
-    from frbcli.results.kinds import TABLES
+    from frbcli.results.files.kinds import TABLES
 
     if no_picture and output is not None:
         raise click.UsageError("-o names the picture that --no-picture leaves out.")
@@ -117,7 +117,7 @@ def command(
             found = limit_cycles(case, speeds, _showing(show), with_unbalance)
     _tell(terminal, found)
     if csv is not None:
-        from frbcli.results.tables import write_table
+        from frbcli.results.files.tables import write_table
 
         write_table(found.to_pandas(), csv)
         terminal.result(f"table: {csv}")
@@ -156,7 +156,7 @@ def _map(
         found = stability_map(case, *second, counting(terminal, show), across)
     _tell_map(terminal, found)
     if csv is not None:
-        from frbcli.results.tables import write_table
+        from frbcli.results.files.tables import write_table
 
         write_table(found.to_pandas(), csv)
         terminal.result(f"table: {csv}")

@@ -20,7 +20,7 @@ from frbcli.cli.runs.live import counting, live_lines
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
-    from frbcli.analysis.order_tracking import OrderTrack
+    from frbcli.analysis.orders.order_tracking import OrderTrack
     from frbcli.case.schema import Case
     from frbcli.linear.response import Array, Response
     from frbcli.plot.style import Picture
@@ -63,7 +63,7 @@ def command(
     from frbcli.columns import spread_table, table_of
     from frbcli.linear.columns import RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
     from frbcli.linear.response import response
-    from frbcli.results.kinds import TABLES
+    from frbcli.results.files.kinds import TABLES
     from frbcli.results.store import read_run
 
     if no_picture and output is not None:
@@ -76,7 +76,7 @@ def command(
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     _tell(terminal, found, bool(speeds))
     if csv is not None:
-        from frbcli.results.tables import write_table
+        from frbcli.results.files.tables import write_table
 
         write_table(found.to_pandas(), csv)
         terminal.result(f"table: {csv}")
@@ -113,7 +113,7 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
     """The synchronous motion of the journals and disks of a run that are points of the response.
 
     Raises InputError if none is, which is then a run of another machine."""
-    from frbcli.analysis.order_tracking import order_track
+    from frbcli.analysis.orders.order_tracking import order_track
     from frbcli.analysis.signals import joined, points
 
     recorded = [joined(kind, node) for kind in ("journal", "disk") for node in points(run.signals, kind)]

@@ -23,7 +23,7 @@ from frbcli.cli.runs.live import counting, live_lines
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.cycles.threshold import ThresholdKind
+    from frbcli.cycles.method.threshold import ThresholdKind
     from frbcli.linear.stability import Stability, StabilityPoint
 
 
@@ -52,7 +52,7 @@ def command(
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
-    from frbcli.cycles.threshold import threshold_kind
+    from frbcli.cycles.method.threshold import threshold_kind
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes
     from frbcli.linear.stability import stability

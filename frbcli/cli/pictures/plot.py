@@ -89,7 +89,7 @@ def _animate(
     run_file: Path, target: Path, span: tuple[float | None, float | None], terminal: Terminal
 ) -> None:
     from frbcli.plot.run.animation import animate_orbits, check_animation
-    from frbcli.results import kinds
+    from frbcli.results.files import kinds
     from frbcli.results.store import read_run
 
     check_animation(target)
@@ -100,7 +100,7 @@ def _animate(
 
 
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
-    from frbcli.case.load import load_case
+    from frbcli.case.reading.load import load_case
     from frbcli.plot.machine.law import law_figure
 
     case = load_case(source, settings)

@@ -24,7 +24,7 @@ def command(
     """Write RUN.h5 as one page: machine, plan, events, waterfall that reads out under the pointer, orbits, spectra,
     errors, balances, cost and how to repeat it."""
     from frbcli.report.page import write_report
-    from frbcli.results.kinds import PAGE
+    from frbcli.results.files.kinds import PAGE
     from frbcli.results.store import read_run
 
     target = output or beside(run_file, "-report.html")

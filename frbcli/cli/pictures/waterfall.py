@@ -19,8 +19,8 @@ from frbcli.cli.studies.measured import measured_options, run_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
-    from frbcli.analysis.order_tracking import OrderTrack
-    from frbcli.analysis.spectrum import Direction
+    from frbcli.analysis.orders.order_tracking import OrderTrack
+    from frbcli.analysis.spectra.spectrum import Direction
     from frbcli.plot.spectra.waterfall import Over
 
 MICRO = 1e6
@@ -122,7 +122,7 @@ def command(
         terminal.result(reading(found))
         told = {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
     else:
-        from frbcli.analysis.order_tracking import order_tracks
+        from frbcli.analysis.orders.order_tracking import order_tracks
         from frbcli.plot.spectra.orders import orders_figure
 
         axis = view.over or "speed"

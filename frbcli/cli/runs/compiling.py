@@ -41,7 +41,7 @@ def compilation_shown(
     """
     from numba.core.event import Listener, install_listener  # heavy: only where kernels are used
 
-    from frbcli.scene.preparation import compile_s
+    from frbcli.scene.costs.preparation import compile_s
 
     class Count(Listener):
         """Counts the compiled functions, with those that they call."""

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
     from frbcli.runs.march import Progress
     from frbcli.runs.run import Observer
-    from frbcli.scene.cost import ExpectedCost
+    from frbcli.scene.costs.cost import ExpectedCost
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
@@ -78,8 +78,8 @@ def transient(
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.results.store import check_output
+    from frbcli.runs.record.standing import INTERRUPTED, standing_run
     from frbcli.runs.run import run_cost
-    from frbcli.runs.standing import INTERRUPTED, standing_run
 
     path = options.output or here(case.name, ".h5")
     check_output(path)
@@ -121,8 +121,8 @@ def transient(
 
 def cost_line(cost: ExpectedCost) -> str:
     """Expected cost of a run."""
-    from frbcli.scene.cost import clock
-    from frbcli.scene.limits import memory
+    from frbcli.scene.costs.cost import clock
+    from frbcli.scene.costs.limits import memory
 
     before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > TOLD_BEFORE_s else ""
     return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
@@ -131,7 +131,7 @@ def cost_line(cost: ExpectedCost) -> str:
 def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
     """Shows the progress on a terminal, elsewhere as a line every now and then, and warns once if a run takes much
     longer than its plan expected."""
-    from frbcli.scene.cost import clock
+    from frbcli.scene.costs.cost import clock
 
     said, told_s = False, 0.0
 
@@ -207,8 +207,8 @@ def exit_code(status: str) -> int:
 
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
-    from frbcli.runs.account import account
     from frbcli.runs.advice import run_advice, run_end
+    from frbcli.runs.errors.account import account
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
     for sentence in run_advice(case, run_end(run)):

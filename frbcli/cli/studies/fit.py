@@ -56,7 +56,7 @@ def command(
 ) -> None:
     """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
     amplitude of the whirl, its onset."""
-    from frbcli.results.kinds import NEW
+    from frbcli.results.files.kinds import NEW
     from frbcli.studies.fit import fit
 
     picture = None if no_picture else output or here(case.name, "-fit.png")
@@ -72,7 +72,7 @@ def command(
         found = fit(case, measured, vary, limits, signal, watch)
     _tell(terminal, found)
     if save is not None:
-        from frbcli.results.write import write
+        from frbcli.results.files.write import write
 
         write(save, NEW, found.case.source_text)
         terminal.result(f"case: {save}")
@@ -119,7 +119,7 @@ def _row(number: Fitted) -> tuple[str, ...]:
 
 def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
     """Bounds by keys, in SI: each is read as a value of the case."""
-    from frbcli.case.listing import values
+    from frbcli.case.reading.listing import values
 
     found = {}
     for text in given:

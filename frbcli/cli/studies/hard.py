@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from textwrap import fill
 from typing import Any
 
-from frbcli.case.hard import HardCase, hard_cases
+from frbcli.case.reading.hard import HardCase, hard_cases
 from frbcli.cli.common import Terminal
 from frbcli.cli.runs.live import live_lines
 from frbcli.columns import short_number

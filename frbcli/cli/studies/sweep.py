@@ -68,7 +68,7 @@ def command(
 
     The same command resumes an interrupted sweep.
     """
-    from frbcli.case.load import load_case
+    from frbcli.case.reading.load import load_case
     from frbcli.studies.sweep.sweep import Workers, check_table_format, sweep, write_table
 
     fixed, axes = _axes(settings)
@@ -95,7 +95,7 @@ def command(
 def _check_places(table: Path, picture: Path | None) -> None:
     """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
     if table.parent.is_dir():  # else it is made, or that is refused
-        from frbcli.results.kinds import TABLES
+        from frbcli.results.files.kinds import TABLES
 
         check_outputs((table, TABLES[table.suffix[1:]]), picture=picture)
 

@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
-from frbcli.cycles.balance import Balance, left_out, unpacked
-from frbcli.cycles.continuation import (
+from frbcli.cycles.maps.planes import Plane
+from frbcli.cycles.method.balance import Balance, left_out, unpacked
+from frbcli.cycles.method.continuation import (
     Equations,
     Place,
     Strides,
@@ -35,9 +36,8 @@ from frbcli.cycles.continuation import (
     step_from,
     unit_vector,
 )
-from frbcli.cycles.equilibria import equations as resting_equations
-from frbcli.cycles.machine import film_loads, transfer
-from frbcli.cycles.maps.planes import Plane
+from frbcli.cycles.method.equilibria import equations as resting_equations
+from frbcli.cycles.parts.machine import film_loads, transfer
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

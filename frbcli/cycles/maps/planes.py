@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from frbcli.cycles.branch import FoldFollower
 from frbcli.cycles.diagram import Walk
-from frbcli.cycles.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.family import Family
-from frbcli.cycles.machine import Machine
+from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.over_key import KeyFollower, resting_over
+from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import SPEED
 
 Array = NDArray[np.float64]

@@ -14,10 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import FOLD, HOPF, Cycle, amplitude, eccentricities
-from frbcli.cycles.continuation import Equations, Place, Unreachable, step_from
-from frbcli.cycles.criticality import lyapunov_coefficient
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
-from frbcli.cycles.equilibria import hopf_at, settled
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
 from frbcli.cycles.maps.curves import (
@@ -29,6 +26,9 @@ from frbcli.cycles.maps.curves import (
     with_harmonics,
 )
 from frbcli.cycles.maps.planes import KeyPlane, Plane, SpeedPlane
+from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
+from frbcli.cycles.method.criticality import lyapunov_coefficient
+from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SPEED, SpecialPoint, hertz
 from frbcli.errors import Fault, InputError, NotConverged
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.branch import ASKED, AT_REST, FLIP, FOLD, LEFT, TORUS
-from frbcli.cycles.continuation import halved_until
+from frbcli.cycles.method.continuation import halved_until
 from frbcli.cycles.shooting.shots import Shooting, Shot
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.cycles.continuation import Unreachable
+from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SIN, UNKNOWN, VolumeFilms
@@ -24,8 +24,8 @@ from frbcli.film.state import OIL, RATE, W_BEFORE, WET, W
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
 from frbcli.runs.start import rotor_data, state_at
-from frbcli.scene.plan import make_plan
-from frbcli.scene.system import System, make_system
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import (
     ERROR_SPANS,
     FINISHED,

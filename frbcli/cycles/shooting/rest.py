@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.cycles.continuation import Unreachable
+from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.shooting.period_map import wet_at
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, PLACES, Rest, Shooting
 from frbcli.equilibrium.resting import resting_position, ring_speeds

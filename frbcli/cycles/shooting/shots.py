@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.continuation import Unreachable
-from frbcli.cycles.floquet import Multipliers
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.result import hertz
 from frbcli.cycles.shooting.fixed_point import (
     DIFFERENCE,

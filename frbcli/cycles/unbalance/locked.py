@@ -13,10 +13,10 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import Balance, packed, unpacked
 from frbcli.cycles.branch import Cycle, largest
-from frbcli.cycles.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
-from frbcli.cycles.machine import Machine
+from frbcli.cycles.method.balance import Balance, packed, unpacked
+from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
+from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion
 
 Array = NDArray[np.float64]

@@ -12,12 +12,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import Balance, packed, unpacked
 from frbcli.cycles.branch import FIRST_HARMONICS, Branch, Follower, follow_branch
-from frbcli.cycles.continuation import Equations, Place, corrected, oriented, unit_vector
-from frbcli.cycles.equilibria import Equilibrium
-from frbcli.cycles.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
-from frbcli.cycles.machine import Machine, unbalance_motion
+from frbcli.cycles.method.balance import Balance, packed, unpacked
+from frbcli.cycles.method.continuation import Equations, Place, corrected, oriented, unit_vector
+from frbcli.cycles.method.equilibria import Equilibrium
+from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
+from frbcli.cycles.parts.machine import Machine, unbalance_motion
 from frbcli.rotor.order import largest_first
 
 Array = NDArray[np.float64]

@@ -20,9 +20,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import packed, through, unpacked
-from frbcli.cycles.continuation import Unreachable
-from frbcli.cycles.machine import Loads, Machine, Transfer, film_loads, transfer, unbalance_motion
+from frbcli.cycles.method.balance import packed, through, unpacked
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.parts.machine import Loads, Machine, Transfer, film_loads, transfer, unbalance_motion
 from frbcli.cycles.unbalance.synchronous import WHIRLS
 
 Array = NDArray[np.float64]

@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.balance import motion_along, unpacked
 from frbcli.cycles.branch import ASKED, MOMENTS, Cycle, largest_of
-from frbcli.cycles.continuation import Unreachable
-from frbcli.cycles.machine import Machine
+from frbcli.cycles.method.balance import motion_along, unpacked
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, SpectralLine, UnbalancedWhirl, hertz
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
 from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, with_unbalance

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from frbcli.analysis.order_tracking import OrderTrack
+from frbcli.analysis.orders.order_tracking import OrderTrack
 from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, Response, larger_semi_axis
 from frbcli.plot.style import BLACK, COLOURS, GREY, legend_beside, new_figure, styled
 

@@ -19,10 +19,10 @@ from frbcli.plot.run.envelope import at_times
 from frbcli.plot.run.orbit import LAST_s
 from frbcli.plot.signals import MICRO, cut, ends, heading, motion, shell
 from frbcli.plot.style import BLUE, GREY, new_figure, styled
-from frbcli.results.kinds import PICTURES
-from frbcli.results.place import require_places
+from frbcli.results.files.kinds import PICTURES
+from frbcli.results.files.place import require_places
+from frbcli.results.files.write import written
 from frbcli.results.store import Run
-from frbcli.results.write import written
 
 FORMATS = (".gif", ".mp4")
 FRAMES, PER_SECOND = 80, 20

@@ -12,10 +12,10 @@ from frbcli.analysis.signals import films
 from frbcli.plot.curves import Over, Span, draw_curves, finish
 from frbcli.plot.signals import heading
 from frbcli.plot.style import legend_below, new_figure, styled
-from frbcli.results.container import refuse
+from frbcli.results.files.container import refuse
 from frbcli.results.signals import Signal, Values
 from frbcli.results.store import Run
-from frbcli.runs.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
+from frbcli.runs.record.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
 
 PANEL_HEIGHT = 2.4  # inches
 # The name of an axis, and its unit in SI units.

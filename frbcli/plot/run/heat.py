@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.signals import heading
 from frbcli.plot.style import legend_below, new_figure, styled
-from frbcli.results.container import refuse
+from frbcli.results.files.container import refuse
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 

@@ -10,7 +10,7 @@ from frbcli.film.cavitation.table import laws, names
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.signals import heading
 from frbcli.plot.style import legend_below, new_figure, styled
-from frbcli.results.container import refuse
+from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
 
 SIGNAL = "oil_fraction"

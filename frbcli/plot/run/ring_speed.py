@@ -10,14 +10,14 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from frbcli.analysis.signals import joined, points
-from frbcli.case.load import load_case_text
+from frbcli.case.reading.load import load_case_text
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.run.envelope import extremes
 from frbcli.plot.signals import case_tables, ends, heading
 from frbcli.plot.style import GREY, legend_below, new_figure, styled
-from frbcli.results.container import refuse
+from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from frbcli.analysis.signals import located, speed_at
-from frbcli.analysis.spectrum import Spectrogram
+from frbcli.analysis.spectra.spectrum import Spectrogram
 from frbcli.plot.signals import MICRO, bearing_of, cut, ends, motion, shell
 from frbcli.plot.spectra.waterfall import orders
 from frbcli.plot.style import BLUE, GREY, styled

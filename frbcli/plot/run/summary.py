@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.signals import films, joined, points
-from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.plot.run.displacement import draw_distances
 from frbcli.plot.run.eccentricity import draw_eccentricity
 from frbcli.plot.run.envelope import curve

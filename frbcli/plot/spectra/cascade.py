@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from frbcli.analysis.spectrum import Spectrogram
+from frbcli.analysis.spectra.spectrum import Spectrogram
 from frbcli.plot.style import BLUE, GREY
 
 Values = NDArray[np.float64]

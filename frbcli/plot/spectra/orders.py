@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from frbcli.analysis.order_tracking import OrderTrack
+from frbcli.analysis.orders.order_tracking import OrderTrack
 from frbcli.analysis.signals import joined, located
-from frbcli.analysis.spectrum import Direction
+from frbcli.analysis.spectra.spectrum import Direction
 from frbcli.plot.curves import Over
 from frbcli.plot.signals import MICRO, heading
 from frbcli.plot.style import legend_below, new_figure, styled
@@ -20,7 +20,7 @@ def orders_figure(
 ) -> Figure:
     """The peak amplitude of each order of a point, a curve each; a run that goes up and down is drawn to and fro.
 
-    tracks: of the same point, by `frbcli.analysis.order_tracking.order_tracks`; log: logarithmic amplitude.
+    tracks: of the same point, by `frbcli.analysis.orders.order_tracking.order_tracks`; log: logarithmic amplitude.
     """
     title, subtitle = heading([run])
     point = joined(*located(run, tracks[0].signal)).replace("_", " ")

@@ -15,13 +15,13 @@ from matplotlib.ticker import LogLocator, ScalarFormatter
 from numpy.typing import NDArray
 
 from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
-from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
-from frbcli.analysis.spectrum import waterfall as spectra
+from frbcli.analysis.spectra.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
+from frbcli.analysis.spectra.spectrum import waterfall as spectra
 from frbcli.plot.run.envelope import at_times, extremes
 from frbcli.plot.signals import MICRO, bearing_of, clearance, ends, heading, motion
 from frbcli.plot.spectra.cascade import draw_cascade
 from frbcli.plot.style import LEVEL_MAP, new_figure, styled
-from frbcli.results.container import refuse
+from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 
@@ -79,8 +79,8 @@ def waterfall_figure(
 
     over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
     "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum, behind each other; window_s
-    (None: as the ramp asks for) and direction as in `frbcli.analysis.spectrum.waterfall`; log: logarithmic frequency;
-    found: the spectra of `run_spectra`, where they are known already; scale: what the colours or heights are.
+    (None: as the ramp asks for) and direction as `waterfall` of analysis/spectra/spectrum.py; log: logarithmic
+    frequency; found: the spectra of `run_spectra`, where they are known; scale: what the colours or heights are.
 
     Raises InputError if the run does not have the signal or is shorter than a window.
     """

@@ -10,13 +10,13 @@ import numpy as np
 
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Array
-from frbcli.scene.cell_choice import USUAL, cells_time, coarser_cells, compared_states
 from frbcli.scene.forms.form import FINER, FilmForm, Work, cells_B
+from frbcli.scene.planning.cell_choice import USUAL, cells_time, coarser_cells, compared_states
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.scene.film_choice import FilmChoice
-    from frbcli.scene.planned import Plan
+    from frbcli.scene.planning.film_choice import FilmChoice
+    from frbcli.scene.planning.planned import Plan
 
 STEADY_s, STEADY_CELLS, STEADY_POWER = 0.012, 1152, 1.1  # of a steady film, a state of its own; its cells
 RESTING = 3.0  # factor for a resting position, found by Newton's method

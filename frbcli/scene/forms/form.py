@@ -1,6 +1,6 @@
 """The contract of a form of films: what plans, costs, errors and static results ask of it.
 
-Times are CPU seconds of the reference machine of scene/cost.py, measured on the shipped cases.
+Times are CPU seconds of the reference machine of scene/costs/cost.py, measured on the shipped cases.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from frbcli.film.grid import Array, Mesh
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.scene.film_choice import FilmChoice
-    from frbcli.scene.planned import Plan
+    from frbcli.scene.planning.film_choice import FilmChoice
+    from frbcli.scene.planning.planned import Plan
 
 SAMPLES = 48  # states of a run at which the force is compared with that on a finer mesh
 FINER = 2  # factor of the elements in each direction for that

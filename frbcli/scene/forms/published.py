@@ -12,14 +12,14 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.scene.cell_choice import given_cells
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
 from frbcli.scene.forms.cells import cells_of
 from frbcli.scene.forms.form import FilmForm, Work, cells_B
+from frbcli.scene.planning.cell_choice import given_cells
 
 if TYPE_CHECKING:
-    from frbcli.scene.film_choice import FilmChoice
-    from frbcli.scene.planned import Plan
+    from frbcli.scene.planning.film_choice import FilmChoice
+    from frbcli.scene.planning.planned import Plan
 
 PUBLISHED_ERROR = 2e-2  # of the force, on the published elements: its change on half of them, over 3
 ELEMENTS = (20, 10)  # of a section, around and along, figure 6.2

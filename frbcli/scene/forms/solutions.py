@@ -14,7 +14,7 @@ from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.form import BLOCKS, SAMPLES, FilmForm, Work
 
 if TYPE_CHECKING:
-    from frbcli.scene.planned import Plan
+    from frbcli.scene.planning.planned import Plan
 
 SOLUTION_MESH = Mesh(axial=6, circumferential=48)  # cells
 # 90 % of the forces up to an eccentricity of 0.95 have a smaller error, from interpolation and cells together.

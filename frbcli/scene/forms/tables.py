@@ -9,7 +9,7 @@ from frbcli.film.grid import CHAIN_MODES
 from frbcli.scene.forms.form import FINER, SAMPLES, FilmForm, Work, mean_us
 
 if TYPE_CHECKING:
-    from frbcli.scene.planned import Plan
+    from frbcli.scene.planning.planned import Plan
 
 TABLE_s, TABLE_MODES = 3.2e-5, 14  # per element around and mode along; modes that cost as much as the lines
 MODES_s = 3e-9  # of the axial modes, per cube of the elements along

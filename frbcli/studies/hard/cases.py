@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
-from frbcli.case.hard import HardCase, Reference, hard_cases, references
+from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
 from frbcli.case.schema import Case
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.store import Run

@@ -12,11 +12,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from frbcli.case.load import describes
+from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
-from frbcli.results.kinds import SWEEP_LOG
-from frbcli.results.write import write
+from frbcli.results.files.kinds import SWEEP_LOG
+from frbcli.results.files.write import write
 from frbcli.studies.sweep.task import UNDECIDED, SweepPoint
 
 Header = Mapping[str, Any]

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
-from frbcli.results import tables
-from frbcli.results.kinds import TABLES
-from frbcli.results.lock import locked
-from frbcli.results.write import written
-from frbcli.scene.plan import make_plan
+from frbcli.results.files import tables
+from frbcli.results.files.kinds import TABLES
+from frbcli.results.files.lock import locked
+from frbcli.results.files.write import written
+from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid
 from frbcli.studies.sweep.task import INPUT_ERROR, INTERRUPTED, METHODS, SweepPoint, Task, one_line, solve

@@ -13,7 +13,7 @@ from typing import Any
 import joblib
 
 from frbcli.errors import Fault, InputError
-from frbcli.runs.interrupt import deaf
+from frbcli.runs.record.interrupt import deaf
 from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
 
 BACKENDS = ("loky", "dask")

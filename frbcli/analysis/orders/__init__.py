@@ -1,0 +1,1 @@
+"""Revolutions, orders and resonances."""

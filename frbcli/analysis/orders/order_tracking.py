@@ -1,0 +1,98 @@
+"""Amplitudes by order: motion of a journal or a disk at a multiple of the rotor speed, exact also in a ramp."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.analysis.orders.revolutions import Tracked, track
+from frbcli.analysis.signals import Motion, RunLike, Values, joined, located, points
+from frbcli.analysis.spectra.spectrum import DIRECTIONS, Direction
+from frbcli.errors import Fault, InputError
+
+REVOLUTIONS = 16  # of the window, by default: it parts orders that are a fifth from each other
+FEWEST, MOST = 3, 1024
+HIGHEST = 100.0  # order
+
+
+@dataclass(frozen=True)
+class OrderTrack:
+    """The motion of a point with an order of the rotor speed, at even angles of the rotor.
+
+    order: multiple of the rotor speed; signal: the point; revolutions: of the windows; time_s (m,), speed_Hz (m,):
+    middle of each window and rotor speed there; forward, backward (m,): complex amplitudes in m of what turns with the
+    rotor and against it, x + iy = forward exp(i order phi) + backward exp(-i order phi) with the rotor's angle phi.
+    """
+
+    order: float
+    signal: str
+    revolutions: int
+    time_s: Values
+    speed_Hz: Values
+    forward: Motion
+    backward: Motion
+
+    def along(self, direction: Direction = "x") -> Motion:
+        """Complex amplitude (m,) in m of x = Re(A exp(i order phi)), y = Re(A exp(i order phi)), or the forward one."""
+        if direction not in DIRECTIONS:
+            raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
+        if direction == "forward":
+            return self.forward
+        against = np.conj(self.backward)
+        return self.forward + against if direction == "x" else -1j * (self.forward - against)
+
+    def amplitude(self, direction: Direction = "x") -> Values:
+        """Peak amplitude (m,) in m."""
+        return np.asarray(np.abs(self.along(direction)))
+
+    def phase_deg(self, direction: Direction = "x") -> Values:
+        """Phase (m,) to the rotor's angle, continuous."""
+        return np.asarray(np.degrees(np.unwrap(np.angle(self.along(direction)))))
+
+
+def order_track(run: RunLike, order: float, signal: str = "journal", revolutions: int = REVOLUTIONS) -> OrderTrack:
+    """The motion of a point of a run with a multiple of the rotor speed (revolutions.py), however fast that changes.
+
+    signal: "journal", "disk" or "journal_NAME" of a bearing, "disk_NAME" of a wheel; revolutions: of the windows, the
+    squares of Hann windows, which part orders that are 3/revolutions from each other. The run is read in pieces.
+
+    Raises InputError for an invalid order or window, a point that the run does not have, or a run that is
+    shorter than a window.
+    """
+    return order_tracks(run, (order,), signal, revolutions)[0]
+
+
+def order_tracks(
+    run: RunLike, orders: Sequence[float], signal: str = "journal", revolutions: int = REVOLUTIONS
+) -> tuple[OrderTrack, ...]:
+    """Several orders at once; otherwise as order_track."""
+    wrong = [order for order in orders if not (math.isfinite(order) and 0.0 < order <= HIGHEST)]
+    if wrong or not orders:
+        value = ", ".join(f"{order:g}" for order in wrong)
+        raise _fault("order", value, f"is not between 0 and {HIGHEST:g}.", "Use e.g. 1 or 0.5.")
+    if not FEWEST <= revolutions <= MOST or int(revolutions) != revolutions:
+        limits = f"Use {FEWEST} to {MOST} whole revolutions."
+        raise _fault("revolutions", f"{revolutions:g}", "is not a valid window length.", limits)
+    kind, name = located(run, signal)
+    if name not in points(run.signals, kind):
+        known = ", ".join(joined(each, point) for each in ("journal", "disk") for point in points(run.signals, each))
+        raise _fault("signal", signal, "is not a point of the run.", f"Use one of {known}.")
+    signs = [sign * order for order in orders for sign in (1.0, -1.0)]
+    wanted = [Tracked(kind, name, order, int(revolutions), power=2) for order in signs]
+    turns, motions = track(run, wanted)
+    if len(motions[0]) == 0:
+        turned = f"{turns.revolution[-1]:.3g}" if len(turns.revolution) else "no"
+        problem = f"of {revolutions} revolutions is longer than the run, which makes {turned}."
+        raise _fault("window", "", problem, "Resume the run, or take a shorter window.")
+    inside = slice(wanted[0].half, -wanted[0].half)
+    return tuple(
+        OrderTrack(order, signal, int(revolutions), turns.time_s[inside], turns.speed_Hz[inside], forward, backward)
+        for order, forward, backward in zip(orders, motions[::2], motions[1::2], strict=True)
+    )
+
+
+def _fault(key: str, value: str, problem: str, remedy: str) -> InputError:
+    return InputError("orders", (Fault(key=key, value=value, line=None, problem=problem, remedy=remedy),))

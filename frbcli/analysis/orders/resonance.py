@@ -1,0 +1,164 @@
+"""Vibrations near the rotor speed: critical speeds and self-excited vibrations.
+
+At a critical speed unbalance excites a mode of the rotor in its films: the synchronous motion has a peak there and
+turns its phase. In a starved film the journal may vibrate with a frequency of its own near the rotor speed, which
+stays constant while the rotor speed changes: this is not a critical speed, though it may begin as one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked
+from frbcli.analysis.signals import Motion, Values
+from frbcli.analysis.spectra.peaks import Peak, intervals_above, prominent_peaks
+
+REVOLUTIONS = 8  # of the window: a resonance is passed in many more
+WHIRL = 0.5  # order of oil whirl
+WITHOUT_MOTION = 1.5  # neither whirl nor unbalance nor its harmonics: what is seen there is the background
+PROMINENCE = 0.25  # share of its height by which a peak stands out of the higher of its two sides
+OVER_BACKGROUND = 5.0
+FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a rotor without unbalance
+# By how much the motion falls behind the unbalance from half-way up a peak to half-way down. It is 60 to 130 degrees
+# for critical speeds of rotors in oil films, and next to nothing where a film alone changes, because oil goes or comes.
+LAG = np.radians(30.0)
+NEAR = 0.15  # share of a frequency by which a resonance may lie beside a mode: films are not as full, nor as linear
+LATE = 1.5  # a ramp of r Hz/s passes a lightly damped mode by up to this times sqrt(r) before the motion is largest
+
+WIDE, NARROW = 4, 32  # revolutions: what the short window sees about the order 1 beside what the long one sees at it
+BESIDE = 2.0 / NARROW  # from order 1: the long window is blind to what lies further off
+BEGINS, ENDS = 0.05, 0.025  # amplitude relative to the clearance, as of whirls
+SUSTAINED_REVOLUTIONS = 20.0  # likewise: what dies sooner is the end of a resonance
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """A vibration with a frequency of its own: from when, and at which rotor speed, until when it is seen."""
+
+    time_s: float
+    until_s: float
+    speed_Hz: float
+    frequency_Hz: float
+
+
+def resonant(kind: str, name: str) -> tuple[Tracked, ...]:
+    """What has to be tracked of a disk or journal whose resonance is sought: synchronous motion, background, whirl."""
+    orders = (1.0, WITHOUT_MOTION, WHIRL)
+    return tuple(Tracked(kind, name, order, REVOLUTIONS) for order in orders)
+
+
+def beside(kind: str, name: str) -> tuple[Tracked, ...]:
+    """What has to be tracked where vibrations beside the synchronous one are sought: two windows, both senses."""
+    return tuple(Tracked(kind, name, order, window) for order in (1.0, -1.0) for window in (WIDE, NARROW))
+
+
+def near(frequency: float, modes: Iterable[float], late: float = 0.0) -> bool:
+    """Whether a frequency in Hz is that of one of the modes; late: by how much a ramp may have moved it, Hz."""
+    return any(abs(frequency - mode) <= NEAR * mode + late for mode in modes)
+
+
+def critical_step(
+    motions: Iterable[Sequence[Motion]],
+    turns: Revolutions,
+    floor: float,
+    before_s: float,
+    modes: Sequence[float] | None,
+    vibrations: Sequence[Vibration],
+) -> tuple[int, int] | None:
+    """Which of the points shows the clearest critical speed, and at which step of `turns`; None if there is none.
+
+    motions: of each disk, or else journal, those of `resonant`, in m; floor: m, less is round-off; before_s: the time
+    of the first whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
+    that begins one of the vibrations is none then.
+    """
+    half = REVOLUTIONS * STEPS // 2
+    settled, whirls = turns.settled, int(np.searchsorted(turns.time_s, before_s))
+    best: tuple[float, int, int] | None = None
+    for point, tracked in enumerate(motions):
+        # A whirl may break out in the resonance, whose peak is over a window later.
+        motion = [each[settled : whirls + half] for each in tracked]
+        for place, prominence in _resonances(motion, floor, whirls - half - settled):
+            step = settled + place + half
+            if any(own.time_s <= turns.time_s[step] <= own.until_s for own in vibrations):
+                continue
+            speed = abs(float(turns.speed_Hz[step]))
+            late = LATE * np.sqrt(_ramp(turns, step))
+            own = modes is None and near(speed, (vibration.frequency_Hz for vibration in vibrations), late)
+            known = modes is None or near(speed, modes, late)
+            if known and not own and (best is None or prominence > best[0]):
+                best = prominence, point, step
+    return None if best is None else best[1:]
+
+
+def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tuple[int, float]]:
+    """Sample and prominence of each resonance with the unbalance up to a sample; motions (n,): those of `resonant`."""
+    synchronous, background, whirl = motions
+    amplitude: Values = np.abs(synchronous)
+    if len(amplitude) == 0:
+        return []
+    phase = np.unwrap(np.angle(synchronous))
+    least = max(floor, OVER_BACKGROUND * float(np.median(np.abs(background))))
+    peaks = prominent_peaks(amplitude, least)
+    whole = [peak for peak in peaks if peak.prominence >= PROMINENCE * amplitude[peak.place]]
+    known = {peak.place for peak in whole}
+    more = [peak for peak in _cut_off(amplitude[: max(0, until + 1)], least) if peak.place not in known]
+    return [
+        (peak.place, peak.prominence)
+        for peak in whole + more
+        if peak.place < until
+        and abs(whirl[peak.place]) <= amplitude[peak.place]  # whirl that is about to break out spills over
+        and abs(phase[min(peak.after, until)] - phase[peak.before]) >= LAG
+    ]
+
+
+def _cut_off(amplitude: Values, least: float) -> list[Peak]:
+    """The highest peak of a curve (n,) that ends with the run or the first whirl, which cuts off the far side of the
+    peak: its prominence is then how far it rises.
+
+    How far it would fall is not known, so its phase decides: where one mode moves, the amplitude goes with the cosine
+    of the phase, and LAG between the middles of the flanks is a fall by 7 %.
+    """
+    highest = int(np.argmax(amplitude)) if len(amplitude) else 0
+    return [
+        replace(peak, prominence=peak.rise)
+        for peak in prominent_peaks(amplitude, least)
+        if peak.place == highest and peak.rise >= PROMINENCE * amplitude[highest]
+    ]
+
+
+def vibrations_beside(
+    tracked: Sequence[Motion], turns: Revolutions, clearance: float, before_s: float, modes: Sequence[float] | None
+) -> Iterator[Vibration]:
+    """Vibrations of a disk or journal with frequencies of their own near the rotor speed, before the first whirl.
+
+    tracked: those of `beside` in m; clearance: m. A vibration with the frequency of a mode of the machine, see
+    critical_step, is the decay of a resonance.
+    """
+    half, more = NARROW * STEPS // 2, (NARROW - WIDE) * STEPS // 2
+    if len(tracked[1]) < 2:
+        return
+    forward, backward = (wide[more:-more] - narrow for wide, narrow in (tracked[:2], tracked[2:]))
+    speed = turns.speed_Hz[half:-half]
+    order = 1.0 + np.sign(speed) * np.gradient(np.unwrap(np.angle(forward))) * STEPS / (2.0 * np.pi)
+    amplitude = (np.abs(forward) + np.abs(backward)) / clearance  # along the longer axis of the orbit
+    apart = np.where(np.abs(order - 1.0) >= BESIDE, amplitude, 0.0)
+    settled, until = turns.settled, max(0, int(np.searchsorted(turns.time_s, before_s)) - 2 * half)
+    sustained = round(SUSTAINED_REVOLUTIONS * STEPS)
+    for first, last in intervals_above(apart[settled:until], BEGINS, ENDS, sustained):
+        if last - first < sustained:
+            continue
+        seen = slice(settled + first, settled + last)
+        frequency = float(np.median((order * np.abs(speed))[seen]))
+        if modes is None or not near(frequency, modes):
+            begins, ends = settled + first + half, settled + last - 1 + half
+            time_s = turns.time_s
+            yield Vibration(float(time_s[begins]), float(time_s[ends]), float(turns.speed_Hz[begins]), frequency)
+
+
+def _ramp(turns: Revolutions, step: int) -> float:
+    """How fast in Hz/s the speed changes about a step."""
+    around = slice(max(0, step - STEPS), step + STEPS + 1)
+    return float(np.ptp(turns.speed_Hz[around]) / max(float(np.ptp(turns.time_s[around])), 1e-12))

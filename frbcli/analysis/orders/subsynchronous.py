@@ -1,0 +1,225 @@
+"""Whirl and whip in floating ring bearings: which film drives them, and when they lock into a mode of the rotor.
+
+The films of a floating ring whirl with about half the sum of the speeds of their surfaces: the inner one with
+(omega_R + omega_F)/2, the outer one with omega_F/2, until the frequency locks into a natural mode. Several whirls
+follow each other or go on at the same time, so each is followed as a ridge of the forward spectrum over time. A jump
+of the frequency ends a ridge and begins another one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from frbcli.analysis import signals
+from frbcli.analysis.signals import PIECE, Motion, RingSpeed, RunLike, SignalOf, Values, steepest_ramp
+from frbcli.analysis.spectra.peaks import local_maxima
+from frbcli.analysis.spectra.windows import fast_length, hann
+
+Side = Literal["inner", "outer"]
+
+LONGEST_s = 0.1  # of a window: separates frequencies 20 Hz apart, and is short against a run-up of some seconds
+SWEEP = 3.0  # r T^2 of the window T in a ramp of r Hz/s, in which a whirl moves by its width at most
+HOPS = 10  # steps from window to window in the length of one
+PADDING = 4
+SLOWEST = 2.0  # periods per window: what is slower is the journal that moves to its place
+SYNCHRONOUS = 0.8  # share of the rotor speed above which motion is synchronous
+
+BEGINS, ENDS = 0.025, 0.0125  # amplitude over the room that the journal has, C_i + C_o
+SIDE_LOBES = 0.05  # share of the strongest ridge: less than that is its side lobe under the window
+DRIFT = 0.6  # lines of the spectrum by which a ridge may move from one window to the next
+PAUSE = 5  # windows that a ridge may miss
+BEGINNING = 20  # windows in which a combination of two whirls shows what it is
+FAINT = 0.12  # share of all others that a whirl exceeds at some time: nonlinear films also cause small lines
+SAME_LINE = 0.5  # lines of the spectrum between two frequencies that are taken for one
+SHORTEST = 1.5  # windows; a shorter ridge is a transient
+SHORTEST_REVOLUTIONS = 20.0
+
+OUTER_UP_TO = 1.4  # times omega_F/2: inner films whirl with a multiple of it, whips included
+LEAVES_LINE = 0.95  # share of the frequency of a free whirl below which it is locked into a mode
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """A sub-synchronous motion; the film that drives it. time_s, frequency_Hz, amplitude (k,): in steps of a tenth of
+    the windows, the amplitude over the room of the journal. lasts: up to the end of the run; lock_in: where it locks,
+    None if it does not."""
+
+    side: Side
+    time_s: Values
+    frequency_Hz: Values
+    amplitude: Values
+    lasts: bool
+    lock_in: int | None
+
+
+@dataclass
+class _Ridge:
+    columns: list[int] = field(default_factory=list)
+    frequencies: list[float] = field(default_factory=list)
+    amplitudes: list[float] = field(default_factory=list)
+
+    def append(self, column: int, frequency: float, amplitude: float) -> None:
+        self.columns.append(column)
+        self.frequencies.append(frequency)
+        self.amplitudes.append(amplitude)
+
+
+def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) -> tuple[Whirl, ...]:
+    """The whirls of the journal in a floating ring bearing, in the order of their beginning.
+
+    room: C_i + C_o in m, which amplitudes are relative to. A whirl must outlast settled_s, when the run has settled;
+    one that contact cuts off need not. Of each film the strongest whirl counts: a weaker one ends where it is
+    overtaken.
+    """
+    count, cut_short = len(run), run.status == "contact"
+    ends = [signals.piece(run, "time_s", place, place + 1) for place in (0, count - 1)] if count > 1 else []
+    step = float(ends[1][0] - ends[0][0]) / (count - 1) if ends else 0.0
+    window_s = _window_length(run)
+    width, hop = (round(length / step) if step > 0.0 else 0 for length in (window_s, window_s / HOPS))
+    if hop < 1 or count < 2 * width:
+        return ()
+    middle = np.arange(0, count - width + 1, hop) + width // 2
+    columns = (SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"), RingSpeed(run, name))
+    time, speed, ring = (signals.samples(column, middle) for column in columns)
+    seen = _windows(run, name, room, width, hop)
+    followed = _follow(_peaks(seen, width, step, SYNCHRONOUS * speed), window_s)
+    ridges = [ridge for ridge in followed if max(ridge.amplitudes) >= BEGINS]
+    frequencies, amplitudes = _table(ridges, len(middle))
+    sides = [_side(row, ring) for row in frequencies]
+    whirls = []
+    for index, side in enumerate(sides):
+        if _combination(index, frequencies, amplitudes, window_s):
+            continue
+        strongest = amplitudes[[other == side for other in sides]].max(axis=0)
+        leads = np.flatnonzero((amplitudes[index] > 0.0) & (amplitudes[index] >= strongest))
+        if len(leads) == 0 or np.all(amplitudes[index, leads] < FAINT * amplitudes[:, leads].max(axis=0)):
+            continue
+        first, last = int(np.argmax(amplitudes[index] >= BEGINS)), int(leads[-1])
+        at = first + np.flatnonzero(amplitudes[index, first : last + 1])
+        lasts = last >= len(middle) - 1 - PAUSE
+        shortest = max(SHORTEST * window_s, SHORTEST_REVOLUTIONS / max(float(speed[first]), 1e-9))
+        if time[last] - max(time[first], settled_s) < shortest and not (lasts and cut_short and len(at)):
+            continue
+        free = 0.5 * (ring[at] if side == "outer" else speed[at] + ring[at])
+        frequency = frequencies[index, at]
+        whirls.append(Whirl(side, time[at], frequency, amplitudes[index, at], lasts, _lock_in(frequency, free)))
+    return tuple(sorted(whirls, key=lambda whirl: float(whirl.time_s[0])))
+
+
+def _window_length(run: RunLike) -> float:
+    """Length in s of the windows: a steep ramp asks for short ones."""
+    ramp = steepest_ramp(SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"))
+    return min(LONGEST_s, (SWEEP / ramp) ** 0.5) if ramp > 0.0 else LONGEST_s
+
+
+def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Values, Values]:
+    """Frequencies and amplitudes (ridges, count) over the windows, 0 where there is none."""
+    frequencies, amplitudes = np.zeros((len(ridges), count)), np.zeros((len(ridges), count))
+    for row, ridge in enumerate(ridges):
+        frequencies[row, ridge.columns], amplitudes[row, ridge.columns] = ridge.frequencies, ridge.amplitudes
+    return frequencies, amplitudes
+
+
+def _side(frequency: Values, ring: Values) -> Side:
+    """The film that drives a ridge (windows,)."""
+    there = frequency > 0.0
+    return "outer" if np.median(frequency[there]) <= OUTER_UP_TO * np.median(0.5 * ring[there]) else "inner"
+
+
+def _combination(index: int, frequencies: Values, amplitudes: Values, window_s: float) -> bool:
+    """Whether a ridge begins as 2 f_1, f_1 - f_2 or 2 f_1 - f_2 of one or two stronger ones."""
+    begins = np.flatnonzero(frequencies[index])[:BEGINNING]
+    f, a = frequencies[:, begins], amplitudes[:, begins]
+    stronger = [k for k in range(len(f)) if k != index and np.median(a[k]) > np.median(a[index])]
+    made = [2 * f[one] for one in stronger]
+    made += [factor * f[one] - f[other] for one in stronger for other in stronger if one != other for factor in (1, 2)]
+    return any(np.median(np.abs(line - f[index])) < SAME_LINE / window_s for line in made)
+
+
+def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What onset, lock-in and offset of floating rings belong to, "" for other events, in the order of the events.
+
+    Of a symmetric rotor Sub_i and Sub_o, after the film; of a rotor in several bearings Sub 1, the first whirl of an
+    inner film, Sub 2, the next ones, and Sub 3 of an outer film.
+    """
+    names, seen = [], Counter[tuple[str, str]]()
+    for event in events:
+        kind, film = event["kind"], str(event.get("film") or "")
+        bearing, _, side = film.rpartition("_")
+        seen[film, kind] += 1
+        if kind not in ("onset", "lock-in", "offset") or side not in ("inner", "outer"):
+            names.append("")
+        elif not bearing:
+            names.append(f"Sub_{side[0]}")
+        elif side == "outer":
+            names.append("Sub 3")
+        else:  # whirls end in the order in which they begin, and lock before the next one begins
+            number = seen[film, "offset"] if kind == "offset" else seen[film, "onset"]
+            names.append("Sub 1" if number < 2 else "Sub 2")
+    return names
+
+
+def _windows(run: RunLike, name: str, room: float, width: int, hop: int) -> Iterator[Motion]:
+    """The motion (width,) of a journal over its room in each window, read many windows at a time."""
+    starts = range(0, len(run) - width + 1, hop)
+    at_a_time = max(1, PIECE // hop)
+    for group in (starts[first : first + at_a_time] for first in range(0, len(starts), at_a_time)):
+        motion = signals.motion_of(run, "journal", name, group[0], group[-1] + width) / room
+        yield from (motion[start - group[0] : start - group[0] + width] for start in group)
+
+
+def _peaks(
+    motions: Iterable[Motion], width: int, step: float, highest_Hz: Values
+) -> Iterator[list[tuple[float, float]]]:
+    """Frequency in Hz and amplitude of the peaks of each forward spectrum, up to a frequency, the strongest first."""
+    window = hann(width)
+    window /= window.sum()
+    padded = fast_length(PADDING * width)
+    line = 1.0 / (padded * step)
+    kept = min(padded // 2, int(float(np.max(highest_Hz)) / line) + 2)
+    for seen, highest in zip(motions, highest_Hz, strict=True):
+        level = np.abs(np.fft.fft((seen - seen @ window) * window, padded)[:kept])
+        peaks = []
+        for i in local_maxima(level, max(ENDS, SIDE_LOBES * float(level.max()))):
+            left, here, right = level[i - 1 : i + 2]
+            place = (i + 0.5 * (left - right) / (left - 2.0 * here + right)) * line
+            if SLOWEST / (width * step) <= place <= highest:
+                peaks.append((float(place), float(here)))
+        yield sorted(peaks, key=lambda peak: -peak[1])
+
+
+def _follow(spectra: Iterator[list[tuple[float, float]]], window_s: float) -> list[_Ridge]:
+    """Peaks of neighbouring spectra that are one motion; a stronger peak takes its ridge first."""
+    ridges: list[_Ridge] = []
+    active: list[_Ridge] = []
+    for column, peaks in enumerate(spectra):
+        active = [ridge for ridge in active if column - ridge.columns[-1] <= PAUSE]
+        for frequency, amplitude in peaks:
+            near = _nearest(active, column, frequency, window_s)
+            if near is None:
+                near = _Ridge()
+                ridges.append(near)
+                active.append(near)
+            near.append(column, frequency, amplitude)
+    return ridges
+
+
+def _nearest(active: Sequence[_Ridge], column: int, frequency: float, window_s: float) -> _Ridge | None:
+    free = [ridge for ridge in active if ridge.columns[-1] < column]
+    nearest = min(free, key=lambda ridge: abs(ridge.frequencies[-1] - frequency), default=None)
+    if nearest is None or abs(nearest.frequencies[-1] - frequency) > DRIFT / window_s:
+        return None
+    return nearest
+
+
+def _lock_in(frequency: Values, free: Values) -> int | None:
+    """Where a whirl that began with the frequency `free` leaves it for good."""
+    follows = np.flatnonzero(frequency >= LEAVES_LINE * free)
+    if len(follows) == 0 or follows[-1] + 1 >= len(frequency):
+        return None
+    return int(follows[-1]) + 1

@@ -1,0 +1,169 @@
+"""Spectra over time of the motion of a journal or a disk.
+
+A frequency that changes within a window lowers and widens its line. By default the length of the windows follows from
+the ramp of the rotor speed, with enough resolution to separate the lines of interest; the remaining loss of the
+synchronous line is computed (smear.py) and stated. Amplitudes of order_tracking.py do not depend on the ramp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.analysis.signals import PIECE, Column, Motion, Values, course, steepest_ramp
+from frbcli.analysis.spectra.smear import chirp_height
+from frbcli.analysis.spectra.windows import fast_length, hann
+from frbcli.errors import Fault, InputError
+
+Direction = Literal["x", "y", "forward"]
+DIRECTIONS: tuple[Direction, ...] = ("x", "y", "forward")
+
+LONGEST_s = 0.2  # of a window that nothing else asks to be longer: what lasts a fifth of a second is still seen
+SWEEP = 1.0  # r T^2 of the window that a ramp of r Hz/s asks for: it reads 0.06 dB low
+PARTED = 2.0  # widths 1 / T between two lines that a Hann window parts
+HALF = 0.5  # order of oil whirl, which has to be parted from the rotor speed ...
+FROM_SPEED = 0.25  # ... from this share of the highest speed upwards
+WINDOWS = 4  # a run shorter than this many windows gets shorter ones
+FEWEST = 8  # samples of a window
+PADDING = 4  # a sinusoid between two lines of the padded spectrum loses less than 1 % of its height under a Hann window
+BLOCK = 2**20  # values of padded windows that are in memory at a time
+FLOOR_dB = -200.0  # level of no motion
+UNEVEN = 1e-3  # relative deviation of a sample's time that is more than round-off
+ROUNDING = 8.0  # last bits of a time, likewise
+
+
+@dataclass(frozen=True)
+class Spectrogram:
+    """Spectra over time.
+
+    time_s (m,): middle of each window; speed_Hz (m,): rotor speed there; frequency_Hz (k,); amplitude (k, m): peak
+    amplitude in m; level_dB (k, m): the same relative to the clearance; window_s: length of the windows; low_dB (m,):
+    by how much the synchronous line reads low, because the rotor speed changes during the window. A line of order q is
+    smeared by q times the ramp.
+    """
+
+    time_s: Values
+    speed_Hz: Values
+    frequency_Hz: Values
+    amplitude: Values
+    level_dB: Values
+    window_s: float
+    low_dB: Values
+
+
+def waterfall(
+    time_s: Column,
+    x: Column,
+    y: Column,
+    speed_Hz: Column,
+    clearance: float,
+    window_s: float | None = None,
+    overlap: float = 0.9,
+    max_frequency_Hz: float | None = None,
+    direction: Direction = "x",
+    most: int | None = None,
+) -> Spectrogram:
+    """Short-time spectra of a motion x, y (n,) in m, sampled evenly at time_s (n,), with rotor speed speed_Hz (n,):
+    arrays, or anything with a length that gives them in slices; no more than some windows are held at a time.
+
+    A steady sinusoid of amplitude A shows as A. direction: "x" and "y" give the one-sided spectrum of one coordinate,
+    "forward" the part of x + iy that turns with the rotor. window_s: length of the Hann windows, whose mean is taken
+    off; None takes that of window_length, which parts the rotor speed and its half. overlap: the share of a window
+    that the next one sees again; most: so many spectra, each of them the largest of neighbouring ones where there are
+    more; clearance: the length in m that is 0 dB.
+
+    Raises InputError if the window or the overlap does not fit the samples, or these are not evenly spaced.
+    """
+    if direction not in DIRECTIONS:
+        raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
+    if not 0.0 <= overlap < 1.0:
+        raise _fault("overlap", overlap, "is not a share of the window.", "Use 0 to 0.99.")
+    count, step = len(time_s), _step(time_s)
+    if window_s is None:
+        window_s = max(window_length(time_s, speed_Hz), FEWEST * step)
+    length = round(window_s / step) if np.isfinite(window_s) else 0
+    if not FEWEST <= length <= count:
+        limits = f"Use more than {FEWEST * step:g} s, up to {step * count:g} s."
+        raise _fault("window", f"{window_s:g} s", "does not fit the run.", limits)
+    first = _starts(count, length, max(1, round(length * (1.0 - overlap))))
+    window = hann(length)
+    window /= window.sum()
+    padded = fast_length(PADDING * length)
+    frequency = np.arange((padded + (1 if direction == "forward" else 2)) // 2) / (padded * step)
+    kept = int(np.count_nonzero(frequency <= (np.inf if max_frequency_Hz is None else max_frequency_Hz)))
+    group = 1 if most is None else -(-len(first) // most)
+    groups = [first[begin : begin + group] for begin in range(0, len(first), group)]
+    amplitude, time = np.zeros((kept, len(groups))), np.empty(len(groups))
+    speed, swept = np.empty(len(groups)), np.empty(len(groups))
+    begin = float(time_s[0:1][0])
+    for column, starts in enumerate(groups):
+        low, high = int(starts[0]), int(starts[-1]) + length
+        middle = int(starts[len(starts) // 2]) + length // 2
+        turning = speed_Hz[low:high]
+        time[column], speed[column] = begin + step * middle, turning[middle - low]
+        swept[column] = np.max(np.abs(turning[starts - low + length - 1] - turning[starts - low])) * window_s
+        motion = x[low:high] + 1j * y[low:high] if direction == "forward" else {"x": x, "y": y}[direction][low:high]
+        for lines in _lines(motion, starts - low, window, padded, kept):
+            np.maximum(amplitude[:, column], lines, out=amplitude[:, column])
+    level = 20.0 * np.log10(np.maximum(amplitude / clearance, 10.0 ** (FLOOR_dB / 20.0)))
+    lost = np.maximum(0.0, -20.0 * np.log10(chirp_height(swept)))
+    return Spectrogram(time, speed, frequency[:kept], amplitude, level, window_s, lost)
+
+
+def window_length(time_s: Column, speed_Hz: Column, apart_Hz: float | None = None) -> float:
+    """The length in s of the windows that fit a run (n,): 1 / sqrt(r) in a ramp of r Hz/s, at most LONGEST_s; longer
+    where lines that are apart_Hz from each other would else not be parted; at most a quarter of the run.
+
+    apart_Hz: by default between the rotor speed and its half, from a quarter of the highest speed upwards.
+    """
+    time, speed = course(time_s, speed_Hz)
+    duration, top, ramp = float(time[-1] - time[0]), float(np.max(np.abs(speed))), steepest_ramp(time_s, speed_Hz)
+    length = min(LONGEST_s, (SWEEP / ramp) ** 0.5) if ramp > 0.0 else LONGEST_s
+    apart = HALF * FROM_SPEED * top if apart_Hz is None else apart_Hz
+    return min(max(length, PARTED / apart if apart > 0.0 else 0.0), duration / WINDOWS)
+
+
+def _starts(count: int, length: int, hop: int) -> NDArray[np.int64]:
+    """First samples of the windows that lie wholly inside the run; the middle of each is a multiple of `hop`."""
+    middle = length // 2
+    first = -(-middle // hop) * hop - middle
+    return np.arange(first if first + length <= count else 0, count - length + 1, hop)
+
+
+def _lines(
+    motion: Values | Motion, starts: NDArray[np.int64], window: Values, padded: int, kept: int
+) -> Iterator[Values]:
+    """Peak amplitudes (kept,) of the windows of `motion` at `starts`, without their mean; `window` has the sum 1."""
+    at_a_time = max(1, BLOCK // padded)
+    for begin in range(0, len(starts), at_a_time):
+        seen = np.stack([motion[start : start + len(window)] for start in starts[begin : begin + at_a_time]])
+        seen = (seen - seen.mean(axis=1, keepdims=True)) * window
+        if np.iscomplexobj(seen):
+            yield from np.abs(np.fft.fft(seen, padded)[:, :kept])
+            continue
+        lines = np.abs(np.fft.rfft(seen, padded))
+        lines[:, 1 : None if padded % 2 else -1] *= 2.0  # the other half is at negative frequencies
+        yield from lines[:, :kept]
+
+
+def _step(time_s: Column) -> float:
+    """The time between two samples in s; raises InputError if there is no such thing."""
+    count = len(time_s)
+    if count < 2:
+        raise _fault("time_s", "", "has fewer than two samples.", "Resume the run.")
+    begin, end = float(time_s[0:1][0]), float(time_s[count - 1 : count][0])
+    step = (end - begin) / (count - 1)
+    pieces = ((first, time_s[first : first + PIECE]) for first in range(0, count, PIECE))
+    off = (np.max(np.abs(piece - begin - step * np.arange(first, first + len(piece)))) for first, piece in pieces)
+    rounding = ROUNDING * max(abs(begin), abs(end)) * float(np.finfo(float).eps)  # times since 1970 are large
+    if not step > 0.0 or not all(deviation <= UNEVEN * step + rounding for deviation in off):
+        raise _fault("time_s", "", "is not evenly spaced.", "Use the run as frb wrote it.")
+    return step
+
+
+def _fault(key: str, value: object, problem: str, remedy: str) -> InputError:
+    return InputError("spectrum", (Fault(key=key, value=str(value), line=None, problem=problem, remedy=remedy),))

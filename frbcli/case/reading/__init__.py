@@ -1,0 +1,1 @@
+"""Case files and the files that they name, read and written."""

@@ -1,0 +1,198 @@
+"""Coefficients of a bearing over speed out of a file: of ROSS, as `frb bearing --ross` writes it, too, or a CSV.
+
+A file of ROSS is a table of its class and tag with lists kxx to cyy in N/m and N s/m over the frequency in rad/s, as
+`BearingElement.save` writes it, TOML or JSON. The case gets the numbers in place of the key `file`, so that a run has
+all that it was made of.
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from frbcli.case.elements import AXES
+from frbcli.case.quantities import LARGEST
+from frbcli.case.reading.tables import Breach, tables
+from frbcli.case.reading.toml import TomlFault, parse
+
+LARGEST_FILE = 4_194_304  # bytes
+MOST_SPEEDS = 2000
+SPEED = "speed_Hz"
+UNITS = {"k": "N/m", "c": "N*s/m", "m": "kg"}
+REQUIRED = tuple(f"{letter}{axes}" for letter in "kc" for axes in AXES)
+MASSES = tuple(f"m{axes}" for axes in AXES)
+BEARINGS = ("BearingElement", "SealElement")
+COLUMNS = f"Give the columns {SPEED}, {', '.join(REQUIRED)}, and perhaps {', '.join(MASSES)}."
+WRITE = "Write it with frb bearing --ross, with BearingElement.save of ROSS, or as .csv."
+SI = "Correct it; values are in SI units."
+
+Columns = dict[str, list[float]]
+
+
+class _Fault(Exception):
+    """Problem and remedy of a file that cannot be read."""
+
+
+def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
+    """The tables of a case with the numbers of each bearing's `file` in place of that key, and the faults.
+
+    folder: that a relative path counts from. A bearing whose file has faults keeps the key.
+    """
+    changed, found = dict(data), list[Breach]()
+    for path, bearing in tables(data, "bearing"):
+        name = bearing.get("file")
+        if bearing.get("kind") != "coefficients" or not isinstance(name, str) or not name:
+            continue
+        key = (*path, "file")
+        beside = [other for other in ("stiffness", "damping", "mass", "over_speed") if other in bearing]
+        if beside:
+            problem = f"is given beside {' and '.join(beside)}."
+            found.append(Breach(key, problem, "Keep the file, or the coefficients themselves."))
+            continue
+        try:
+            columns = _checked(_read(folder / name))
+        except _Fault as fault:
+            found.append(Breach(key, *fault.args))
+            continue
+        kept = {other: value for other, value in bearing.items() if other != "file"}
+        kept["over_speed"] = {"source": name, **_with_units(columns)}
+        if len(path) == 1:
+            changed["bearing"] = kept
+        else:
+            changed["bearing"] = list(changed["bearing"])
+            changed["bearing"][path[1]] = kept
+    return changed, found
+
+
+def _with_units(columns: Columns) -> dict[str, list[str]]:
+    speeds = [f"{value!r} Hz" for value in columns[SPEED]]
+    named = [name for name in (*REQUIRED, *MASSES) if name in columns]
+    return {"speed": speeds} | {name: [f"{value!r} {UNITS[name[0]]}" for value in columns[name]] for name in named}
+
+
+def _read(path: Path) -> Columns:
+    try:
+        if not path.is_file():
+            raise _Fault("names no file.", "Give its path from the folder of the case.")
+        if path.stat().st_size > LARGEST_FILE:
+            raise _Fault(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", "Name a file of coefficients.")
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise _Fault(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
+    except ValueError:
+        raise _Fault("is no UTF-8 text.", WRITE) from None
+    return _of_table(text) if path.suffix.lower() == ".csv" else _of_ross(text, path.suffix.lower() == ".json")
+
+
+def _of_table(text: str) -> Columns:
+    rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
+    if not rows:
+        raise _Fault("is empty.", COLUMNS)
+    names = [cell.strip() for cell in rows[0]]
+    unknown = [name for name in names if name not in (SPEED, *REQUIRED, *MASSES)]
+    if unknown:
+        raise _Fault(f'has the column "{unknown[0]}", which is not known here.', COLUMNS)
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise _Fault(f'has the column "{twice}" twice.', COLUMNS)
+    columns: Columns = {name: [] for name in names}
+    for number, row in enumerate(rows[1:], start=1):
+        if len(row) != len(names):
+            raise _Fault(f"has {len(row)} values in row {number} of numbers, not {len(names)}.", "Complete the row.")
+        for name, cell in zip(names, row, strict=True):
+            columns[name].append(_number(cell, name, number))
+    return columns
+
+
+def _of_ross(text: str, is_json: bool) -> Columns:
+    try:
+        data = json.loads(text) if is_json else parse(text)
+    except TomlFault as error:
+        where = "" if error.fault.line is None else f" in line {error.fault.line}"
+        raise _Fault(f"is no TOML{where}: it {error.fault.problem}", WRITE) from None
+    except (ValueError, RecursionError):
+        raise _Fault("is no JSON.", WRITE) from None
+    items = data.items() if isinstance(data, dict) else ()
+    elements = [(name, item) for name, item in items if name.startswith(BEARINGS) and isinstance(item, dict)]
+    if len(elements) != 1:
+        told = "no bearing" if not elements else f"{len(elements)} bearings"
+        raise _Fault(f"holds {told}, not one.", WRITE)
+    name, element = elements[0]
+    given = element.get("frequency")
+    columns: Columns = {}
+    for key in (*REQUIRED, *MASSES):
+        if element.get(key) is not None:
+            columns[key] = _numbers(element[key], key)
+    if given is None and all(len(values) == 1 for values in columns.values()):
+        columns[SPEED] = [0.0]  # constant
+    elif given is None:
+        raise _Fault(f'lacks "frequency" in "{name}".', WRITE)
+    else:
+        columns[SPEED] = [value / (2.0 * math.pi) for value in _numbers(given, "frequency")]
+    return columns
+
+
+def _numbers(given: object, name: str) -> list[float]:
+    values = given if isinstance(given, list) else [given]
+    return [_number(value, name, number) for number, value in enumerate(values, start=1)]
+
+
+def _number(given: object, name: str, row: int) -> float:
+    """A finite number that a case would take."""
+    try:
+        if isinstance(given, bool) or not isinstance(given, str | int | float):
+            raise ValueError
+        value = float(given)
+    except (ValueError, OverflowError):
+        raise _Fault(f'has no number as {row}. value of "{name}".', SI) from None
+    if not math.isfinite(value) or abs(value) > LARGEST:
+        raise _Fault(f'has a {row}. value of "{name}" that is no finite number within {LARGEST:g}.', SI)
+    return value
+
+
+def _checked(columns: Columns) -> Columns:
+    """The same, with masses complete or left out."""
+    missing = [name for name in (SPEED, *REQUIRED) if name not in columns]
+    some = [name for name in MASSES if name in columns]
+    if some:
+        missing += [name for name in MASSES if name not in columns]
+    if missing:
+        raise _Fault(f"lacks {', '.join(missing)}.", COLUMNS)
+    count = len(columns[SPEED])
+    if not 1 <= count <= MOST_SPEEDS:
+        raise _Fault(f"has {count} speeds.", f"Give 1 to {MOST_SPEEDS}.")
+    for name, values in columns.items():
+        if len(values) != count:
+            raise _Fault(f'has {len(values)} values of "{name}" at {count} speeds.', "Give one at each speed.")
+    if problem := over_speed_problem(columns[SPEED], [columns[name] for name in MASSES] if some else ()):
+        raise _Fault(problem, "Give each speed once, in ascending order, and a mass that is not negative.")
+    return columns
+
+
+def over_speed_problem(speeds: Sequence[float], masses: Sequence[Sequence[float]]) -> str:
+    """What is wrong with speeds in Hz and masses xx, xy, yx, yy at them, or nothing."""
+    for below, above in itertools.pairwise(speeds):
+        if above <= below:
+            return f"has {above:g} Hz after {below:g} Hz: the speeds do not ascend."
+    for speed, entries in zip(speeds, zip(*masses, strict=True), strict=False):
+        if is_negative(entries):
+            return f"has a mass matrix at {speed:g} Hz that is negative in some direction."
+    return ""
+
+
+def is_negative(mass: Sequence[float]) -> bool:
+    """Whether a mass matrix xx, xy, yx, yy has a negative kinetic energy in some direction, beyond round-off."""
+    xx, xy, yx, yy = mass
+    cross = 0.5 * (xy + yx)
+    least = 0.5 * (xx + yy) - math.hypot(0.5 * (xx - yy), cross)
+    return least < -1e-12 * max(abs(entry) for entry in mass)
+
+
+def column_lengths(over_speed: Mapping[str, Any]) -> dict[str, int]:
+    """How many values each list of a table over speed has."""
+    return {name: len(values) for name, values in over_speed.items() if isinstance(values, list)}

@@ -1,0 +1,101 @@
+"""The list of hard cases: shipped cases with settings at the limits of models and numerics."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import shlex
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from importlib.resources.abc import Traversable
+from typing import Any
+
+from frbcli.case.reading.load import load_case
+from frbcli.case.reading.shipped import shipped_folder
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+
+LIST, REFERENCES = "hard-cases.toml", "references.json"
+WITHIN_s = 600.0  # compilation included, where nothing is compiled yet
+
+
+@dataclass(frozen=True)
+class HardCase:
+    """One hard case and how it ends.
+
+    topic: the group that it belongs to; hard: its difficulty; command: "runup", "rundown", "rotation", "squeeze"
+    or "whirl"; base: a shipped case; settings: KEY=VALUE each. end: expected status, "input-error" for a
+    case that is refused; why: the cause of an early end; says: words that its message must have;
+    events: the kinds of all events in their order, with the film's name if there are several, None if they do not
+    matter; fine: settings of the reference, () for none; quick: whether it takes a second or so; within_s:
+    limit of the wall time.
+    """
+
+    name: str
+    topic: str
+    hard: str
+    base: str
+    end: str
+    command: str = "runup"
+    settings: tuple[str, ...] = ()
+    why: str = ""
+    says: str = ""
+    events: tuple[str, ...] | None = None
+    fine: tuple[str, ...] = ()
+    quick: bool = False
+    within_s: float = WITHIN_s
+
+    @property
+    def words(self) -> str:
+        """The equivalent command line."""
+        return shlex.join(["frb", self.command, self.base, *(w for text in self.settings for w in ("--set", text))])
+
+    def case(self, fine: bool = False) -> Case:
+        """Its case, or that of its reference. Raises InputError if it is refused."""
+        return load_case(self.base, (*self.settings, *(self.fine if fine else ())))
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The result of the fine case. values: by name, at times_s of a run, one number each of a kinematic test; until_s:
+    end of the comparison of a run; cpu_s: CPU time; change: reference uncertainty, from a second reference on a coarser
+    mesh."""
+
+    status: str
+    values: dict[str, list[float]]
+    times_s: list[float] = field(default_factory=list)
+    until_s: float = 0.0
+    cpu_s: float = 0.0
+    change: float | None = None
+
+
+def hard_cases(names: Sequence[str] = ()) -> tuple[HardCase, ...]:
+    """The hard cases of these names, all of them for (). Raises InputError for unknown names."""
+    entries = tomllib.loads(_folder().joinpath(LIST).read_text(encoding="utf-8"))["case"]
+    found = {entry["name"]: _hard_case(entry) for entry in entries}
+    unknown = [name for name in names if name not in found]
+    if unknown:
+        faults = (Fault("NAME", name, None, "is no hard case.", _nearest(name, found)) for name in unknown)
+        raise InputError("hard cases", tuple(faults))
+    return tuple(found[name] for name in names) if names else tuple(found.values())
+
+
+def references() -> dict[str, Reference]:
+    """The references of the hard cases that have one, by name."""
+    text = _folder().joinpath(REFERENCES).read_text(encoding="utf-8")
+    return {name: Reference(**entry) for name, entry in json.loads(text).items()}
+
+
+def _hard_case(entry: dict[str, Any]) -> HardCase:
+    lists = {key: tuple(value) for key, value in entry.items() if isinstance(value, list)}
+    return HardCase(**(entry | lists))
+
+
+def _nearest(name: str, found: dict[str, HardCase]) -> str:
+    close = difflib.get_close_matches(name, found, n=1, cutoff=0.5)
+    return f'Did you mean "{close[0]}"?' if close else "`frb cases --hard` lists them."
+
+
+def _folder() -> Traversable:
+    return shipped_folder().joinpath("hard")

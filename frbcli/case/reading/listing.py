@@ -1,0 +1,69 @@
+"""A case as a flat list of its values, for tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic.fields import FieldInfo
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import unit_of
+from frbcli.case.reading.toml import parse
+from frbcli.case.schema import Case
+from frbcli.film.bearing_model import table as bearing_models
+from frbcli.film.cavitation import table
+from frbcli.units import NUMBER, display, readable
+
+
+@dataclass(frozen=True)
+class Value:
+    """One value of a case. key: as in the file; value: SI number, text, or whole number; unit: SI, "" for none; bare:
+    whether it was written without its unit, and so taken as SI."""
+
+    key: str
+    value: float | int | str
+    unit: str = ""
+    shown: str = ""
+    bare: bool = False
+
+
+def values(case: Case) -> tuple[Value, ...]:
+    """Every value of `case` that is set, by itself or by default, in the order of the case file."""
+    return tuple(value for value in _values("", case, parse(case.source_text)) if not _is_idle(value.key, case))
+
+
+def _values(prefix: str, model: Model, written: Any) -> Iterator[Value]:
+    for name, field in type(model).model_fields.items():
+        key = field.alias or name
+        here = written.get(key) if isinstance(written, dict) else None
+        yield from _one(f"{prefix}{key}", getattr(model, name), field, here)
+
+
+def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value]:
+    """written: the same value in the text of the case, None where it is not there."""
+    if found is None or found == () or found == "":
+        return
+    if isinstance(found, Model):
+        yield from _values(f"{key}.", found, written)
+    elif isinstance(found, tuple):
+        single = key == "bearing" and len(found) == 1
+        each = written if isinstance(written, list) else [written] * len(found)
+        for index, (item, its_text) in enumerate(zip(found, each, strict=True)):
+            yield from _one(key if single else f"{key}.{index}", item, field, its_text)
+    elif isinstance(found, float):
+        unit = unit_of(field) or NUMBER
+        si = "" if unit == NUMBER else readable(unit)
+        yield Value(key, found, si, display(found, unit), bool(si) and isinstance(written, int | float))
+    else:
+        yield Value(key, found, "", str(found))
+
+
+def _is_idle(key: str, case: Case) -> bool:
+    """Whether a key belongs to a cavitation or bearing model that the case does not use."""
+    section, _, rest = key.partition(".")
+    model = rest.partition(".")[0]
+    if section == "film" and model in (bearing.name for bearing in bearing_models.models()):
+        return model != case.film.theory
+    return section == "film" and model in table.names() and model not in case.cavitations

@@ -1,0 +1,238 @@
+"""From a file to a Case, or to all faults of the file."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from frbcli.case.model import Model
+from frbcli.case.reading import lines
+from frbcli.case.reading.coefficient_files import with_coefficient_files
+from frbcli.case.reading.ross import with_rotor_file
+from frbcli.case.reading.settings import with_setting, with_value
+from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names
+from frbcli.case.reading.text import as_tables
+from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
+from frbcli.case.rules.checks import Breach, breaches
+from frbcli.case.rules.faults import objections, with_nearest_kinds
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+
+_Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
+
+LARGEST_FILE = 262_144  # bytes; a case has some thousand
+LONGEST_SHOWN = 150  # characters of a value or a path in a fault
+LARGEST_SHOWN = 200  # bits of a whole number in a fault
+
+
+def load_case(source: str | Path, settings: Sequence[str] = ()) -> Case:
+    """The case in the file `source`, or the shipped case of that name, with `settings` ("key.path=value") applied.
+
+    Raises InputError with every fault of file and settings.
+    """
+    path = Path(source)
+    text = _read(path)
+    if text is None:
+        text = _shipped(str(source))
+    return load_case_text(text, settings, path.name.removesuffix(".toml"), str(source), path.parent)
+
+
+def load_case_text(
+    text: str, settings: Sequence[str] = (), name: str = "case", source: str = "", folder: str | Path = "."
+) -> Case:
+    """The case in the TOML `text` with `settings` applied.
+
+    name: of the case, if the text has none; source: name of the text in errors, `name` if not given;
+    folder: of rotor files and files of coefficients. Raises InputError with every fault of text and settings.
+    """
+    source = source or name
+    try:
+        data = parse(text)
+    except TomlFault as error:
+        raise InputError(source, (error.fault,)) from None
+    data, overridden, faults = _apply(data, [functools.partial(with_setting, setting=setting) for setting in settings])
+    case, data, found = _checked(data, name, folder)
+    if found:
+        faults += _located(found, data, overridden, text)
+    if faults or case is None:
+        raise _refused(source, faults)
+    return case.with_source_text(to_toml(data))
+
+
+def with_settings(case: Case, settings: Iterable[str | Mapping[str, object]]) -> Case:
+    """As Case.with_settings, which is the way to call it."""
+    applied: list[_Set] = []
+    for given in settings:
+        if isinstance(given, str):
+            applied.append(functools.partial(with_setting, setting=given))
+        elif isinstance(given, Mapping):
+            applied += [functools.partial(_with_value, key=key, value=value) for key, value in given.items()]
+        else:
+            problem, remedy = "is no setting.", 'Write "key = value" or {"key": value}.'
+            raise InputError(case.name or "case", (Fault("settings", str(type(given)), None, problem, remedy),))
+    data, overridden, faults = _apply(parse(case.source_text), applied)
+    changed, data, found = _checked(data, case.name or "case", ".")
+    faults += _located(found, data, overridden, "")
+    if faults or changed is None:
+        raise _refused(case.name or "case", faults)
+    return changed.with_source_text(to_toml(data))
+
+
+def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Path = ".") -> Case:
+    """The case in tables that have the keys of a case file, checked as a file is.
+
+    data: nested mappings and sequences; quantities are numbers in SI or text with a unit; a table may also be a model
+    of `frbcli.case`; None stands for a key that is not given. name: of the case, if the data have none; folder: of
+    rotor files and files of coefficients. Raises InputError with every fault of the data.
+    """
+    try:
+        tables = _plain(data)
+    except TomlFault as error:
+        raise InputError(name, (error.fault,)) from None
+    if not isinstance(tables, dict):
+        raise InputError(name, (Fault("data", "", None, "is not a dict.", "Give a table of the case's tables."),))
+    case, tables, found = _checked(tables, name, folder)
+    if found or case is None:
+        raise _refused(name, _located(found, tables, (), ""))
+    return case
+
+
+def describes(text: str, case: Case) -> bool:
+    """Whether `text`, perhaps of an older version, is of the machine and the run of `case`, however it is written."""
+    try:
+        return case.same_run(Case.model_validate(parse(text)))
+    except (TomlFault, ValidationError):
+        return False
+
+
+def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case | None, dict[str, Any], list[Breach]]:
+    """The case in `data`, None if there is none; its tables, with name and rotor file; all faults."""
+    data = data if "name" in data else {"name": _printable(name), **data}
+    data, unread = with_rotor_file(data, Path(folder))
+    data, unknown = with_coefficient_files(data, Path(folder))
+    case, found = _validate(data)
+    if unread:  # what the file would have completed is no fault of the case
+        found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
+    return case, data, [*unknown, *found]
+
+
+def _refused(source: str, faults: Sequence[Fault]) -> InputError:
+    return InputError(source, tuple(sorted(faults, key=lambda fault: (fault.line or LARGEST_FILE, fault.key))))
+
+
+def _plain(value: Any, path: lines.Path = ()) -> Any:
+    """`value` as a file would give it: tables, lists, text and numbers. Raises TomlFault."""
+    if len(path) > DEEPEST:
+        raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as a case file has it."))
+    if isinstance(value, Model):
+        return as_tables(value)
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, (*path, str(key))) for key, item in value.items() if item is not None}
+    if isinstance(value, list | tuple):
+        return [_plain(item, (*path, number)) for number, item in enumerate(value)]
+    return value.tolist() if hasattr(value, "tolist") else value  # numbers and arrays of numpy
+
+
+def _read(path: Path) -> str | None:
+    """The text of the regular file `path`, None if there is none. Raises InputError if it cannot be a case."""
+    try:
+        if not path.is_file():
+            return None
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            raise _unreadable(path, f"is larger than {LARGEST_FILE // 1024} KiB.", "Name a case file.")
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        problem = f"is not UTF-8 text (at byte {error.start})."
+        raise _unreadable(path, problem, "Name a case file, or save it as UTF-8.") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise _unreadable(path, f"cannot be read: {reason}.", "Check path and permissions.") from None
+
+
+def _shipped(source: str) -> str:
+    name = source.removesuffix(".toml")
+    if name in shipped_names():
+        return find_shipped(name)
+    if Path(source).exists():
+        raise _unreadable(source, "is not a file.", f"Name a case file. {nearest(name)}")
+    raise _unreadable(source, "is neither a file nor a shipped case.", nearest(name))
+
+
+def _unreadable(source: str | Path, problem: str, remedy: str) -> InputError:
+    shown = _printable(str(source))
+    return InputError(shown, (Fault("CASE", shown, None, problem, remedy),))
+
+
+def _with_value(data: Mapping[str, Any], key: object, value: object) -> tuple[dict[str, Any], lines.Path]:
+    return with_value(data, str(key), _plain(value))
+
+
+def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, Any], list[lines.Path], list[Fault]]:
+    """`data` with the settings, their paths, and their faults."""
+    overridden: list[lines.Path] = []
+    faults: list[Fault] = []
+    for setting in settings:
+        try:
+            data, path = setting(data)
+            overridden.append(path)
+        except TomlFault as error:
+            faults.append(error.fault)
+    return data, overridden, faults
+
+
+def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
+    """The case in `data`, None if the models reject it, and all faults."""
+    case, guess = None, data
+    found: dict[lines.Path, Breach] = {}  # one per key: the first says why the value cannot be taken at all
+    try:
+        case = Case.model_validate(data)
+    except ValidationError as error:
+        guess = with_nearest_kinds(error, data)
+        found |= {breach.path: breach for breach in objections(error, data)}
+    if guess != data:
+        try:
+            Case.model_validate(guess)
+        except ValidationError as error:
+            found = {breach.path: breach for breach in objections(error, guess)} | found
+    found = {breach.path: breach for breach in breaches(guess)} | found
+    return case, list(found.values())
+
+
+def _located(found: Sequence[Breach], data: dict[str, Any], overridden: Sequence[lines.Path], text: str) -> list[Fault]:
+    """The breaches as faults with the lines of their keys; what came from a setting has no line."""
+    known = lines.key_lines(text)
+    faults = []
+    for breach in found:
+        from_setting = any(breach.path[: len(path)] == path for path in overridden)
+        line = None if from_setting else known.get(breach.path)
+        faults.append(Fault(_dotted(breach.path), _shown(data, breach.path), line, breach.problem, breach.remedy))
+    return faults
+
+
+def _dotted(path: lines.Path) -> str:
+    return _printable(".".join(map(str, path)))
+
+
+def _shown(data: Any, path: lines.Path) -> str:
+    """The value at `path` as text for a fault; nothing for what is absent, a table or a list."""
+    for element in path:
+        try:
+            data = data[element]
+        except (KeyError, IndexError, TypeError):
+            return ""
+    if isinstance(data, dict | list) or (isinstance(data, int) and data.bit_length() > LARGEST_SHOWN):
+        return ""
+    shown = f'"{data}"' if isinstance(data, str) else str(data).lower() if isinstance(data, bool) else str(data)
+    return _printable(shown)
+
+
+def _printable(text: str) -> str:
+    """`text` on one line, and not longer than a screen."""
+    shown = "".join(character if character.isprintable() else "?" for character in text[: LONGEST_SHOWN + 1])
+    return shown if len(shown) <= LONGEST_SHOWN else f"{shown[:LONGEST_SHOWN]}..."

@@ -1,0 +1,98 @@
+"""Overrides of single keys of a case, as `--set` gives them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.toml import TomlFault, parse
+from frbcli.errors import Fault
+
+DEEPEST_KEY = 8
+
+_INDEX = re.compile(r"[0-9]{1,4}")
+
+
+def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any], Path]:
+    """`data` with one `key.path=value` set, and the path that was set; `data` itself stays. Raises TomlFault.
+
+    The value is TOML where it can be ("3", "true", "{ kind = 'none' }"), else text ("40 um"). Indices lead into arrays
+    of tables: "bearing.0.width"; index 0 of a single table is the table itself.
+    """
+    key, equals, value = setting.partition("=")
+    parts = _parts(key)
+    if not (equals and parts and _encodable(setting)):
+        raise _refuse("--set", "is not of the form key.path=value.", 'Write e.g. --set speed.to="200 Hz".')
+    copy = dict(data)
+    return copy, _insert(copy, parts, _value(value), ())
+
+
+def with_value(data: Mapping[str, Any], key: str, value: Any) -> tuple[dict[str, Any], Path]:
+    """As with_setting, with a value as a file has it; None takes the key out."""
+    parts = _parts(key)
+    if not (parts and _encodable(key)):
+        raise _refuse(key or "settings", "is not of the form key.path.", 'Write e.g. {"speed.to": "200 Hz"}.')
+    copy = dict(data)
+    return copy, _insert(copy, parts, value, ())
+
+
+def _parts(key: str) -> list[str]:
+    """The parts of a dotted key, none if it is no such."""
+    parts = [part.strip() for part in key.split(".")]
+    return parts if all(parts) and len(parts) <= DEEPEST_KEY else []
+
+
+def _value(text: str) -> Any:
+    try:
+        parsed = parse(f"value = {text}")
+    except TomlFault:
+        return text.strip()
+    return parsed["value"] if len(parsed) == 1 else text.strip()
+
+
+def _encodable(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:  # bytes of a command line that are no UTF-8
+        return False
+    return True
+
+
+def _insert(table: dict[str, Any], parts: list[str], value: Any, above: Path) -> Path:
+    """Set a value in `table`, copying every table on the way; the path that was set."""
+    head, *rest = parts
+    path: Path = (*above, head)
+    if not rest and value is None:
+        table.pop(head, None)
+        return path
+    if not rest:
+        table[head] = value
+        return path
+    inner = table.get(head, {})
+    if isinstance(inner, list):
+        index = _index(inner, rest, path)
+        table[head] = inner = list(inner)
+        inner[index] = dict(inner[index])
+        return _insert(inner[index], rest[1:], value, (*path, index))
+    if not isinstance(inner, dict):
+        whole = ".".join(map(str, path))
+        raise _refuse(f"{whole}.{'.'.join(rest)}", f"is set inside {whole}, which is not a table.", f"Set {whole}.")
+    table[head] = inner = dict(inner)
+    return _insert(inner, rest[1:] if rest[0] == "0" and len(rest) > 1 else rest, value, path)
+
+
+def _index(tables: list[Any], rest: list[str], path: Path) -> int:
+    """The index that leads into an array of tables, and is followed by a key."""
+    if len(rest) > 1 and _INDEX.fullmatch(rest[0]) and int(rest[0]) < len(tables):
+        index = int(rest[0])
+        if isinstance(tables[index], dict):
+            return index
+    whole = ".".join(map(str, path))
+    problem = f"does not say which of the {len(tables)} tables of {whole} is meant."
+    raise _refuse(f"{whole}.{'.'.join(rest)}", problem, f"Count from 0, e.g. {whole}.0.{rest[-1]}.")
+
+
+def _refuse(key: str, problem: str, remedy: str) -> TomlFault:
+    return TomlFault(Fault(key, "", None, problem, remedy))

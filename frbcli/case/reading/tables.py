@@ -1,0 +1,44 @@
+"""The tables of a case file as the user wrote them, and the breaches that the rules find in them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from frbcli.case.reading.lines import Path
+from frbcli.units import ValueFault, quantity
+
+
+@dataclass(frozen=True)
+class Breach:
+    """A rule that is broken: the key to change, the problem, and the remedy."""
+
+    path: Path
+    problem: str
+    remedy: str
+
+
+def tables(data: Mapping[str, Any], key: str) -> list[tuple[Path, dict[str, Any]]]:
+    """The tables of [key] or [[key]] with their paths."""
+    found = data.get(key)
+    if isinstance(found, dict):
+        return [((key,), found)]
+    many = enumerate(found) if isinstance(found, list) else ()
+    return [((key, index), item) for index, item in many if isinstance(item, dict)]
+
+
+def table(data: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The table [key], empty if there is none."""
+    found = data.get(key)
+    return found if isinstance(found, dict) else {}
+
+
+def number(values: Mapping[str, Any], key: str, unit: str, default: float | None = None) -> float | None:
+    """The SI value of a key; `default` where it is absent, None where it cannot be read."""
+    if key not in values:
+        return default
+    try:
+        return quantity(values[key], unit)
+    except ValueFault:
+        return None

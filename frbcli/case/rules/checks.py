@@ -1,0 +1,166 @@
+"""Rules that tie several keys of a case together.
+
+They read the tables as the user wrote them, so that they also work when another key is at fault. A rule is skipped if
+one of its values is absent or cannot be read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from frbcli.case.oil import ATMOSPHERE
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.case.rules.element_checks import element_breaches, has_films
+from frbcli.case.rules.film_checks import film_breaches, law_breaches
+from frbcli.case.rules.plausible import implausible
+from frbcli.case.rules.thermal_checks import thermal_breaches
+from frbcli.case.schema import DEFAULT_HOLD, OUTPUT_STEP
+from frbcli.units import NUMBER, display
+
+__all__ = ["Breach", "breaches"]
+
+MOST_SAMPLES = 20_000_000
+
+
+def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of a case's tables."""
+    yield from implausible(data)
+    bearings = tables(data, "bearing")
+    if data.get("bearing") == []:
+        yield Breach(("bearing",), "is empty.", "Add the table [bearing].")
+    yield from _oil(data)
+    if "oil" not in data and has_films(data):
+        yield Breach(("oil",), "is missing.", "Add the table [oil].")
+    yield from element_breaches(data)
+    yield from thermal_breaches(data)
+    for path, bearing in bearings:
+        for film_path, film in _films(path, bearing):
+            yield from film_breaches(film_path, film, data)
+        yield from _ring(path, bearing)
+    yield from _names("bearing", bearings)
+    yield from _names("disk", tables(data, "disk"))
+    yield from _rotor(data, bearings)
+    yield from _run(data)
+    yield from _motion(table(data, "motion"))
+    for key in ("rotor", "speed"):
+        if key not in data and "motion" not in data:
+            yield Breach((key,), "is missing.", f"Add the table [{key}].")
+
+
+def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
+    oil = data.get("oil")
+    if not isinstance(oil, dict):
+        return
+    constant = "viscosity" in oil and not isinstance(oil["viscosity"], dict) and "vogel" not in oil
+    if "viscosity" in oil and "vogel" in oil:
+        yield Breach(("oil", "vogel"), "gives the viscosity a second time.", "Keep viscosity or vogel.")
+    if "viscosity" not in oil and "vogel" not in oil:
+        yield Breach(("oil", "viscosity"), "is missing.", 'Add e.g. viscosity = "12 mPa*s" to [oil].')
+    elif not constant and "temperature" not in oil and "thermal" not in data:
+        needs = "Vogel's law needs it" if "vogel" in oil else "the viscosity of a grade needs it"
+        yield Breach(("oil", "temperature"), f"is missing; {needs}.", 'Add e.g. temperature = "100 degC".')
+    for key in ("temperature", "shear_factor"):
+        if key in oil and constant:
+            problem = "has no effect: the viscosity is constant."
+            yield Breach(("oil", key), problem, "Remove it, or give oil.vogel in place of the viscosity.")
+    yield from law_breaches(oil, number(oil, "temperature", "K"), ("oil", "temperature"))
+    ambient, cavitation = number(oil, "ambient_pressure", "Pa", ATMOSPHERE), number(oil, "cavitation_pressure", "Pa")
+    if ambient and cavitation and cavitation > ambient:
+        problem = f"is {display(cavitation, 'Pa')}, above the ambient pressure of {display(ambient, 'Pa')}."
+        yield Breach(("oil", "cavitation_pressure"), problem, "Pressures are absolute; lower it, or leave it away.")
+
+
+def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    inner, outer = (number(table(bearing, side), "diameter", "m") for side in ("inner", "outer"))
+    if inner and outer and inner >= outer:
+        problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
+        yield Breach((*path, "inner", "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
+
+
+def _names(what: str, named: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
+    seen: set[str] = set()
+    for place, (path, part) in enumerate(named, start=1):
+        name = part.get("name", str(place))
+        if isinstance(name, str) and name in seen:
+            yield Breach((*path, "name"), f"is also the name of another {what}.", f"Give each {what} its own name.")
+        seen.add(str(name) if isinstance(name, str) else "")
+
+
+def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
+    kind = table(data, "rotor").get("kind")
+    if kind == "turbocharger":
+        if not data.get("shaft") and "file" not in table(data, "rotor"):
+            yield Breach(("shaft",), "is missing.", "Add [[shaft]] sections with length and diameter, or rotor.file.")
+        if {"modes", "cutoff"} <= set(table(data, "rotor")):
+            yield Breach(("rotor", "cutoff"), "is given beside modes.", "Keep one of the two.")
+        if len(bearings) < 2:
+            yield Breach(("bearing",), "is given once; a turbocharger rotor needs two.", "Write [[bearing]] twice.")
+        for path, bearing in bearings:
+            if "position" not in bearing:
+                yield Breach((*path, "position"), "is missing.", 'Add e.g. position = "80 mm".')
+        yield from _on_shaft(data, bearings)
+    elif kind in ("rigid", "jeffcott"):
+        for key in ("shaft", "disk"):
+            if key in data:
+                yield Breach((key,), f"does not go with a {kind} rotor.", 'Remove it, or take kind = "turbocharger".')
+
+
+def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
+    for path, section in tables(data, "shaft"):
+        outer, inner = (number(section, key, "m", 0.0) for key in ("diameter", "inner_diameter"))
+        if outer and inner and inner >= outer:
+            yield Breach((*path, "inner_diameter"), f"leaves no shaft of {display(outer, 'm')}.", "Make it smaller.")
+    for path, disk in tables(data, "disk"):
+        polar, diametral = (number(disk, f"{axis}_inertia", "kg*m^2", 0.0) for axis in ("polar", "diametral"))
+        if polar and diametral is not None and polar > 2 * diametral * (1 + 1e-9):
+            problem = "is more than twice the diametral inertia, which is not possible."
+            yield Breach((*path, "polar_inertia"), problem, "Exchange or correct the two.")
+    lengths = [number(section, "length", "m") for _, section in tables(data, "shaft")]
+    if not lengths or None in lengths:
+        return
+    total = sum(length for length in lengths if length is not None)
+    for path, part in (*bearings, *tables(data, "disk")):
+        position = number(part, "position", "m")
+        if position is not None and not 0 <= position <= total * (1 + 1e-9):
+            problem = f"is {display(position, 'm')}, not on the shaft of {display(total, 'm')}."
+            yield Breach((*path, "position"), problem, "Positions count from the start of the first section.")
+
+
+def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
+    contact, start, speed = table(data, "contact"), table(data, "start"), table(data, "speed")
+    if contact.get("policy") == "elastic" and "stiffness" not in contact:
+        yield Breach(("contact", "stiffness"), "is missing; elastic contact needs it.", 'Add stiffness = "1e8 N/m".')
+    displacement = start.get("displacement")
+    if isinstance(displacement, list) and len(displacement) == 2:
+        x, y = (number({"": item}, "", NUMBER) for item in displacement)
+        if x is not None and y is not None and math.hypot(x, y) >= 1:
+            yield Breach(("start", "displacement"), "is outside the clearance.", "Its length must be below 1.")
+    if "displacement" in start and "position" in start:
+        yield Breach(("start", "position"), "is given beside a displacement.", "Keep one of the two.")
+    duration, step = number(speed, "duration", "s"), number(table(data, "output"), "step", "s", OUTPUT_STEP)
+    if not duration or not step or min(duration, step) < 0:
+        return
+    if step >= duration:
+        problem = f"is {display(step, 's')}, not below the duration of {display(duration, 's')}."
+        yield Breach(("output", "step"), problem, "Shorten the step.")
+    whole = duration + (number(speed, "hold", "s", DEFAULT_HOLD) or 0.0)
+    whole += number(speed, "down_duration", "s", duration) or 0.0
+    if whole / step > MOST_SAMPLES:
+        problem = f"makes {whole / step:.3g} samples of one run."
+        yield Breach(("output", "step"), problem, "Lengthen it, or shorten the run.")
+
+
+def _motion(motion: Mapping[str, Any]) -> Iterator[Breach]:
+    if "load" in motion and "eccentricity" in motion:
+        yield Breach(("motion", "load"), "is given beside an eccentricity.", "Keep one of the two.")
+
+
+def _films(path: Path, bearing: dict[str, Any]) -> Iterator[tuple[Path, dict[str, Any]]]:
+    if bearing.get("kind") == "single-film":
+        yield path, bearing
+    if bearing.get("kind") == "floating-ring":
+        for side in ("inner", "outer"):
+            yield (*path, side), table(bearing, side)

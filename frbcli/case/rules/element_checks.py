@@ -1,0 +1,90 @@
+"""Rules that tie the keys of elements without a film together, and those of cases without any film. See checks.py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from frbcli.case.elements import EMPTY_MATRIX
+from frbcli.case.reading.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach, number, table, tables
+
+GIVEN = ("stiffness", "damping", "mass")
+REMEDY = "Remove it, or add a bearing with a film."
+# Keys that say how films are computed, recorded or touched.
+OF_FILMS = (
+    ("film",), ("thermal",), ("contact",), ("accuracy", "mesh"), ("output", "signals"), ("start", "displacement"),
+)  # fmt: skip
+
+
+def has_films(data: Mapping[str, Any]) -> bool:
+    """Whether a bearing of the tables may have a film: of what cannot be read, it may."""
+    found = tables(data, "bearing")
+    return not found or any(bearing.get("kind") != "coefficients" for _, bearing in found)
+
+
+def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of elements without a film."""
+    for path, bearing in tables(data, "bearing"):
+        if bearing.get("kind") == "coefficients":
+            yield from _coefficients(path, bearing)
+    if has_films(data):
+        return
+    for place in OF_FILMS:
+        holder = data if len(place) == 1 else table(data, place[0])
+        if place[-1] in holder:
+            yield Breach(place, "has no effect: no bearing has a film.", REMEDY)
+    if "motion" in data:
+        yield Breach(("motion",), "is a kinematic test of a film, and no bearing has one.", REMEDY)
+
+
+def _coefficients(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    given = [key for key in GIVEN if key in bearing]
+    if "over_speed" in bearing:
+        if given:
+            problem = f"is given beside {' and '.join(given)}."
+            yield Breach((*path, "over_speed"), problem, "Keep the table over speed, or the constant coefficients.")
+        yield from _over_speed((*path, "over_speed"), table(bearing, "over_speed"))
+    elif not given and "file" not in bearing:
+        remedy = 'Add e.g. stiffness = [["1e6 N/m", "0 N/m"], ["0 N/m", "1e6 N/m"]], or file = "seal.csv".'
+        yield Breach((*path, "stiffness"), "is missing, and so are damping, mass and file.", remedy)
+    mass = _matrix(bearing.get("mass"))
+    if mass is not None and is_negative(mass):
+        problem = "is negative in some direction: no body has such a kinetic energy."
+        yield Breach((*path, "mass"), problem, "Give a symmetric matrix with positive entries on its diagonal.")
+
+
+def _matrix(given: object) -> tuple[float, ...] | None:
+    """The entries of a mass matrix, None if it cannot be read; one quantity is that of both directions."""
+    if given is None:
+        return tuple(entry for row in EMPTY_MATRIX for entry in row)
+    if isinstance(given, list | tuple) and len(given) == 2 and all(isinstance(r, list | tuple) for r in given):
+        found = [number({"": entry}, "", "kg") for row in given for entry in row]
+    else:
+        found = [number({"": given}, "", "kg"), 0.0, 0.0, number({"": given}, "", "kg")]
+    known = tuple(entry for entry in found if entry is not None)
+    return known if len(known) == len(found) == 4 else None
+
+
+def _over_speed(path: Path, values: Mapping[str, Any]) -> Iterator[Breach]:
+    lengths = column_lengths(values)
+    count = lengths.get("speed", 0)
+    for name, length in lengths.items():
+        if length != count:
+            yield Breach((*path, name), f"has {length} values at {count} speeds.", "Give one at each speed.")
+    if "speed" in values and not count:
+        yield Breach((*path, "speed"), "is empty.", "Give the speeds in ascending order.")
+    given = [name for name in MASSES if name in values]
+    if 0 < len(given) < len(MASSES):
+        missing = next(name for name in MASSES if name not in values)
+        yield Breach((*path, missing), "is missing beside the other masses.", "Give all four of them.")
+    if len(set(lengths.values())) != 1:
+        return
+    speeds = [number({"": value}, "", "Hz") for value in values.get("speed", [])]
+    masses = [[number({"": value}, "", "kg") for value in values[name]] for name in given]
+    if None in speeds or any(None in column for column in masses) or len(given) not in (0, len(MASSES)):
+        return
+    problem = over_speed_problem([s or 0.0 for s in speeds], [[m or 0.0 for m in column] for column in masses])
+    if problem:
+        yield Breach((*path, "speed" if "ascend" in problem else "mxx"), problem, "Correct it.")

@@ -1,0 +1,196 @@
+"""Validation errors of the models, as faults with a remedy in the terms of the case file."""
+
+from __future__ import annotations
+
+import copy
+import difflib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import Count, Quantity
+from frbcli.case.reading.lines import Path
+from frbcli.case.rules.checks import Breach
+from frbcli.case.schema import Case
+from frbcli.units import ValueFault
+
+_FORMS = {
+    "string_type": ("is not text.", "Write it in quotes."),
+    "string_unicode": ("is not text.", "Write plain letters."),
+    "model_type": ("is not a table.", "Write its keys below a header in brackets."),
+    "model_attributes_type": ("is not a table.", "Write its keys below a header in brackets."),
+    "tuple_type": ("is not a list.", "Write it in brackets: [ , ]."),
+    "too_short": ("has too few entries.", "Add what is missing."),
+    "too_long": ("has too many entries.", "Remove the surplus."),
+}
+
+
+# Keys that take names which are added from Python, and the functions that add them.
+OWN: dict[Path, str] = {("film", "theory"): "frbcli.add_bearing", ("film", "cavitation"): "frbcli.add_law"}
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where an error belongs: the model that owns the key, and the field of the key if there is one."""
+
+    models: tuple[type[Model], ...]
+    field: FieldInfo | None
+
+
+def objections(error: ValidationError, data: dict[str, Any]) -> Iterator[Breach]:
+    """Each error of the models in `data`, with the path of its key in the file."""
+    for detail in error.errors(include_url=False):
+        path = _path(detail["loc"], data)
+        if detail["type"] != "missing" and not is_present(path, data):
+            continue  # a value that was taken over from another key, which has the same fault
+        yield _breach(path, detail["loc"], detail["type"], {"input": detail["input"], **detail.get("ctx", {})})
+
+
+def with_nearest_kinds(error: ValidationError, data: dict[str, Any]) -> dict[str, Any]:
+    """`data` with each misspelt `kind` replaced by the nearest known, so that the rest of its table is read, too."""
+    guess = copy.deepcopy(data)
+    for detail in error.errors(include_url=False):
+        if detail["type"] != "union_tag_invalid":
+            continue
+        table: Any = guess
+        for element in _path(detail["loc"], data):
+            table = table[element]
+        close = _close(str(detail["ctx"]["tag"]), _kinds(detail["loc"]))
+        table["kind"] = close or table["kind"]
+    return guess
+
+
+def is_present(path: Path, data: Any) -> bool:
+    """Whether `data`, nested tables and lists, has something at `path`."""
+    for element in path:
+        if isinstance(element, int):
+            if not isinstance(data, list) or element >= len(data):
+                return False
+        elif not isinstance(data, dict) or element not in data:
+            return False
+        data = data[element]
+    return True
+
+
+def _path(loc: Sequence[str | int], data: Any) -> Path:
+    """The path in the file; the models' own additions to it (the kind of a table, index 0 of a single one) left out."""
+    path: Path = ()
+    kind_seen = False
+    for element in loc:
+        if isinstance(element, str) and element.startswith("("):
+            continue
+        if isinstance(data, dict):
+            if isinstance(element, int):
+                continue
+            if not kind_seen and element == data.get("kind"):
+                kind_seen = True
+                continue
+        if isinstance(element, int) and isinstance(data, str | int | float):
+            continue  # one quantity that stands for a matrix
+        path = (*path, element)
+        kind_seen = False
+        data = data[element] if is_present((element,), data) else None
+    return path
+
+
+def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, Any]) -> Breach:
+    cause = context.get("error")
+    if isinstance(cause, ValueFault):
+        return Breach(path, cause.problem, cause.remedy)
+    if kind == "missing":
+        return Breach(path, "is missing.", _how_to_add(path, _place(loc).field))
+    if kind == "extra_forbidden":
+        return Breach(path, "is not known here.", _nearest(str(loc[-1]), _place(loc[:-1]).models))
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        problem = "is missing." if kind == "union_tag_not_found" else "is not known here."
+        return Breach((*path, "kind"), problem, _one_of(str(context.get("tag", "")), _kinds(loc)))
+    if kind == "literal_error":
+        remedy = _one_of(str(context["input"]), _choices(_place(loc).field))
+        if path in OWN:
+            remedy += f" One of your own is added in this process before the case is read: {OWN[path]}."
+        return Breach(path, "is not known here.", remedy)
+    field = _place(loc).field
+    if kind == "tuple_type" and field is not None and _parts(field.annotation, Model):
+        kind = "model_type"
+    return Breach(path, *_FORMS.get(kind, ("has the wrong form.", "`frb schema` prints what a case holds.")))
+
+
+def _place(loc: Sequence[str | int]) -> _Place:
+    models: tuple[type[Model], ...] = (Case,)
+    field: FieldInfo | None = None
+    for element in loc:
+        if isinstance(element, int) or element.startswith("("):
+            continue
+        if len(models) > 1:  # a table of several kinds, and this is its kind
+            models = tuple(model for model in models if element in _choices(model.model_fields.get("kind")))
+            continue
+        fields = {key: field for model in models for key, field in _fields(model).items()}
+        field = fields.get(element)
+        models = _parts(field.annotation, Model) if field else ()
+    return _Place(models, field)
+
+
+def _fields(model: type[Model]) -> dict[str, FieldInfo]:
+    """The fields of `model` by their keys in the file."""
+    return {field.alias or name: field for name, field in model.model_fields.items()}
+
+
+def _parts(annotation: Any, base: type[Any]) -> tuple[Any, ...]:
+    """What of `base` an annotation is made of: subclasses of it, or instances of it."""
+    if isinstance(annotation, base) or (isinstance(annotation, type) and issubclass(annotation, base)):
+        return (annotation,)
+    return tuple(part for argument in get_args(annotation) for part in _parts(argument, base))
+
+
+def _choices(field: FieldInfo | None) -> list[str]:
+    if field is None:
+        return []
+    annotation = field.annotation
+    literals = [annotation] if get_origin(annotation) is Literal else list(get_args(annotation))
+    return [str(name) for literal in literals if get_origin(literal) is Literal for name in get_args(literal)]
+
+
+def _kinds(loc: Sequence[str | int]) -> list[str]:
+    return [name for model in _place(loc).models for name in _choices(model.model_fields.get("kind"))]
+
+
+def _example(field: FieldInfo | None) -> str:
+    """An example of a value as it stands in a file, or nothing."""
+    if field is None:
+        return ""
+    for kind in (Quantity, Count):
+        for example in (*field.metadata, *_parts(field.annotation, kind)):
+            if isinstance(example, kind):
+                return example.written_example()
+    choices = _choices(field)
+    return f'"{choices[0]}"' if choices else ""
+
+
+def _how_to_add(path: Path, field: FieldInfo | None) -> str:
+    if isinstance(path[-1], int):
+        return "Give as many values as it has directions."
+    example = _example(field)
+    if example:
+        return f"Add e.g. {path[-1]} = {example}."
+    header = ".".join(part for part in path if isinstance(part, str))
+    return f"Add the table [{header}]."
+
+
+def _nearest(key: str, models: Sequence[type[Model]]) -> str:
+    known = [name for model in models for name in _fields(model)]
+    close = _close(key, known)
+    return f'Did you mean "{close}"?' if close else f"Known are: {', '.join(known)}."
+
+
+def _one_of(found: str, choices: Sequence[str]) -> str:
+    close = _close(found, choices)
+    return f'Did you mean "{close}"?' if close else f"Write one of: {', '.join(choices)}."
+
+
+def _close(found: str, choices: Sequence[str]) -> str:
+    """The choice nearest to what was found, or nothing."""
+    return next(iter(difflib.get_close_matches(found, choices, n=1, cutoff=0.6)), "")

@@ -1,0 +1,1 @@
+"""Equations of equilibria and cycles, their continuation and stability."""

@@ -1,0 +1,107 @@
+"""A cycle to begin with where the speed range has no Hopf point: the rotor whirls at all of its speeds.
+
+The springs and dashpots kappa beside the films (machine.py) are left there in the share a. With enough of them the
+rotor rests; as a falls a whirl is born at a Hopf point in a, and its cycles are followed to a = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.branch import FIRST_HARMONICS, STRIDES, Follower, at_speed, largest, resized_like
+from frbcli.cycles.method.balance import packed
+from frbcli.cycles.method.continuation import Place, Strides, corrected, follow, halved_until, next_length, unit_vector
+from frbcli.cycles.method.equilibria import OSCILLATING, Equilibrium
+from frbcli.cycles.parts.linearised import StateSpace, state_space
+from frbcli.cycles.parts.machine import Machine, film_loads, transfer
+from frbcli.rotor.order import fastest_first, first_largest
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+RISE = Strides(first=0.02, shortest=1e-6, longest=0.2, points=400)
+MOST = 50.0  # share up to which springs and dashpots are added
+HALVINGS = 40
+
+
+def seed_cycle(machine: Machine, resting: Equilibrium) -> Array | None:
+    """A cycle, see balance.py, at the speed of an unstable resting position; None if none was found."""
+    hopf = _stabilised(machine, resting)
+    if hopf is None:
+        return None
+    follower, place, length = Follower(machine, 0.0, 0.0, omega=resting.omega), hopf, STRIDES.first
+    for _ in range(STRIDES.points):
+        found, length = halved_until(partial(follower.stepped, place), length, STRIDES.shortest)
+        if found is None or largest(machine, found.y) > 1.0:
+            return None
+        if found.y[-1] <= 0.0:
+            there = at_speed(follower, place, found, 0.0)
+            return None if there is None else follower.as_cycle(there.y)
+        length = next_length(length, STRIDES, resized_like(place, found, machine.size), found)
+        place = found
+    return None
+
+
+def _stabilised(machine: Machine, resting: Equilibrium) -> Place | None:
+    """The Hopf point in a, as the place of a cycle of no size that is followed down in a."""
+    space, ask = state_space(machine), _equations(machine, resting.omega)
+    along = unit_vector(machine.size + 1)
+    low = corrected(ask, np.append(resting.u, 0.0), along)
+    if low is None:
+        return None
+    for high, _ in follow(ask, low, RISE):
+        if high.y[-1] > MOST:
+            return None
+        if _critical(machine, space, high.y, resting.omega)[0].real < 0.0:
+            break
+        low = high
+    else:
+        return None
+    ends = [low.y, high.y]
+    for _ in range(HALVINGS):
+        found = corrected(ask, 0.5 * (ends[0] + ends[1]), along)
+        if found is None:
+            return None
+        ends[_critical(machine, space, found.y, resting.omega)[0].real < 0.0] = found.y
+    value, mode = _critical(machine, space, ends[0], resting.omega)
+    motion, tangent = (np.zeros((FIRST_HARMONICS + 1, machine.size), dtype=complex) for _ in range(2))
+    motion[0], tangent[1] = ends[0][:-1], mode
+    y = np.concatenate([packed(motion), [value.imag / machine.pace, ends[0][-1]]])
+    direction = np.concatenate([packed(tangent), [0.0, 0.0]])
+    return Place(y, direction / np.linalg.norm(direction))
+
+
+def _equations(machine: Machine, omega: float) -> Callable[[Array], tuple[Array, Array]]:
+    """Those of a resting position y = (u, a) at a speed, see equilibria.py."""
+    passing = transfer(machine, np.zeros(1), omega)
+    through, kappa = passing.values[0].real, passing.kappa[0].real
+    on_films = np.arange(machine.size) < 2 * machine.film_count
+
+    def at(y: Array) -> tuple[Array, Array]:
+        u, left = y[:-1], np.where(on_films, 1.0 - y[-1], 1.0)
+        loads = film_loads(machine, u[None], np.zeros((1, len(u))), omega)
+        residual = u - through @ (loads.values[0] + left * kappa * u) - machine.rest
+        slope = np.eye(len(u)) - through @ (loads.by_u[0] + np.diag(left * kappa))
+        return residual, np.column_stack([slope, through @ (on_films * kappa * u)])
+
+    return at
+
+
+def _critical(machine: Machine, space: StateSpace, y: Array, omega: float) -> tuple[complex, Complex]:
+    """The oscillating eigenvalue with the largest real part at a resting position (u, a), and its mode (c,)."""
+    loads = film_loads(machine, y[None, :-1], np.zeros((1, machine.size)), omega)
+    spring, dashpot = np.zeros(machine.size), np.zeros(machine.size)
+    spring[: 2 * machine.film_count] = np.repeat(machine.spring, 2)
+    dashpot[: 2 * machine.film_count] = np.repeat(machine.dashpot, 2)
+    by_u, by_v = loads.by_u[0] - y[-1] * np.diag(spring), loads.by_v[0] - y[-1] * np.diag(dashpot)
+    values, vectors = np.linalg.eig(space.matrix(omega, by_u, by_v))
+    oscillating = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
+    if not len(oscillating):
+        return complex(-1.0, 0.0), np.zeros(machine.size, dtype=complex)
+    own = oscillating[fastest_first(values[oscillating])[0]]
+    mode = space.read @ vectors[:, own]
+    return complex(values[own]), np.asarray(mode / mode[first_largest(mode[: 2 * machine.film_count])])

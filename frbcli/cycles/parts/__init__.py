@@ -1,0 +1,1 @@
+"""The machine as the equations of cycles take it."""

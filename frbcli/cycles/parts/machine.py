@@ -1,0 +1,267 @@
+"""A machine as limit cycles see it: a linear rotor behind its films, and what the films put on it.
+
+The films see the rotor only through its journals and rings. Of all that a motion is made of, u = (d, s) is kept: the
+displacements d of the journals over the clearance, two for each film, and the speeds s of the rings over a fixed speed.
+For a harmonic u_k exp(i k nu t) and the loads g_k of the films,
+
+    u_k = T_k (g_k + kappa_k u_k) + rest (k = 0),      T_k = P Z_k^-1 P^T m,
+    Z_k = K - (k nu)^2 M + i k nu (D + Omega G) + P^T m kappa_k P,
+
+is exact, however many degrees of freedom the rotor has. kappa is a spring and a dashpot beside each film, added on both
+sides: without it a free rotor could not be solved for k = 0, nor near its free natural frequencies.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.parts.film_samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
+from frbcli.cycles.parts.films import smooth_films
+from frbcli.cycles.parts.rotor_parts import Part, parts_of
+from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.rectangles.film_force import FilmData
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.ring import without_spins
+from frbcli.scene.films import ROTOR
+from frbcli.scene.machine.system import System
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+NEAR = 0.1  # eccentricity at which the dashpots beside the films are taken from these
+
+
+class OutOfGap(Unreachable):
+    """A motion leaves the gap of a film, where its force ends."""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """F films, R rings that turn, c = 2 F + R coordinates u.
+
+    rotor: without the angles of its rings; films, clearances (F,) m; pace: rad/s, by which the rings' speeds and the
+    frequency are divided; spring, dashpot: (F,) N and N s per displacement over the clearance; turning: (F, 2, 1 + R)
+    shares of the speeds of rotor and rings in omega_J + omega_S and omega_J - omega_S; bodies: see System; drags: (F,)
+    N m s; moment: 1 if the moments of the film forces turn the rings, else 0; inertia: (R,) s, of the rings over the
+    Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
+    rotor as transfer takes it, see rotor_parts.py.
+    """
+
+    rotor: LinearRotor
+    films: tuple[FilmData, ...]
+    names: tuple[str, ...]
+    clearances: Array
+    pace: float
+    spring: Array
+    dashpot: Array
+    turning: Array
+    bodies: NDArray[np.int64]
+    drags: Array
+    moment: float
+    inertia: Array
+    held: Array
+    parts: tuple[Part, ...]
+
+    @property
+    def film_count(self) -> int:
+        """F."""
+        return len(self.films)
+
+    @property
+    def ring_count(self) -> int:
+        """R."""
+        return len(self.inertia)
+
+    @property
+    def size(self) -> int:
+        """c."""
+        return 2 * self.film_count + self.ring_count
+
+    @cached_property
+    def rest(self) -> Array:
+        """(c,): u at rest without films but on kappa."""
+        return _moved_by(self, 0, 0.0).real
+
+    @property
+    def places(self) -> Array:
+        """(2 F, n): the displacements of the journals over the clearance."""
+        return self.rotor.journals.reshape(-1, self.rotor.size) / np.repeat(self.clearances, 2)[:, None]
+
+    @property
+    def pulls(self) -> Array:
+        """(n, 2 F): what the forces of the films put on the rotor."""
+        return self.rotor.journals.reshape(-1, self.rotor.size).T * np.repeat(self.rotor.multiplicity, 2)
+
+
+@dataclass(frozen=True)
+class Loads:
+    """What the films put on journals (N) and rings (N m over `held` and the pace) at n moments.
+
+    values: (n, c); by_u, by_v: (n, c, c) derivatives by u and by its rate in 1/s (that by the rate of a ring's speed is
+    zero); by_speed: (n, c) by the speed of the rotor in rad/s; drive: (n,) N m that turns the rotor against its films.
+    """
+
+    values: Array
+    by_u: Array
+    by_v: Array
+    by_speed: Array
+    drive: Array
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """T of harmonics at m frequencies: values (m, c, c), derivatives by their frequency and by Omega; kappa: (m, c),
+    and its derivative by the frequency."""
+
+    values: Complex
+    by_frequency: Complex
+    by_speed: Complex
+    kappa: Complex
+    kappa_by_frequency: Complex
+
+
+def make_machine(system: System, top: float) -> Machine:
+    """The machine of a system. top: largest speed of the rotor, rad/s."""
+    films = smooth_films(system)
+    drags = np.array(system.drags)
+    held = np.zeros(system.ring_count)
+    for ring in range(system.ring_count):
+        held[ring] = 2.0 * math.pi * drags[np.any(system.bodies == ring, axis=1)].sum()
+    inertia = system.rotor.mass[list(system.spins), list(system.spins)]
+    at, still, speed = np.array([[NEAR, 0.0]]), np.zeros((1, 2)), np.array([top])
+    damping = [-0.5 * np.sum(film_samples(film, at, still, speed)[0, [BY_V, BY_V + 3]]) for film in films]
+    machine = Machine(
+        rotor=without_spins(system.rotor, system.ring_count),
+        films=films,
+        names=system.names,
+        clearances=np.array(system.clearances),
+        pace=top,
+        spring=0.5 * top * np.array(damping),
+        dashpot=np.array(damping),
+        turning=system.turning[:, :2],
+        bodies=system.bodies,
+        drags=drags,
+        moment=1.0 if system.torque == "all" else 0.0,
+        inertia=inertia / held,
+        held=held,
+        parts=(),
+    )
+    return replace(machine, parts=_parts(machine))
+
+
+def _parts(machine: Machine) -> tuple[Part, ...]:
+    rotor, shapes, pulls = machine.rotor, machine.places, machine.pulls
+    springs = pulls @ (np.repeat(machine.spring, 2)[:, None] * shapes)
+    dashpots = pulls @ (np.repeat(machine.dashpot, 2)[:, None] * shapes)
+    loads = np.column_stack([pulls, rotor.static_load, 0.5 * rotor.unbalance])
+    return parts_of(rotor, springs, dashpots, shapes, loads)
+
+
+def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
+    """Loads of the films at n moments. u: (n, c); v: (n, c) its rate in 1/s; omega: speed of the rotor in rad/s.
+
+    Raises OutOfGap where a journal leaves the gap.
+    """
+    n, c, films = len(u), machine.size, machine.film_count
+    d = u[:, : 2 * films].reshape(n, films, 2)
+    if not np.all(np.sum(d**2, axis=2) < LARGEST_ECCENTRICITY**2):
+        raise OutOfGap
+    speeds = np.column_stack([np.full(n, omega), machine.pace * u[:, 2 * films :]])
+    values, by_u, by_v = np.zeros((n, c)), np.zeros((n, c, c)), np.zeros((n, c, c))
+    by_speed, drive = np.zeros((n, c)), np.zeros(n)
+    for f, film in enumerate(machine.films):
+        own = slice(2 * f, 2 * f + 2)
+        shares = machine.turning[f, 0]
+        found = film_samples(film, np.ascontiguousarray(d[:, f]), np.ascontiguousarray(v[:, own]), speeds @ shares)
+        by_omega = found[:, BY_OMEGA:]
+        values[:, own] = found[:, FORCE:BY_D]
+        by_u[:, own, own] = found[:, BY_D:BY_V].reshape(n, 2, 2)
+        by_v[:, own, own] = found[:, BY_V:BY_OMEGA].reshape(n, 2, 2)
+        by_u[:, own, 2 * films :] = machine.pace * by_omega[:, :, None] * shares[1:]
+        by_speed[:, own] = by_omega * shares[0]
+    loads = Loads(values, by_u, by_v, by_speed, drive)
+    _add_torques(machine, d, speeds, loads)
+    return loads
+
+
+def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> None:
+    """The torques (4.17) on the rings over `held` and the pace, and on the rotor: Couette's term against the slip, and
+    half of the moment of the film's force."""
+    first = 2 * machine.film_count
+    for f in range(machine.film_count):
+        own, c = slice(2 * f, 2 * f + 2), machine.clearances[f]
+        inside, outside = machine.bodies[f]
+        if inside < 0 and outside < 0 and inside != ROTOR:
+            continue
+        shares = machine.turning[f, 1]
+        factor, by_d = drag_factor(d[:, f])
+        slip = speeds @ shares
+        couette = -machine.drags[f] * factor * slip
+        force = loads.values[:, own]
+        x, y = d[:, f, 0], d[:, f, 1]
+        half = -0.5 * machine.moment * c
+        moment = half * (x * force[:, 1] - y * force[:, 0])
+        if inside == ROTOR:
+            loads.drive[:] -= couette + moment
+        for body, sign in ((inside, 1.0), (outside, -1.0)):
+            if body < 0:
+                continue
+            row, scale = first + body, 1.0 / (machine.held[body] * machine.pace)
+            loads.values[:, row] += scale * (sign * couette + moment)
+            for column, by in ((loads.by_u[:, row], loads.by_u), (loads.by_v[:, row], loads.by_v)):
+                column += scale * half * (x[:, None] * by[:, own.start + 1] - y[:, None] * by[:, own.start])
+            loads.by_u[:, row, own] += scale * (
+                -sign * machine.drags[f] * slip[:, None] * by_d + half * np.column_stack([force[:, 1], -force[:, 0]])
+            )
+            rate = -scale * sign * machine.drags[f] * factor
+            loads.by_u[:, row, first:] += machine.pace * rate[:, None] * shares[1:]
+            by_speed = loads.by_speed[:, own]
+            loads.by_speed[:, row] += rate * shares[0] + scale * half * (x * by_speed[:, 1] - y * by_speed[:, 0])
+
+
+def transfer(machine: Machine, frequencies: Array, omega: float) -> Transfer:
+    """T of a machine at frequencies (m,) and the speed omega, rad/s; T_k is that at k nu."""
+    own = slice(0, 2 * machine.film_count)
+    rates = (1j * frequencies).astype(complex)
+    s, c = rates[:, None, None], machine.size
+    values = np.zeros((len(s), c, c), dtype=complex)
+    by_frequency, by_speed = np.zeros_like(values), np.zeros_like(values)
+    for part in machine.parts:
+        n, b = part.basis.shape
+        right, left = part.answers(part.dynamic(rates, omega))
+        side_by_side = np.ascontiguousarray(right.transpose(1, 0, 2)).reshape(n, -1)
+        products = (part.matrices[:3].reshape(3 * n, n) @ side_by_side).reshape(3, n, len(s), b)
+        mass, flow, turned = left @ products.transpose(0, 2, 1, 3)
+        by_rate = 2.0 * s * mass + flow + omega * turned
+        values[:, own, own] += part.seen @ (part.basis.T @ right) @ part.given
+        by_frequency[:, own, own] -= part.seen @ (1j * by_rate) @ part.given
+        by_speed[:, own, own] -= part.seen @ (s * turned) @ part.given
+    rings = np.arange(own.stop, c)
+    lag = 1.0 + 1j * np.outer(frequencies, machine.inertia)
+    values[:, rings, rings] = 1.0 / lag
+    by_frequency[:, rings, rings] = -1j * machine.inertia / lag**2
+    kappa, rate = np.ones((len(s), c), dtype=complex), np.zeros((len(s), c), dtype=complex)
+    rate[:, own] = 1j * np.repeat(machine.dashpot, 2)
+    kappa[:, own] = np.repeat(machine.spring, 2) + frequencies[:, None] * rate[:, own]
+    return Transfer(values, by_frequency, by_speed, kappa, rate)
+
+
+def unbalance_motion(machine: Machine, omega: float) -> Complex:
+    """(c,): u of exp(i Omega t) that the unbalance makes without films but on kappa, at the speed omega in rad/s."""
+    return omega**2 * _moved_by(machine, 1, omega)
+
+
+def _moved_by(machine: Machine, load: int, omega: float) -> Complex:
+    """(c,): u without films but on kappa under the static load, 0, at rest, or under the unbalance over Omega^2, 1, at
+    the speed omega in rad/s."""
+    moved = np.zeros(machine.size, dtype=complex)
+    for part in machine.parts:
+        dynamic = part.dynamic(np.array([1j * omega * load]), omega)[0]
+        moved[: 2 * machine.film_count] += part.seen @ (part.basis.T @ np.linalg.solve(dynamic, part.others[:, load]))
+    return moved

@@ -1,0 +1,1 @@
+"""Files on disk: where they may lie, how they are written, what is in them."""

@@ -1,0 +1,121 @@
+"""The container of a run file: an HDF5 file whose user block carries a checksum.
+
+HDF5 allows a block in front of its own data that its readers skip. A run file puts one line of text there: that it is
+a run of frb, how long the HDF5 part is, and its checksum. So a file that was cut short or damaged is recognised before
+the HDF5 library, which trusts its input, looks at it; every other HDF5 program still opens the file.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import zlib
+from io import BufferedReader
+from pathlib import Path
+
+from frbcli.errors import Fault, RunFileError
+from frbcli.results.files import heaps
+from frbcli.results.files.kinds import RUN, RUN_BEGINS
+from frbcli.results.files.place import wrong_place
+from frbcli.results.files.write import written
+
+MAGIC = RUN_BEGINS + b"1 "
+REMEDY = "Free some space and continue with --resume, or choose another place with -o."
+USER_BLOCK = 512  # bytes; the smallest that HDF5 allows
+SIGNATURE = b"\x89HDF\r\n\x1a\n"  # that every HDF5 file begins with
+LARGEST = 8 * 1024**3  # bytes; the longest run that a case may ask for has about half of it
+PIECE = 4 * 1024**2  # bytes of a file that are held at a time
+
+
+def refuse(path: Path, problem: str, remedy: str = "") -> RunFileError:
+    """The error of a `path` that cannot be a run file."""
+    return RunFileError(f"run file {path}", (Fault(key="file", value="", line=None, problem=problem, remedy=remedy),))
+
+
+def seal(content: memoryview) -> bytes:
+    """The user block, (512,) bytes, for `content`: a whole HDF5 file that was made with an empty user block."""
+    body = content[USER_BLOCK:]
+    return _user_block(len(body), zlib.crc32(body))
+
+
+def write_whole(path: Path, content: memoryview) -> None:
+    """Put `content` in place of `path` in one step: a reader of `path` finds either the complete old or new file.
+
+    Raises InputError if the disk or the directory does not take it.
+    """
+    if len(content) > LARGEST:
+        raise refuse(path, f"would be larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step.")
+    with written(path, RUN, REMEDY) as part, part.open("wb") as file:
+        file.write(seal(content))
+        file.write(content[USER_BLOCK:])
+
+
+def open_whole(path: Path) -> BufferedReader:
+    """A run file, open for reading, whose length and checksum are right. Raises RunFileError for anything else.
+
+    The file is read once from end to end, a piece at a time. Whoever holds it open goes on reading this content, also
+    when another run takes its place.
+    """
+    try:
+        if not path.is_file():
+            raise refuse(path, "is not a file." if path.exists() else "does not exist.", "Name a run of frb runup.")
+        file = path.open("rb")
+    except (OSError, ValueError) as error:
+        raise refuse(path, f"cannot be read: {error}.") from error
+    try:
+        _check_seal(path, file)
+    except BaseException as error:
+        file.close()
+        if isinstance(error, OSError):
+            raise refuse(path, f"cannot be read: {error}.") from error
+        raise
+    return file
+
+
+def _check_seal(path: Path, file: BufferedReader) -> None:
+    head, length = file.read(USER_BLOCK), os.fstat(file.fileno()).st_size - USER_BLOCK
+    if not head.startswith(MAGIC):
+        raise refuse(path, "is not a run of frb.", "Name a file that frb runup or frb rundown has written.")
+    if length + USER_BLOCK > LARGEST:
+        raise refuse(path, f"is larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step and run the case again.")
+    whole = head.startswith(_beginning(length)) and file.peek(len(SIGNATURE)).startswith(SIGNATURE)
+    checksum, places = _checksum(file) if whole else (0, [])
+    crowded = len(places) > heaps.MOST
+    if not whole or (head != _user_block(length, checksum) and not crowded):
+        raise refuse(path, "was cut short or changed after frb wrote it.", "Run the case again.")
+    if crowded or not heaps.are_sound(file, USER_BLOCK, USER_BLOCK + length, places):
+        raise refuse(path, "is not a complete run: its texts cannot be found.", "Run the case again.")
+    file.seek(0)
+
+
+def _checksum(file: BufferedReader) -> tuple[int, list[int]]:
+    """The checksum of what follows, and where a collection of texts may begin in it."""
+    checksum, before = 0, b""
+    places: list[int] = []
+    while len(places) <= heaps.MOST and (piece := file.read(PIECE)):
+        checksum = zlib.crc32(piece, checksum)
+        seen = before + piece
+        first = file.tell() - len(seen)
+        places += [first + match.start() for match in re.finditer(heaps.BEGINNING, seen)]
+        before = seen[1 - len(heaps.BEGINNING) :]
+    return checksum, places
+
+
+def _beginning(length: int) -> bytes:
+    return MAGIC + b"length=%d " % length
+
+
+def _user_block(length: int, checksum: int) -> bytes:
+    return (_beginning(length) + b"crc32=%08x\n" % checksum).ljust(USER_BLOCK, b"\0")
+
+
+def check_output(path: Path) -> None:
+    """See that a run can be written to `path`: a new file, or in place of an older run of frb.
+
+    Raises RunFileError for a file that is something else, a missing directory or one without permission to write, or a
+    name that is too long.
+    """
+    if wrong := wrong_place(path, RUN):
+        raise refuse(path, *wrong)
+    if path.exists() and not path.is_file():  # runs are written again and again
+        raise refuse(path, "is not a file.", "Give -o the name of a file.")

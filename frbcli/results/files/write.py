@@ -1,0 +1,78 @@
+"""The one way in which frb writes a file: as a whole beside its place, then moved there in one step.
+
+Whoever reads the place finds either the complete old or the complete new file, also if the process is interrupted or
+killed, or the disk becomes full.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+import shutil
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from frbcli.results.files.kinds import Kind
+from frbcli.results.files.place import TOKEN, part_of, real, refused, wrong_place
+
+REMEDY = "Choose another place with -o."
+
+
+@contextmanager
+def written(path: Path, kind: Kind, remedy: str = REMEDY) -> Iterator[Path]:
+    """Where to write the content of `path`, which takes its place when the block ends.
+
+    If the block raises an error, `path` stays as it was. A device or a pipe is given the content at the end. remedy:
+    for a disk that does not take it. Raises InputError if `path` is not of this kind or cannot be written.
+    """
+    if wrong := wrong_place(path, kind):
+        raise refused(path, *wrong)
+    try:
+        if path.exists() and not path.is_file():
+            with TemporaryDirectory(prefix="frb-") as folder:
+                yield (content := Path(folder) / path.name)
+                _pour(content, path)
+            return
+        with _part(real(path)) as part:
+            yield part
+    except OSError as error:
+        raise refused(path, f"cannot be written: {error.strerror or error}.", remedy) from error
+
+
+def write(path: Path, kind: Kind, content: bytes | str) -> None:
+    """Make `content` that of a file, text in UTF-8. Raises InputError as `written` does."""
+    with written(path, kind) as part:
+        part.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+@contextmanager
+def _part(path: Path) -> Iterator[Path]:
+    """A new file beside `path` with its permissions, which replaces it, or is removed after an error."""
+    part = part_of(path, secrets.token_hex(TOKEN // 2))
+    try:
+        os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        with suppress(FileNotFoundError):
+            part.chmod(stat.S_IMODE(path.stat().st_mode))
+        yield part
+        os.replace(part, path)
+    except BaseException:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise
+
+
+def _pour(content: Path, target: Path) -> None:
+    """Copy a file into a device or a pipe; one that nobody reads would take it only when somebody does."""
+    try:
+        descriptor = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    except OSError as error:
+        reason = "nobody reads this pipe" if error.errno == errno.ENXIO else error.strerror
+        raise OSError(error.errno, reason) from error
+    if hasattr(os, "O_NONBLOCK"):
+        os.set_blocking(descriptor, True)
+    with content.open("rb") as source, open(descriptor, "wb") as stream:
+        shutil.copyfileobj(source, stream)

@@ -1,0 +1,176 @@
+"""The error budget of a run: the error of each approximation, and the total error of the displacements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.rotor.reduction import reduction_error
+from frbcli.runs.errors.cell_errors import FewerCells
+from frbcli.runs.errors.film_error import film_force_errors
+from frbcli.runs.oil import oil_defect
+from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.machine.elements import element_places, element_springs
+from frbcli.scene.machine.segments import Segment
+from frbcli.scene.machine.system import System
+from frbcli.scene.machine.turbocharger import all_modes, journals, kept_modes
+from frbcli.scene.planning.planned import Plan
+from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array, State
+from frbcli.solve.time_loop import NEWTON_SHARE
+
+# A disk oscillates longer than its journals, which the films damp: its true error is 0.2 to 2.5 times the sum of all
+# local errors.
+LASTING = 3.0
+BEFORE_WHIRL = 0.85  # of the time of its event: a whirl grows before it is detected
+PARTING = ("onset", "self-excited", "contact")  # afterwards two runs differ in phase, whatever their accuracy
+
+
+def error_budget(
+    case: Case,
+    plan: Plan,
+    system: System,
+    until: float,
+    steps: tuple[float, float],
+    times: Array,
+    samples: Array,
+    fewer: FewerCells | None = None,
+) -> dict[str, float | None]:
+    """The error of a run as in its JSON, without the part of quick_budget. until: see quiet_until, s.
+
+    steps: as summed, until then; times (m,) s, samples (m, 2 n + 1 ...): see film_force_errors; fewer: the same run on
+    fewer cells. None: the run does not have this error, see docs/accuracy.md.
+    """
+    films = film_force_errors(plan, system, case, times, samples)
+    force, short = films.relative(), plan.theory == "short"
+    fading, whole = _counted(system) * steps[0], steps[1]
+    quiet = samples[times <= until]
+    eccentric, displaced = (_reach(system, quiet, parts) for parts in (_journals(system), _points(system)))
+    by_films = system.films.reach * (films.relative(until) or force or 0.0)
+    in_films, in_points = by_films * eccentric, by_films * max(eccentric, displaced)
+    cells = None if fewer is None else fewer.error(quiet, system)
+    if cells is not None:
+        in_films, in_points = cells.eccentricity, cells.displacement
+    return {
+        "film_force_relative": force,
+        "model_relative": force if short else None,
+        "mesh_relative": None if short else force,
+        "coupling": None if plan.coupling in (SEMI, APART) else NEWTON_SHARE * plan.tolerance,
+        "modal_reduction": modal_reduction(case, system, samples),
+        "cells": None if cells is None else cells.eccentricity,
+        "eccentricity": fading + in_films if system.names else None,
+        "displacement": LASTING * whole + in_points,
+        "ring_speed": fading + cells.ring_speed if cells is not None and system.ring_count else None,
+        "oil_fraction": fading + cells.oil_fraction if cells is not None and system.remembers else None,
+        "quiet_until_s": until,
+    }
+
+
+def budget_of_segments(
+    known: Mapping[str, float | None],
+    segments: Sequence[Segment],
+    plan: Plan,
+    until: float,
+    steps: tuple[float, float],
+    times: Array,
+    samples: Array,
+    fewer: FewerCells | None = None,
+) -> dict[str, float | None]:
+    """The largest value of each part over the segments that a run has passed; otherwise as error_budget."""
+    begins, budgets = [segment.start for segment in segments], [known]
+    for segment, first, last in zip(segments, begins, [*begins[1:], math.inf], strict=True):
+        there = (times >= first) & (times < last)
+        less = None if fewer is None else fewer.at(there)
+        budgets.append(
+            error_budget(segment.case, plan, segment.system, until, steps, times[there], samples[there], less)
+        )
+    keys = {key: None for budget in budgets for key in budget}
+    values = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
+    return {key: max(found, default=None) for key, found in values.items()}
+
+
+def summed(errors: Array, share: float) -> tuple[float, float]:
+    """(largest fading sum, sum without fading) of the local errors in a share of the time of a run; errors: of State.
+    The span in which that share ends counts in full."""
+    spans = max(1, math.ceil(share * errors.shape[1]))
+    return float(errors[ERRORS_LARGEST, :spans].max()), float(errors[ERRORS_SUM, :spans].sum())
+
+
+def _reach(system: System, samples: Array, parts: Iterable[tuple[Array, float]]) -> float:
+    """Largest displacement over the clearance of some parts in the samples (m, 2 n + 1)."""
+    places = (samples[:, : system.rotor.size] @ selection.T / clearance for selection, clearance in parts)
+    return max((float(np.hypot(*at.T).max(initial=0.0)) for at in places), default=0.0)
+
+
+def quick_budget(system: System, state: State, angle: float) -> dict[str, float | None]:
+    """The part of the error that is known during a run. angle: of the rotor, rad."""
+    return {
+        "time_integration": _counted(system) * float(state.numbers[ERROR_LARGEST]),
+        "film_force_relative": None,
+        "oil_balance_relative": oil_defect(system, state, angle),
+    }
+
+
+def _counted(system: System) -> float:
+    return system.films.counted_share(system.ring_count)
+
+
+def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:
+    """Time in s up to which runs can be compared at each time."""
+    return min([end, *(BEFORE_WHIRL * float(event["t_s"]) for event in events if event["kind"] in PARTING)])
+
+
+def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
+    """Relative error of the slowest natural frequencies by the rotor's modes that were left out, on springs as stiff as
+    the films in the middle of the run; None for a rotor that has no modes, or without a state whose films are stiff."""
+    if not isinstance(case.rotor, TurbochargerRotor) or not len(samples):
+        return None
+    modes = all_modes(case)
+    kept = kept_modes(case.rotor, modes)
+    if kept == len(modes.frequencies):
+        return 0.0
+    try:
+        springs = _springs(case, system, samples[len(samples) // 2])
+    except NotConverged:
+        return None
+    if not np.all(springs > 0.0):
+        return None
+    springs = np.concatenate([springs, element_springs(case, float(samples[len(samples) // 2][2 * system.rotor.size]))])
+    stations = np.stack([modes.at(place.position) for place in (*journals(case), *element_places(case))])
+    top = 2.0 * math.pi * max(case.speed.start, case.speed.end)
+    return reduction_error(modes, kept, stations, springs, top).frequency
+
+
+def _springs(case: Case, system: System, sample: Array) -> Array:
+    """(b,) N/m: the mean of both directions of each bearing's stiffness, in series where a ring floats."""
+    n = system.rotor.size
+    q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
+    omegas = system.omegas(omega, v[list(system.spins)])
+    forces = (
+        system.films.force(i, selection @ q, selection @ v, float(omegas[i]))
+        for i, selection in enumerate(system.rotor.journals)
+    )
+    single = (-0.5 * float(np.trace(force.by_displacement)) for force in forces)
+    return np.array(
+        [
+            1.0 / (1.0 / next(single) + 1.0 / next(single))
+            if isinstance(bearing, FloatingRingBearing)
+            else next(single)
+            for bearing in case.bearings
+        ]
+    )
+
+
+def _journals(system: System) -> Iterable[tuple[Array, float]]:
+    return zip(system.rotor.journals, system.clearances, strict=True)
+
+
+def _points(system: System) -> Iterable[tuple[Array, float]]:
+    """Disks and all other points; displacements are relative to the length of the system."""
+    return ((selection, system.length) for _, selection in system.rotor.points)

@@ -1,0 +1,149 @@
+"""What a run records of its films by choice (`output.signals`), at the samples of its file.
+
+The force of a film is what the equation of the rotor leaves for it: with the accelerations at the ends of the steps it
+is that of the time loop, whatever the film, and in contact the force of the surfaces is part of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.rectangles.end_flow import EndFlow, end_flows
+from frbcli.rotor.linear import LinearRotor, unbalance_shares
+from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
+from frbcli.runs.record.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
+from frbcli.scene.machine.system import System
+from frbcli.solve.contact import felt_motion, touches
+from frbcli.solve.state import SLIP, SUM, Array, Control
+from frbcli.solve.watched import DRAG, LEAVES, NOTES
+
+OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW)  # they ask for what is known at the ends of the steps alone
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Of a run at k output times, SI: times (k,); displacements q, velocities v (k, n); noted (k, n + NOTES films), see
+    advance_watched of solve/watched.py, without columns if nothing is asked for that needs it."""
+
+    times: Array
+    q: Array
+    v: Array
+    noted: Array
+
+
+def film_signals(
+    system: System,
+    control: Control,
+    profile: SpeedProfile,
+    samples: Samples,
+    kinds: Sequence[str],
+    ends: Sequence[EndFlow] = (),
+    warm: FilmNumbers | None = None,
+) -> dict[str, Array]:
+    """The signals (k,) of all films by their names.
+
+    force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
+    by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
+    the film through its open ends, m^3/s. ends: the flows of tabulated films (Films.end_flows), if
+    these are asked for their oil; warm: what heat has changed.
+    """
+    found, films = dict[str, Array](), warm or unchanged(system)
+    if any(kind in OF_THE_STEPS for kind in kinds):
+        forces = film_forces(system.rotor, profile, samples)
+        torques, powers = _torques(system, films, profile, samples, forces)
+        flows = _flows(system, films, samples)
+        if ends:
+            flows = _flows_of_motions(system, films, control, profile, samples, ends)
+    for i, name in enumerate(system.names):
+        for kind in kinds:
+            if kind == FORCE:
+                found |= dict(zip(signal_names(kind, name), forces[:, i].T, strict=True))
+            elif kind == THICKNESS:
+                found[signal_names(kind, name)[0]] = _thickness(system, films, control, i, samples.q)
+            else:
+                found[signal_names(kind, name)[0]] = {POWER: powers, TORQUE: torques, FLOW: flows}[kind][:, i]
+    return found
+
+
+def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> Array:
+    """(k, films, 2) N, on the journal by one bearing: what the equation of the rotor leaves for the films."""
+    alpha, omega, angle = np.array([profile.rotation(float(t)) for t in samples.times]).reshape(-1, 3).T
+    along, across = unbalance_shares(alpha, omega, np.sin(angle), np.cos(angle))
+    a = samples.noted[:, : rotor.size]
+    left = a @ rotor.mass.T + samples.v @ rotor.damping.T + samples.q @ rotor.stiffness.T - rotor.static_load
+    if rotor.over_speed is not None:
+        for i, (stiffness, damping, mass) in enumerate(map(rotor.over_speed.at, omega.tolist())):
+            left[i] += mass @ a[i] + damping @ samples.v[i] + stiffness @ samples.q[i]
+    left = left + omega[:, None] * (samples.v @ rotor.gyroscopic.T)
+    left = left - along[:, None] * rotor.unbalance_cos
+    left = left - across[:, None] * rotor.unbalance_sin
+    rows = rotor.journals.reshape(-1, rotor.size) * np.repeat(rotor.multiplicity, 2)[:, None]
+    return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
+
+
+def _torques(
+    system: System, films: FilmNumbers, profile: SpeedProfile, samples: Samples, forces: Array
+) -> tuple[Array, Array]:
+    """(k, films) torque on the journals in N m, as spin_up of solve/ring_spin.py has it, and power in W."""
+    n, count = system.rotor.size, len(system.names)
+    total, slip = (_speeds(system, profile, samples, row) for row in (SUM, SLIP))
+    drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]
+    place, rate = (np.einsum("fij,kj->kfi", system.rotor.journals, each) for each in (samples.q, samples.v))
+    couette = -films.drags * drag * slip
+    poiseuille = np.zeros_like(couette)
+    if system.torque == "all":
+        poiseuille = -0.5 * (place[..., 0] * forces[..., 1] - place[..., 1] * forces[..., 0])
+    power = -couette * slip - poiseuille * total - (forces * rate).sum(axis=2)
+    return couette + poiseuille, power
+
+
+def _speeds(system: System, profile: SpeedProfile, samples: Samples, row: int) -> Array:
+    """(k, films) rad/s: SUM or SLIP of the bodies of each film, see RotorData."""
+    bodies = np.column_stack([profile.speed(samples.times), samples.v[:, list(system.spins)]])
+    return np.asarray(bodies @ system.turning[:, row].T)
+
+
+def _flows_of_motions(
+    system: System, films: FilmNumbers, control: Control, profile: SpeedProfile, samples: Samples,
+    ends: Sequence[EndFlow],
+) -> Array:  # fmt: skip
+    """(k, films) m^3/s of oil that leaves tabulated films: it follows from how their journals move. It is homogeneous
+    in their motion and the given pressures, which are divided by the scale."""
+    found = np.empty((len(samples.times), len(ends)))
+    total = _speeds(system, profile, samples, SUM)
+    for i, end in enumerate(ends):
+        clearance, scale = films.clearances[:, i : i + 1], films.scales[:, i : i + 1]
+        d, v = (each @ system.rotor.journals[i].T / clearance for each in (samples.q, samples.v))
+        for k in _touching(control, d):
+            d[k], v[k] = felt_motion(control, d[k], v[k])
+        w = v + 0.5 * total[:, i : i + 1] * np.column_stack([d[:, 1], -d[:, 0]])
+        motions = np.column_stack([d, scale * w])
+        found[:, i] = clearance[:, 0] / scale[:, 0] * end_flows(end, motions)
+    return found
+
+
+def _flows(system: System, films: FilmNumbers, samples: Samples) -> Array:
+    """(k, films) m^3/s of oil that leaves, as it is noted."""
+    n, count = system.rotor.size, len(system.names)
+    leaves: Array = samples.noted[:, n + LEAVES * count : n + NOTES * count]
+    return np.asarray(leaves * system.films.flow_units(films.clearances), dtype=np.float64)
+
+
+def _thickness(system: System, films: FilmNumbers, control: Control, i: int, q: Array) -> Array:
+    """(k,) m: the smallest gap of film i; in contact that which surfaces keep."""
+    clearance = films.clearances[:, i]
+    d = q @ system.rotor.journals[i].T / clearance[:, None]
+    for sample in _touching(control, d):
+        d[sample] = felt_motion(control, d[sample], np.zeros(2))[0]
+    return clearance * system.films.smallest_gap(i, d)
+
+
+def _touching(control: Control, d: Array) -> NDArray[np.int64]:
+    """The samples at which the film feels less than its displacement d (k, 2) over the clearance."""
+    limits = control.contact_eccentricity, control.contact_stiffness
+    return np.flatnonzero([touches(float(each), *limits) for each in np.hypot(d[:, 0], d[:, 1])])

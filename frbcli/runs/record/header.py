@@ -1,0 +1,88 @@
+"""Names and units of the signals of a run, and the header of its file."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+
+from frbcli.case.schema import Case
+from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
+from frbcli.runs.heat import heat_units
+from frbcli.scene.machine.bearing_model_films import model_record
+from frbcli.scene.machine.segments import Segment
+from frbcli.scene.machine.system import System
+
+PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
+PROGRAM = "frbcli"
+# Of a film, by choice: its quantity and unit as they stand in the name, and the unit.
+THICKNESS, FORCE, POWER, TORQUE, FLOW = "film-thickness", "force", "power", "torque", "oil-flow"
+FILM_SIGNALS = {
+    FORCE: ("film_force", "N", "N"),
+    THICKNESS: ("film_thickness", "m", "m"),
+    POWER: ("power", "W", "W"),
+    TORQUE: ("torque", "N_m", "N m"),
+    FLOW: ("oil_flow", "m3_s", "m^3/s"),
+}
+
+
+def named(quantity: str, film: str) -> str:
+    """The name of a signal of a film or ring, which may be the only one."""
+    return f"{quantity}_{film}" if film else quantity
+
+
+def ring_names(system: System) -> list[str]:
+    """The signals of the rings' speeds."""
+    outer = [name for name, (inside, _) in zip(system.names, system.bodies, strict=True) if inside >= 0]
+    return [f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name in outer]
+
+
+def signal_names(kind: str, film: str) -> list[str]:
+    """The signals of a film that a kind of FILM_SIGNALS stands for: x and y of a force."""
+    quantity, unit, _ = FILM_SIGNALS[kind]
+    return [f"{named(quantity, film)}_{end}" for end in ((f"x_{unit}", f"y_{unit}") if kind == FORCE else (unit,))]
+
+
+def signal_units(system: System, kinds: Sequence[str]) -> dict[str, str]:
+    """Names and units of the signals of all films that are recorded by choice."""
+    return {name: FILM_SIGNALS[kind][2] for film in system.names for kind in kinds for name in signal_names(kind, film)}
+
+
+def header(
+    command: str, case: Case, segments: Sequence[Segment], critical_speeds: Sequence[float] | None = None
+) -> Header:
+    """The header of the file of a run. Amplitudes refer to its initial clearances; critical_speeds: of
+    the linearised machine in Hz, ascending, None if they are not known."""
+    system = segments[0].system
+    lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
+    eccentricities = [named("eccentricity", name) for name in system.names]
+    units = {"time_s": "s", "speed_Hz": "Hz", **dict.fromkeys(eccentricities, ""), **dict.fromkeys(lengths, "m")}
+    remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
+    units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
+    units |= dict.fromkeys(ring_names(system), "Hz")
+    units |= heat_units(case, system)
+    units |= signal_units(system, case.output.signals)
+    return Header(
+        title=case.title or case.name,
+        command=command,
+        case_name=case.name,
+        case_text=case.source_text,
+        units=units,
+        versions={PROGRAM: version_of(PROGRAM), "python": platform.python_version()}
+        | {package: version_of(package) for package in PACKAGES}
+        | model_record(case),
+        references=({} if system.names else {"length_m": system.length})
+        | ({"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.length} if system.names else {})
+        | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
+        | {f"{CLEARANCE_STEP}_{number}_s": segment.start for number, segment in enumerate(segments[1:], start=1)}
+        | ({} if critical_speeds is None else {CRITICAL_SPEEDS: float(len(critical_speeds))})
+        | {f"{CRITICAL_SPEED}_{number}_Hz": speed for number, speed in enumerate(critical_speeds or (), start=1)},
+    )
+
+
+def version_of(package: str) -> str:
+    """The version of an installed package, as it is written into runs."""
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        return "unknown"

@@ -1,0 +1,189 @@
+"""Expected course of a run: how many steps it takes and how many film solves, and when.
+
+Before a whirl the journal moves little: a film needs few steps per revolution, and the guess of each stage is nearly
+its solution. In a whirl the journal moves through most of the gap. Where half the rotor speed comes near to the natural
+frequency of a stiff shaft, the whirl presses the journal into the shell. A film that keeps its oil and has no inflow is
+never quiet: it runs nearly dry and whirls from the start, and the fronts of its oil cross cells.
+
+All numbers were measured on the shipped cases and on `jeffcott` with each cavitation law; docs/accuracy.md compares
+predicted and real cost.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.table import law_named
+from frbcli.film.section_faults import no_inflow
+from frbcli.rotor.speed_profile import Array, SpeedProfile
+from frbcli.scene.costs.preparation import shaft_mass
+from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
+from frbcli.scene.planning.planned import Plan
+from frbcli.scene.section import film_section
+
+STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
+ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step size in the local error
+
+
+RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring
+# Fronts that cross cells make the local error of second order: steps per revolution times the root of the tolerance on
+# the usual cells, of a rotor whose journals follow at once and of a rigid one.
+FRONTS, FRONTS_RIGID = 0.55, 0.2
+# Steps of a journal that a whirl presses into an elastic shell over those of one that it presses into the oil alone:
+# 1.3 to 3.4.
+ELASTIC = 1.7
+LONGEST_STEP_s = 1e-3  # of a run: also at low speed the rotor falls and its shaft vibrates
+MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
+SMOOTH = 7.0  # radians of a motion as large as the clearance that a step with a tolerance of 1 may pass
+HARMONICS = 1.2  # frequency of a large whirl, with its harmonics, over the rotor speed
+FADING = 0.01  # damping ratio of the vibration that a rotor begins with as it falls from the centre
+# A whirl begins at this multiple of the frequency of the rotor on its shaft and on films of the stiffness load over
+# clearance: 1.8 to 3.0 as measured.
+WHIRL = 2.7
+NEAR = 0.9  # half the rotor speed over the natural frequency of the shaft, from where on it counts as near
+MICRO_STEPS = 2.0  # of a film in a macro step of a co-simulation
+TABLE_POINTS = 400  # of the speed profile
+SLOWEST_Hz = 1e-6  # rotor speed below which revolutions are not counted
+
+
+@dataclass(frozen=True)
+class Course:
+    """times: (k,) s; steps, solves: (k,) numbers until then, of film solves those of all films."""
+
+    times: Array
+    steps: Array
+    solves: Array
+
+    def share(self, time: float) -> float:
+        """Share of the film solves until a time in s, without films of the steps."""
+        done = self.solves if self.solves[-1] > 0.0 else self.steps
+        return float(np.interp(time, self.times, done) / max(done[-1], 1e-300))
+
+
+def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> Course:
+    """Expected course of a run along a speed profile: a number of steps per revolution, per second at low speed, or
+    that which the tolerance needs."""
+    times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
+    omega = np.abs(profile.speed(times))
+    turns = omega / (2.0 * math.pi)
+    work, whirls = plan.form.work, omega >= whirl_speed(case)
+    presses = whirls & (omega >= _pressing_speed(case))
+    rate = np.maximum(1.0 / longest_step(case, plan), work.crowded * plan.steps_per_revolution * turns)
+    rate = np.maximum(rate, _resolving(case, plan, times, omega, whirls))
+    pressed = work.pressed[0] * (ELASTIC if case.contact.policy == "elastic" else 1.0)
+    rate = np.where(presses, pressed * rate, rate)
+    iterations = _solves_of_a_stage(case, plan, whirls, rate / np.maximum(turns, SLOWEST_Hz))
+    iterations = np.where(presses, work.pressed[1] * iterations, iterations)
+    if plan.coupling == SEMI:
+        iterations = np.ones_like(rate)
+    films = len(film_places(case)) * (MICRO_STEPS if plan.coupling == APART else 1.0)
+    solves = rate * STAGES[plan.method] * iterations * films
+    return Course(times, _summed(rate, times), _summed(solves, times))
+
+
+def longest_step(case: Case, plan: Plan) -> float:
+    """Longest step of a run, s; limited also by the samples that are held in memory until they are written."""
+    longest = LONGEST_STEP_s if plan.macro_step is None else min(LONGEST_STEP_s, plan.macro_step)
+    return min(longest, MOST_SAMPLES * case.output.step)
+
+
+def whirl_speed(case: Case) -> float:
+    """Rotor speed in rad/s from which a whirl is expected; 0 where nothing keeps the journal from it: rings, films
+    that do not cavitate, films that run dry, a rotor without weight."""
+    rotor, places = case.rotor, film_places(case)
+    if not places:
+        return math.inf
+    free = rings(case) or runs_nearly_dry(case) or rotor.gravity == 0.0
+    if not case.film.bearing_model:
+        free = free or any(not law_named(name).cavitates for name in case.cavitations)
+    if free:
+        return 0.0
+    square = max(place.geometry.clearance for place in places) / rotor.gravity
+    if isinstance(rotor, JeffcottRotor):
+        square += rotor.mass / rotor.shaft_stiffness
+    return WHIRL / math.sqrt(square)
+
+
+def runs_nearly_dry(case: Case) -> bool:
+    """Whether a film keeps its oil and no pressure pushes oil into it, nor draws it in."""
+    return bool(_dry_laws(case))
+
+
+def _dry_laws(case: Case) -> tuple[type[Law], ...]:
+    """The laws of the films that run nearly dry."""
+    if case.film.bearing_model:
+        return ()
+    found = ((law_named(case.cavitation(place.geometry)), place) for place in film_places(case))
+    return tuple(
+        law
+        for law, place in found
+        if law.keeps_oil and law.starves and no_inflow(film_section(case, place.geometry, place.feed_holes))
+    )
+
+
+def _pressing_speed(case: Case) -> float:
+    """Rotor speed in rad/s from which a whirl comes near to the natural frequency of the shaft; infinite for a shaft so
+    soft that its sag is larger than the clearance, which cannot press, for rotors without such a shaft or on rings,
+    and for films that run nearly dry, which their fronts keep at short steps all along."""
+    rotor = case.rotor
+    if not isinstance(rotor, JeffcottRotor) or not case.bearings or rings(case) or runs_nearly_dry(case):
+        return math.inf
+    square = rotor.shaft_stiffness / rotor.mass
+    stiff = rotor.gravity / square < film_places(case)[0].geometry.clearance
+    return 2.0 * NEAR * math.sqrt(square) if stiff else math.inf
+
+
+def _solves_of_a_stage(case: Case, plan: Plan, whirls: NDArray[np.bool_], per_turn: Array) -> Array:
+    """(n,) of one film. per_turn: steps per revolution."""
+    work = plan.form.work
+    if turning_rings(case):
+        return np.full_like(per_turn, RING_SOLVES)
+    turning = any(turns_with_oil(case, place) for place in film_places(case))
+    found = plan.form.solves_of_a_stage(plan, per_turn, turning)
+    return np.where(whirls, work.whirling, work.quiet) if found is None else found
+
+
+def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArray[np.bool_]) -> Array:
+    """(n,) steps per second that the tolerance needs at the rotor speeds omega (n,) in rad/s.
+
+    The local error of a motion A cos(w t) is A (w h / SMOOTH)^p of a method with an embedded solution of order p - 1.
+    """
+    rotor, order = case.rotor, ERROR_ORDERS[plan.method]
+    clearance = film_places(case)[0].geometry.clearance if case.bearings else plan.length
+    eccentric = unbalance_eccentricity(case)
+
+    def steps(w: Array | float, size: Array | float) -> Array:
+        return np.asarray(w / SMOOTH * (size / (plan.tolerance * clearance)) ** (1.0 / order), dtype=np.float64)
+
+    rate = np.maximum(steps(omega, eccentric), np.where(whirls, steps(HARMONICS * omega, clearance), 0.0))
+    if isinstance(rotor, JeffcottRotor) and case.start.position == "centre":  # it falls to its resting position
+        square = rotor.shaft_stiffness / rotor.mass
+        natural = math.sqrt(square)
+        left = np.exp(-FADING * natural * (times - times[0]))
+        rate = np.maximum(rate, steps(natural, rotor.gravity / square * left))
+    if runs_nearly_dry(case):
+        fronts = FRONTS_RIGID if rotor.kind == "rigid" else FRONTS
+        fronts *= max(law.fronts for law in _dry_laws(case))
+        rate = np.maximum(rate, plan.form.steps_at_fronts(plan, fronts) * omega / (2.0 * math.pi))
+    return rate
+
+
+def unbalance_eccentricity(case: Case) -> float:
+    """Distance in m of the centre of mass from the axis by the unbalance of a rotor, that of all disks in phase."""
+    rotor = case.rotor
+    if isinstance(rotor, TurbochargerRotor):
+        return sum(disk.unbalance for disk in case.disks) / shaft_mass(case)
+    return rotor.unbalance / rotor.mass
+
+
+def _summed(rate: Array, times: Array) -> Array:
+    passed = np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(times))
+    return np.concatenate([[0.0], passed])

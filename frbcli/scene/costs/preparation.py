@@ -1,0 +1,132 @@
+"""Expected cost of a run outside its time loop, and its memory.
+
+Before the loop films are tabulated, the shaft is reduced to its modes, and the first state is computed; after it the
+error of the forces is computed on a finer mesh, and runs with finite-volume films are repeated on fewer cells. All
+numbers are CPU seconds of the reference machine of cost.py.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
+from frbcli.rotor.beam import ELEMENTS
+from frbcli.rotor.reduction import DENSE, MOST, RIGID
+from frbcli.scene.clearance_steps import step_times
+from frbcli.scene.films import film_places, rings, turning_rings
+from frbcli.scene.planning.film_choice import all_clipped, needs_cells
+from frbcli.scene.planning.planned import Plan
+
+DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
+# To compile, at the first start: CPU time in s and memory in bytes, for finite-volume films, for tables of solutions on
+# cells, and for other films.
+COMPILE_CELLS, COMPILE_SOLUTIONS, COMPILE_TABLES = (62.0, 5e8), (42.0, 4.2e8), (26.0, 3.6e8)
+PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernels
+MATRICES = 6  # of a rotor, of the modes of a shaft
+SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
+SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how many forms
+KEPT = 2.1  # how often all samples are in memory: in the run, and in the file that it is about to write
+HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
+
+
+def compile_s(cases: Iterable[Case]) -> float:
+    """CPU time of the compilation at the first start, for each kind of films that the cases have."""
+    return sum(spent for spent, _ in {_compilation(case) for case in cases})
+
+
+def compile_B(case: Case) -> float:
+    """Memory in bytes of a process that compiles the kernels for a case: that of the first start."""
+    return _compilation(case)[1]
+
+
+def _compilation(case: Case) -> tuple[float, float]:
+    """CPU time in s and memory in bytes."""
+    if needs_cells(case):
+        return COMPILE_CELLS
+    return COMPILE_TABLES if case.film.bearing_model or all_clipped(case) else COMPILE_SOLUTIONS
+
+
+def before_s(case: Case, plan: Plan) -> float:
+    """CPU time before the first step."""
+    machines, films, form = 1 + len(step_times(case)), len(film_places(case)), plan.form
+    resting = case.start.position == "resting" and case.start.displacement is None
+    found = machines * (films * form.table_s(plan) + _reduction_s(case))
+    return found + form.first_state_s(plan, films, resting)
+
+
+def after_s(case: Case, plan: Plan, loop_s: float, samples: float) -> float:
+    """CPU time after a time loop of loop_s: events and stated error. samples: number that the run writes."""
+    again = plan.form.again_share() * loop_s
+    told = SAMPLE_s * samples + (1 + len(step_times(case))) * _reduction_s(case)
+    return told + again + film_error_s(case, plan)
+
+
+def film_error_s(case: Case, plan: Plan) -> float:
+    """CPU time of the error of the film forces at sampled states."""
+    return plan.form.error_s(plan, len(film_places(case)), 1 + len(step_times(case)))
+
+
+def memory_B(case: Case, plan: Plan, samples: float) -> float:
+    """Largest memory of the process in bytes. samples: number that the run writes."""
+    n = rotor_size(case)
+    found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_freedoms(case)
+    found += 8.0 * signal_count(case) * (COPIES * SAMPLES_HELD + KEPT * samples)
+    return found + plan.form.memory_B(plan, len(film_places(case)))
+
+
+def signal_count(case: Case) -> int:
+    """Signals that a run records; with heat at most."""
+    places, floating = film_places(case), rings(case)
+    disks = len(case.disks) + isinstance(case.rotor, JeffcottRotor)
+    found = 2 + 2 * (len(case.given_bearings) + len(floating) + disks) + len(turning_rings(case))
+    found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
+    found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
+    if case.heat is not None:
+        found += HEAT_SIGNALS * len(places) + WALL_SIGNALS * (1 + len(floating))
+    return found
+
+
+def rotor_size(case: Case) -> int:
+    """Degrees of freedom of the rotor with its rings, as reduced."""
+    turning = len(turning_rings(case))
+    rings = len(film_places(case)) - len(case.bearings)
+    if isinstance(case.rotor, TurbochargerRotor):
+        return 2 * expected_modes(case) + 2 * rings + turning
+    return (2 if case.rotor.kind == "rigid" else 4) + 2 * rings + turning
+
+
+def expected_modes(case: Case) -> int:
+    """Modes of a plane that the rotor of a turbocharger keeps; below a cut-off as many half waves as the shaft without
+    its wheels has at that frequency."""
+    rotor = case.rotor
+    assert isinstance(rotor, TurbochargerRotor)
+    if rotor.cutoff is None:
+        return min(rotor.modes, shaft_freedoms(case))
+    omega, waves = 2.0 * math.pi * rotor.cutoff, 0.0
+    for part in case.shaft:
+        gyration = math.hypot(part.diameter, part.inner_diameter) / 4.0
+        sound = math.sqrt(part.youngs_modulus / part.density)
+        waves += part.length * math.sqrt(omega / (gyration * sound)) / math.pi
+    return int(min(RIGID + waves, MOST, shaft_freedoms(case)))
+
+
+def shaft_freedoms(case: Case) -> int:
+    """Degrees of freedom of the shaft in a plane, before its reduction; none of a rotor without sections."""
+    if not isinstance(case.rotor, TurbochargerRotor):
+        return 0
+    return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.given_bearings))
+
+
+def shaft_mass(case: Case) -> float:
+    """Of a turbocharger's shaft with its wheels, kg."""
+    areas = (0.25 * math.pi * (part.diameter**2 - part.inner_diameter**2) for part in case.shaft)
+    shaft = sum(area * part.length * part.density for area, part in zip(areas, case.shaft, strict=True))
+    return shaft + sum(disk.mass for disk in case.disks)
+
+
+def _reduction_s(case: Case) -> float:
+    freedoms = shaft_freedoms(case)
+    return SPARSE_s * freedoms if freedoms > DENSE else DENSE_s * (freedoms / DENSE) ** 3

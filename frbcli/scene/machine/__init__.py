@@ -1,0 +1,1 @@
+"""The machine of a planned case: rotor, films, heat."""

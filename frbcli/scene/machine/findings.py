@@ -1,0 +1,85 @@
+"""What a case amounts to before anything is computed: mass, natural frequencies, static loads, Sommerfeld numbers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frbcli.case.bearing import FilmGeometry
+from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.operating import sommerfeld_number
+from frbcli.rotor.held import held_rotor
+from frbcli.rotor.reduction import RIGID
+from frbcli.scene.films import film_places
+from frbcli.scene.machine.operating import operating_points
+from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.machine.turbocharger import all_modes
+
+FREQUENCIES = 3  # bending modes that are told
+
+
+@dataclass(frozen=True)
+class FilmLoad:
+    """The static load of one film in N, and what follows from it: mean_pressure, of the load over width and diameter,
+    Pa; sommerfeld_number: (3.14) at the top speed, NaN where nothing turns; supply: in words."""
+
+    film: str
+    load: float
+    mean_pressure: float
+    sommerfeld_number: float
+    supply: str
+
+
+@dataclass(frozen=True)
+class Findings:
+    """mass: of the rotor in kg, None without one; frequencies_Hz: natural ones, ascending, supported: how; films: empty
+    where no load is known."""
+
+    mass: float | None
+    frequencies_Hz: tuple[float, ...]
+    supported: str
+    films: tuple[FilmLoad, ...]
+
+
+def findings(case: Case) -> Findings:
+    """Of a case. Raises InputError if its shaft has no modes."""
+    films = tuple(
+        _film(case, film.name, place.geometry, load, film.omega)
+        for film, place, load in zip(operating_points(case), film_places(case), static_loads(case), strict=False)
+    )
+    if case.given_rotor is None:
+        return Findings(None, (), "", films)
+    rotor = case.rotor
+    if isinstance(rotor, TurbochargerRotor):
+        modes = all_modes(case)
+        frequencies = modes.frequencies[RIGID : RIGID + FREQUENCIES] / (2.0 * math.pi)
+        mass = float(np.sum(modes.weight[:RIGID] ** 2))  # a uniform motion is one of the rigid body
+        return Findings(mass, tuple(frequencies.tolist()), "free, at rest", films)
+    mass, frequencies_Hz = rotor.mass, tuple[float, ...]()
+    if isinstance(rotor, JeffcottRotor):
+        mass += rotor.journal_mass
+        frequencies_Hz = (math.sqrt(rotor.shaft_stiffness / rotor.mass) / (2.0 * math.pi),)
+    return Findings(mass, frequencies_Hz, "in rigid bearings" if frequencies_Hz else "", films)
+
+
+def static_loads(case: Case) -> tuple[float, ...]:
+    """N on each film, in their order; that of a kinematic test; none where none is known, or where the bearings do not
+    hold the rotor."""
+    if case.given_rotor is None:
+        return () if case.motion is None or case.motion.load is None else (case.motion.load,)
+    rotor = make_rotor(case)
+    try:
+        loads = held_rotor(rotor).load.reshape(-1, 2) / rotor.multiplicity[:, None]
+    except NotConverged:
+        return ()
+    found = np.hypot(*loads.T)
+    return tuple(found.tolist()) if np.isfinite(found).all() else ()
+
+
+def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) -> FilmLoad:
+    number = sommerfeld_number(load, film.width, 0.5 * film.diameter, film.clearance, case.viscosity(film), omega)
+    return FilmLoad(name, load, load / (film.width * film.diameter), number, film.supply.words)

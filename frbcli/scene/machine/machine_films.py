@@ -1,0 +1,136 @@
+"""The films of a planned case: here, and nowhere else, the form that a plan has chosen becomes a kind of films."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from frbcli.case.bearing import FilmGeometry
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.compiled import given_parameters
+from frbcli.film.cavitation.penalty import Penalty
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.channel_data import with_channels
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.gap import Section
+from frbcli.film.grid import Array, Mesh
+from frbcli.film.kinds.cells import CellFilms
+from frbcli.film.kinds.contract import Films
+from frbcli.film.kinds.elements import ElementFilms
+from frbcli.film.kinds.none import NoFilms
+from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms, TableFilms
+from frbcli.film.penalty_table.film import SourceFilm
+from frbcli.film.published.data import element_film
+from frbcli.film.published.film import PublishedFilm
+from frbcli.film.rectangles.bearing import RectangularBearing, rectangular
+from frbcli.film.rectangles.film import make_film
+from frbcli.scene.channels import coupled_channels
+from frbcli.scene.films import FilmPlace, centrifugal_pressures, film_places, make_law, volume_film
+from frbcli.scene.forms.cells import CELLS, cells_of
+from frbcli.scene.forms.models import GIVEN
+from frbcli.scene.forms.none import NO_FILM
+from frbcli.scene.forms.published import PUBLISHED
+from frbcli.scene.forms.solutions import SOLUTIONS
+from frbcli.scene.machine.bearing_model_films import bearing_film
+from frbcli.scene.planning.cell_choice import compared_states
+from frbcli.scene.planning.planned import Plan
+from frbcli.scene.section import film_section
+
+# What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
+# off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.
+SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 4.0, (2e-5, 1e-3)
+
+
+def make_films(case: Case, plan: Plan, top_Hz: float | None = None) -> Films:
+    """The films of a case as its plan has them, tabulated where they have tables. top_Hz: largest speed of the rotor,
+    default that of the run."""
+    makers = {NO_FILM: _none, CELLS: _cells, PUBLISHED: _elements, SOLUTIONS: _solutions, GIVEN: _models}
+    return makers.get(plan.form, _rectangles)(case, plan, top_Hz)
+
+
+def _none(_: Case, __: Plan, ___: float | None) -> Films:
+    return NoFilms()
+
+
+def _clearances(case: Case) -> tuple[float, ...]:
+    return tuple(place.geometry.clearance for place in film_places(case))
+
+
+def _cells(case: Case, plan: Plan, top_Hz: float | None) -> Films:
+    cells, places = cells_of(plan), film_places(case)
+    volumes = tuple(volume_film(case, place, cells, top_Hz) for place in places)
+    data = volume_films(volumes, centrifugal_pressures(case, volumes), settled_share(plan.tolerance))
+    data = with_channels(data, volumes, coupled_channels(case, volumes))
+    return CellFilms(
+        clearances=_clearances(case),
+        own=volumes,
+        data=data,
+        cells=cells,
+        factor=case.film.cavitation_factor,
+        states=compared_states(cells),
+        viscosity=case.oil_viscosity,
+        exponents=np.array([_exponents(case, *each) for each in zip(places, volumes, strict=True) if case.heat]),
+    )
+
+
+def _exponents(case: Case, place: FilmPlace, film: VolumeFilm) -> Array:
+    """(p,) powers of the scale of the pressures that the parameters of a film's law are proportional to."""
+    cavitation, section = case.cavitation(place.geometry), film.section
+    doubled = replace(section, viscosity=2.0 * section.viscosity)
+    first, last = (given_parameters(make_law(case, cavitation, each)) for each in (section, doubled))
+    some = (first != 0.0) & (last != 0.0)
+    return np.where(some, np.log2(np.where(some, last, 1.0) / np.where(some, first, 1.0)), 0.0)
+
+
+def settled_share(tolerance: float) -> float:
+    """What the balances of the cells may be off by in a stage, over the pace of their film; tolerance: of a step."""
+    tightest, loosest = SETTLED_RANGE
+    return min(max(SETTLED_OVER_TOLERANCE * tolerance, tightest), loosest)
+
+
+def _elements(case: Case, plan: Plan, _: float | None) -> Films:
+    section = film_section(case, film_places(case)[0].geometry)
+    film = published_film(case, section, cells_of(plan))
+    return ElementFilms(_clearances(case), film, element_film(film))
+
+
+def published_film(case: Case, section: Section, elements: tuple[int, int]) -> PublishedFilm:
+    """The film of a section with elements around and along."""
+    two_phase = case.film.two_phase
+    return PublishedFilm(section, TwoPhase(two_phase.steepness), two_phase.diffusion, *elements)
+
+
+def _solutions(case: Case, plan: Plan, _: float | None) -> Films:
+    places = [place.geometry for place in film_places(case)]
+    solved = tuple(source_film(case, geometry, plan.mesh) for geometry in places)
+    bearings = tuple(rectangular_bearing(case, geometry) for geometry in places)
+    data = tuple(film.film() for film in solved)
+    return SolutionFilms(_clearances(case), data, bearings, solved=solved, mesh=plan.mesh)
+
+
+def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
+    """A penalty film without openings, as it is tabulated for a run."""
+    section = film_section(case, geometry)
+    law = make_law(case, case.cavitation(geometry), section)
+    assert isinstance(law, Penalty)
+    return SourceFilm(section, law, mesh)
+
+
+def _models(case: Case, _: Plan, __: float | None) -> Films:
+    bearings = tuple(rectangular_bearing(case, place.geometry) for place in film_places(case))
+    return TableFilms(_clearances(case), tuple(bearing_film(case, bearing) for bearing in bearings), bearings)
+
+
+def _rectangles(case: Case, plan: Plan, _: float | None) -> Films:
+    bearings = tuple(rectangular_bearing(case, place.geometry) for place in film_places(case))
+    laws, meshes = case.cavitations, tuple(mesh for _, mesh in plan.films)
+    films = zip(bearings, laws, meshes, strict=True)
+    data = tuple(make_film(bearing, plan.theory, law, mesh) for bearing, law, mesh in films)
+    return RectangleFilms(_clearances(case), data, bearings, laws=laws, theory=plan.theory, mesh=plan.mesh)
+
+
+def rectangular_bearing(case: Case, film: FilmGeometry) -> RectangularBearing:
+    """A bearing whose gap is made of rectangles."""
+    return rectangular(film_section(case, film))

@@ -1,0 +1,97 @@
+"""A planned case as a rotor, its speed and its films: what every study starts from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.bearing import FilmGeometry
+from frbcli.case.schema import Case
+from frbcli.film.grid import Array
+from frbcli.film.kinds.contract import Films
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.ring import with_spins
+from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
+from frbcli.scene.machine.machine_films import make_films
+from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.planning.planned import Plan
+
+
+@dataclass(frozen=True)
+class System:
+    """A machine.
+
+    rotor: the linear system; films: see Films; names: of the films. bodies: (films, 2) what lies inside and outside of
+    each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing in N m s, the Couette
+    torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
+    torque: see FilmModel; own_length: see length, 0 of a machine with films.
+    """
+
+    rotor: LinearRotor
+    films: Films
+    names: tuple[str, ...]
+    bodies: NDArray[np.int64]
+    turning: Array
+    drags: tuple[float, ...]
+    ring_count: int = 0
+    laws: tuple[str, ...] = ()
+    torque: str = "all"
+    own_length: float = 0.0
+
+    @property
+    def clearances(self) -> tuple[float, ...]:
+        """(films,) m."""
+        return self.films.clearances
+
+    @property
+    def length(self) -> float:
+        """What displacements count over that are in no film, m: the clearance of the first film, or without films a
+        length of the machine (reference_length.py)."""
+        return self.clearances[0] if self.clearances else self.own_length
+
+    @property
+    def remembering(self) -> tuple[bool, ...]:
+        """Which films keep oil of their own."""
+        return self.films.remembering
+
+    @property
+    def remembers(self) -> bool:
+        """Whether any film is mass-conserving."""
+        return any(self.remembering)
+
+    @property
+    def spins(self) -> tuple[int, ...]:
+        """Degrees of freedom in which the rings turn."""
+        return tuple(range(self.rotor.size - self.ring_count, self.rotor.size))
+
+    def omegas(self, omega: float, ring_speeds: Array) -> Array:
+        """(films,) omega_J + omega_S of each film, rad/s."""
+        return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
+
+
+def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz: float | None = None) -> System:
+    """The system of a case; its films are tabulated here. rotor: default that of the case; top_Hz: largest speed of the
+    rotor, default that of the run."""
+    places, ringed = film_places(case), turning_rings(case)
+    rotor = make_rotor(case) if rotor is None else rotor
+    if ringed:
+        rotor = with_spins(rotor, [bearing.ring.inertia for bearing in ringed])
+    return System(
+        rotor=rotor,
+        films=make_films(case, plan, top_Hz),
+        names=tuple(place.name for place in places),
+        bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64).reshape(-1, 2),
+        turning=turning(places, len(ringed), [turns_with_oil(case, place) for place in places]),
+        drags=tuple(film_drag(case, place.geometry) for place in places),
+        ring_count=len(ringed),
+        laws=case.cavitations,
+        torque=case.film.torque,
+        own_length=plan.length,
+    )
+
+
+def film_drag(case: Case, film: FilmGeometry) -> float:
+    """eta R^3 B / C of a whole bearing in N m s, see System."""
+    return case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance

@@ -1,0 +1,46 @@
+"""The machine at other viscosities and clearances than those of its case, without new tables.
+
+The pressure of a film is homogeneous in the velocity w and in the pressures that are given: with s times the scale
+12 eta / psi^2 it is that of the velocity s w. So a table serves for every uniform viscosity and every clearance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from frbcli.case.bearing import FloatingRingBearing, RingFilm, SingleFilmBearing
+from frbcli.case.model import altered
+from frbcli.case.schema import Case
+from frbcli.film.grid import Array
+from frbcli.scene.films import film_places
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.planned import Plan
+
+
+def warm_system(case: Case, plan: Plan, system: System, viscosities: Array, clearances: Array) -> System:
+    """The system of a case with viscosities in Pa s and clearances in m, (films,) each."""
+    places = [place.geometry for place in film_places(case)]
+    thicker = viscosities / [case.viscosity(film) for film in places]
+    wider = clearances / system.clearances
+    films = system.films.scaled(thicker / wider**2, clearances)
+    if films is None:
+        return make_system(warm_case(case, viscosities, clearances), plan)
+    return replace(system, films=films, drags=tuple((np.array(system.drags) * thicker / wider).tolist()))
+
+
+def warm_case(case: Case, viscosities: Array, clearances: Array) -> Case:
+    """The case without heat, its films with these viscosities in Pa s and clearances in m, (films,) each."""
+    values = iter(
+        {"viscosity": float(eta), "given_clearance": float(c)} for eta, c in zip(viscosities, clearances, strict=True)
+    )
+    bearings: list[SingleFilmBearing | FloatingRingBearing] = []
+    for bearing in case.bearings:
+        if isinstance(bearing, SingleFilmBearing):
+            bearings.append(altered(bearing, next(values)))
+        else:
+            inner: RingFilm = altered(bearing.inner, next(values))
+            outer: RingFilm = altered(bearing.outer, next(values))
+            bearings.append(altered(bearing, {"inner": inner, "outer": outer}))
+    return altered(case.with_bearings(bearings), {"thermal": None})

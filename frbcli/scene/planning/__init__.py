@@ -1,0 +1,1 @@
+"""The plan of a case: what is modelled, and why."""

@@ -1,0 +1,27 @@
+"""The expected error of a plan; the run states its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from frbcli.scene.planning.planned import Plan
+
+SUMMED = 10.0  # number of local errors that add up: 1 to 13 as measured (docs/accuracy.md)
+REACH = 0.5  # usual eccentricity of a resting position, the factor of an error of the force; cells tell theirs
+
+
+@dataclass(frozen=True)
+class ExpectedError:
+    """eccentricity: of the eccentricities until a whirl grows; film_force: relative, None where it is not known: for a
+    bearing model, without films, and for cells, whose known error is that of the eccentricities."""
+
+    eccentricity: float
+    film_force: float | None
+
+
+def expected_error(plan: Plan) -> ExpectedError:
+    """From the tolerance of a step and the known error of the films of a plan."""
+    form = plan.form
+    reach = 1.0 if form.by_cells else REACH
+    force = None if form.told_by_eccentricity or not form.error_known else plan.film_error
+    return ExpectedError(SUMMED * plan.tolerance + reach * plan.film_error, force)

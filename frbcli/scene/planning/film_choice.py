@@ -1,0 +1,187 @@
+"""How the films of a case are computed: theory, form, mesh, and the error of their forces that this is known to have.
+
+The errors are relative to the force and measured (docs/accuracy.md): half-Sommerfeld films against a solution on
+14 x 256 elements, at states as in a whirl, for b/D = 0.1 to 0.8.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from frbcli.case.bearing import FilmGeometry
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
+from frbcli.film.grid import Mesh
+from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.forms.cells import CELLS
+from frbcli.scene.forms.form import FilmForm
+from frbcli.scene.forms.models import GIVEN, WHY
+from frbcli.scene.forms.none import NO_FILM
+from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
+from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
+from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
+from frbcli.scene.planning.cell_choice import FEWEST, cell_error, fewest_cells, given_cells
+
+# Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
+# call would cost much more for eccentricities close to 1.
+TABLE_HOLDS_TO, SOLVED_HOLDS_TO = 0.95, 0.9
+FILM_SHARE = 0.5  # of the target
+DEFAULT_MESH = Mesh(axial=6, circumferential=96)  # where no plan is made
+# The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.
+SHORT, SHORT_POWER = 0.45, 1.3
+# Errors at TABLE_HOLDS_TO: MESH_ERROR (b/D)^2, and the error of the interpolation, which does not depend on the mesh.
+MESH_ERROR = {Mesh(3, 48): 4.2e-3, Mesh(4, 64): 3e-3, Mesh(6, 96): 3e-4, Mesh(10, 192): 5e-5}
+TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
+# Errors at SOLVED_HOLDS_TO between axial grooves, for widths up to the diameter; larger for wider bearings.
+CHAIN_ERROR = {Mesh(3, 48): 8.5e-4, Mesh(6, 48): 5e-4, Mesh(9, 72): 4e-4, Mesh(10, 192): 2e-4}
+CHAIN_FLOOR = 8.5e-4
+CELL_SHARE, RING_SHARE = 0.8, 0.85  # of the target, by cells; the steps of a rotor on rings have little error
+REACHED = 0.95  # error of the cells over the target up to which it counts as met: with the steps that is 1.2 of it
+LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4  # of methods of third and of fourth order
+
+
+@dataclass(frozen=True)
+class FilmChoice:
+    """theory: "short" | "finite", or the name of a bearing model; form: how the most expensive film is computed;
+    mesh: the finest mesh of elements; cells: (around, along) or None; error: expected relative
+    error of the forces at the eccentricity up to which the film holds the target, 0 for a bearing model, whose error is
+    not known; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements."""
+
+    theory: str
+    form: FilmForm
+    mesh: Mesh
+    cells: tuple[int, int] | None
+    error: float
+    theory_why: str
+    mesh_why: str
+    films: tuple[tuple[FilmForm, Mesh], ...] = ()
+
+
+def choose_films(case: Case, target: float) -> FilmChoice:
+    """The cheapest film that holds a target, or what the case sets."""
+    given = case.accuracy.mesh
+    if not case.bearings:
+        return FilmChoice(str(NO_FILM), NO_FILM, DEFAULT_MESH, None, 0.0, "", "")
+    if case.film.bearing_model:
+        each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
+        return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
+    if is_published(case):
+        cells, mesh_why = published_elements(case)
+        theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
+        return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
+    if needs_cells(case):
+        cells, cells_why = _cells(case, target)
+        error = cell_error(case, cells)
+        theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
+        mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
+        if case.film.solution == "cells":
+            mesh_why += "; film.solution is set in the case"
+        elif all(law_named(model).tabulated for model in case.cavitations):
+            mesh_why += f"; no table: {table_obstacle(case)}"
+        return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, error, theory_why, mesh_why)
+    if not all_clipped(case):
+        mesh = SOLUTION_MESH if given is None else Mesh(*given)
+        mesh_why = "set in the case" if given is not None else f"error {SOLUTION_ERROR:.1g}, as of the splines"
+        theory_why = "tabulated before the run"
+        return FilmChoice("finite", SOLUTIONS, mesh, None, SOLUTION_ERROR, theory_why, mesh_why)
+    films = [place.geometry for place in film_places(case)]
+    slenderness = max(_slenderness(film) for film in films)
+    short = short_error(slenderness, SOLVED_HOLDS_TO)
+    theory, theory_why = case.film.theory, "set in the case"
+    if theory == "auto":
+        fits = short <= FILM_SHARE * target and not any(film.supply.divides for film in films)
+        theory = "short" if fits else "finite"
+        theory_why = f"error of the short bearing with b/D = {slenderness:.2g}: {short:.1g} at {SOLVED_HOLDS_TO:g}"
+        if any(film.supply.divides for film in films):
+            theory_why = "axial grooves, which the short bearing does not have"
+    forms = [film_form(case, film, theory) for film in films]
+    form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
+    meshes = [_mesh(form, _slenderness(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]
+    mesh, error = max((mesh for mesh, _ in meshes), key=_size), max(error for _, error in meshes)
+    holds_to = SOLVED_HOLDS_TO if form == CHAINS else TABLE_HOLDS_TO
+    mesh_why = f"relative error {error:.1g} at an eccentricity of {holds_to:g}"
+    if given is not None:
+        mesh, mesh_why = Mesh(*given), "set in the case"
+        error = _mesh_error(form, mesh, slenderness)
+        meshes = [(mesh, error)] * len(films)
+    each = tuple((form, mesh) for form, (mesh, _) in zip(forms, meshes, strict=True))
+    error = short if theory == "short" else error
+    return FilmChoice(theory, form, mesh, None, error, theory_why, mesh_why, each)
+
+
+def short_error(slenderness: float, eccentricity: float) -> float:
+    """Relative error of the force of the short-bearing theory, for sections of b/D = slenderness."""
+    return float(SHORT * slenderness**2 * (1.0 - eccentricity) ** -SHORT_POWER)
+
+
+def all_clipped(case: Case) -> bool:
+    """Whether every film is the clipped solution of a linear equation."""
+    if case.film.bearing_model:
+        return False
+    return all(law_named(model).closed for model in case.cavitations)
+
+
+def needs_cells(case: Case) -> bool:
+    """Whether the films of a case are solved on volumes in a run."""
+    if case.film.bearing_model or not case.bearings:
+        return False
+    if case.film.solution == "cells":
+        return True
+    if not all_clipped(case):
+        return table_obstacle(case) != ""
+    places = film_places(case)
+    return any(not _rectangular(place.geometry, len(places) > 1) for place in places)
+
+
+def film_form(case: Case, film: FilmGeometry, theory: str) -> FilmForm:
+    """How a film without cells will be computed."""
+    if film.supply.divides:
+        return CHAINS
+    ambient = case.oil.ambient_pressure
+    equal = film.supply.gauge(ambient) == 0.0 and ambient == case.oil.cavitation_pressure
+    equal = equal or not law_named(case.cavitation(film)).cavitates
+    if theory == "short":
+        return CLOSED_FORM if equal else CLIPPED
+    return TABLE if equal else FIELDS
+
+
+def _rectangular(film: FilmGeometry, several: bool) -> bool:
+    """Whether the gap is made of rectangles whose pressure is known along their edges."""
+    return film.lobes is None and film.supply.rectangular and not (several and film.supply.divides)
+
+
+def _slenderness(film: FilmGeometry) -> float:
+    """Width of a section over the diameter."""
+    return film.width / film.diameter / (2 if film.supply.splits else 1)
+
+
+def _mesh(form: FilmForm, slenderness: float, allowed: float) -> tuple[Mesh, float]:
+    """The coarsest mesh whose error is small enough, or below which the error does not fall, and its error."""
+    meshes = list(CHAIN_ERROR if form == CHAINS else MESH_ERROR)
+    errors = [_mesh_error(form, mesh, slenderness) for mesh in meshes]
+    allowed = max(allowed, {CHAINS: CHAIN_FLOOR, FIELDS: FIELDS_FLOOR}.get(form, 0.0))
+    index = next((i for i, error in enumerate(errors) if error <= allowed), len(errors) - 1)
+    return meshes[index], errors[index]
+
+
+def _size(mesh: Mesh) -> int:
+    return mesh.axial * mesh.circumferential
+
+
+def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
+    """Error of any mesh: that of the next coarser one in the tables."""
+    table = CHAIN_ERROR if form == CHAINS else MESH_ERROR
+    coarser = [known for known in table if known.axial <= mesh.axial and known.circumferential <= mesh.circumferential]
+    coarsest = next(iter(table))
+    factor = table[coarser[-1]] if coarser else table[coarsest] * (coarsest.circumferential / mesh.circumferential) ** 3
+    if form == CHAINS:
+        return float(factor * max(1.0, slenderness))
+    return float(max(factor * slenderness**2, FIELDS_FLOOR if form == FIELDS else TABLE_FLOOR))
+
+
+def _cells(case: Case, target: float) -> tuple[tuple[int, int], str]:
+    """Cells (around, along), and what comes before their error in their reason."""
+    if case.accuracy.mesh is not None:
+        cells, why = given_cells(case.accuracy.mesh, FEWEST)
+        return cells, f"{why}; "
+    return fewest_cells(case, (RING_SHARE if turning_rings(case) else CELL_SHARE) * target, REACHED * target), ""

@@ -1,0 +1,269 @@
+"""The plan of a case: what has to be modelled for it, what is left out, and why.
+
+All choices that the program makes for a run are made here, with their reasons; settings of the case take precedence.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from frbcli.case.bearing import FilmGeometry, FloatingRingBearing
+from frbcli.case.model import altered
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.schema import Case
+from frbcli.errors import InputError
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.channels import coupled, opens_to_groove, resistance
+from frbcli.scene.clearance_steps import clearance_decisions
+from frbcli.scene.costs.cost import clock, expected_cost
+from frbcli.scene.costs.reference_length import reference_length
+from frbcli.scene.coupling import FULL, plan_coupling
+from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
+from frbcli.scene.forms.models import chosen_model, model_decisions
+from frbcli.scene.forms.none import NO_FILM
+from frbcli.scene.machine.elements import element_decisions
+from frbcli.scene.planning.cell_choice import KNEE
+from frbcli.scene.planning.expected_error import expected_error
+from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films
+from frbcli.scene.planning.plan_faults import plan_faults
+from frbcli.scene.planning.planned import Decision, Plan
+from frbcli.scene.planning.profiles import run_up_profile
+from frbcli.scene.supply import unfed_films
+from frbcli.units import display
+
+THEORIES = ("short", "finite")
+# Least steps per revolution of finite-volume films, and of films that are solved at every film call. More steps would
+# raise the cost more than they reduce the error.
+CELL_STEPS, SOLVED_STEPS = 12.0, 20.0
+# Local error of a step over the target, by method: the errors of some revolutions then add up to less than the target.
+LOOSE_SHARE, TIGHT_SHARE = 0.02, 0.01
+# The same of finite-volume films, over the error of the cells where that is above the target: the steps then add up to
+# 0.3 of the target, and to 0.03 of it for rotors on rings. Set on jeffcott-two-phase, axial-groove-two-phase and
+# floating-ring, without the turbochargers and the hard cases.
+CELL_SHARE = 0.025
+LOOSER, LOOSEST = math.sqrt(2.0), 0.1  # targets that a budget is tried with
+REACHED = 1.2  # expected error over the target that counts as met
+
+Decide = Callable[[str, object, str], None]
+
+
+def make_plan(case: Case) -> Plan:
+    """Plan a case: the cheapest that holds its target, or the most exact within its budget, where it sets no mesh and
+    tolerance of its own. Raises InputError naming every part of it that cannot be modelled."""
+    faults = plan_faults(case)
+    if faults:
+        raise InputError(case.name or "case", tuple(faults))
+    target, budget = case.accuracy.target, case.accuracy.budget
+    plan = _plan(case, target)
+    while budget is not None and _total_s(case, plan) > budget and target < LOOSEST:
+        target = min(LOOSER * target, LOOSEST)
+        plan = _plan(case, target)
+    if not plan.form.chosen_by_target and budget is None:
+        return plan
+    return replace(plan, decisions=(*plan.decisions, _about_target(case, plan)))
+
+
+def _about_target(case: Case, plan: Plan) -> Decision:
+    """What the target needs, and why the plan has something else."""
+    accuracy = case.accuracy
+    by_itself = altered(accuracy, {"mesh": None, "tolerance": None})
+    asked = _plan(altered(case, {"accuracy": by_itself}), accuracy.target)
+    error, needed = expected_error(plan).eccentricity, expected_error(asked).eccentricity
+    own = f"expected error {error:.1g}, {clock(_total_s(case, plan))}"
+    by_hand = accuracy.mesh is not None or accuracy.tolerance is not None
+    told, needs, knee = f"{accuracy.target:g}", "needs", ""
+    if needed > REACHED * accuracy.target:
+        told, needs = f"{told} is out of reach", "nearest to it"
+        if asked.form.chosen_by_target:
+            knee = f"; the cheapest cells within {KNEE:g} times the least error that can be had"
+    if (plan.cells, plan.mesh, plan.tolerance) == (asked.cells, asked.mesh, asked.tolerance):
+        return Decision("target", told, own + knee)
+    reasons = ["set in the case"] if by_hand else []
+    if accuracy.budget is not None and _total_s(case, asked) > accuracy.budget:
+        reasons.append(f"budget of {accuracy.budget:g} s")
+    why = ", ".join(reasons)
+    cost = f"{needed:.1g}, {clock(_total_s(case, asked))}{knee}"
+    needs += f" {asked.form.mesh_told(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
+    return Decision("target", told, f"{needs}; chosen: {own}; {why}")
+
+
+def _total_s(case: Case, plan: Plan) -> float:
+    """Expected CPU time of a run-up."""
+    return expected_cost(case, plan, run_up_profile(case)).total_s
+
+
+def _plan(case: Case, target: float) -> Plan:
+    """The cheapest plan that holds a target."""
+    decisions: list[Decision] = []
+
+    def decide(choice: str, value: object, reason: str) -> None:
+        decisions.append(Decision(choice, str(value), reason))
+
+    _decide_scene(case, decide)
+    films = choose_films(case, target)
+    model = chosen_model(case)
+    if not case.bearings:
+        return _without_films(case, films, target, decisions, decide)
+    if model is not None:
+        for decided in model_decisions(model):
+            decide(*decided)
+    else:
+        _decide_models(case, films, decide)
+    for film in unfed_films(case):
+        decide("supply", f"{film.name} {'starves' if film.keeps else 'missing'}".strip(), film.reason)
+    coupling, reason = plan_coupling(case)
+    decide("coupling", coupling, reason)
+    if model is None:
+        _decide_film(case, films, decide)
+    method, tolerance, steps = _time_integration(case, films, target, decide)
+    if not turning_rings(case):
+        decide("torque", "left out", "the rotor speed is given and no ring turns")
+    else:
+        reason = "turns the rings" if case.film.torque == "all" else "turns the rings; set in the case"
+        decide("torque", case.film.torque, reason)
+    return Plan(
+        theory=films.theory,
+        cavitation=case.film.cavitation,
+        form=films.form,
+        mesh=films.mesh,
+        films=films.films,
+        cells=films.cells,
+        film_error=films.error,
+        method=method,
+        tolerance=tolerance,
+        steps_per_revolution=steps,
+        coupling=coupling,
+        macro_step=case.accuracy.macro_step if coupling == "co-simulation" else None,
+        decisions=tuple(decisions),
+    )
+
+
+def _without_films(case: Case, films: FilmChoice, target: float, decisions: list[Decision], decide: Decide) -> Plan:
+    """The plan of a machine whose bearings are all given by coefficients."""
+    length, reason = reference_length(case)
+    decide("length", display(length, "m"), f"what errors are relative to: {reason}")
+    method, tolerance, steps = _time_integration(case, films, target, decide)
+    return Plan(
+        theory=str(NO_FILM),
+        cavitation=case.film.cavitation,
+        form=NO_FILM,
+        mesh=films.mesh,
+        films=(),
+        cells=None,
+        film_error=0.0,
+        method=method,
+        tolerance=tolerance,
+        steps_per_revolution=steps,
+        coupling=FULL,
+        macro_step=None,
+        decisions=tuple(decisions),
+        length=length,
+    )
+
+
+def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
+    """Theory and cavitation."""
+    decide("theory", films.theory, films.theory_why)
+    for told, cavitation, is_set in _cavitations(case):
+        reason = films.form.about_oil(law_named(cavitation))
+        decide("cavitation", told, f"{'set in the case' if is_set else 'the default'}; {reason}")
+
+
+def _decide_scene(case: Case, decide: Decide) -> None:
+    """Bearings, films and gap."""
+    places, count = film_places(case), len(case.given_bearings)
+    if isinstance(case.rotor, TurbochargerRotor):
+        decide("bearings", f"{count} of {count}", "the rotor is not symmetric")
+    else:
+        decide(
+            "bearings", "1 of 2", "symmetric rotor and bearings: both journals have the same motion, forces count twice"
+        )
+    for decided in element_decisions(case):
+        decide(*decided)
+    if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
+        decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
+    for bearing in rings(case):
+        if coupled(bearing):
+            decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
+    if len(places) == 1 and not case.film.bearing_model:
+        decide("gap", *_gap(places[0].geometry))
+    for decided in clearance_decisions(case):
+        decide(*decided)
+    if case.heat is not None:
+        gap = "follows the temperatures" if case.heat.clearance == "follows" else "does not follow it"
+        decide("heat", "lumped", f"set in the case; viscosity follows the temperature of each film, the gap {gap}")
+
+
+def _cavitations(case: Case) -> tuple[tuple[str, str, bool], ...]:
+    """Texts for the cavitation models of the films, the models, and whether the case sets them: one for all films, or
+    one each."""
+    common = "cavitation" in case.film.model_fields_set
+    places = film_places(case)
+    are_set = [common or getattr(place.geometry, "cavitation", None) is not None for place in places]
+    if len(set(case.cavitations)) == len(set(are_set)) == 1:
+        return ((case.cavitations[0], case.cavitations[0], are_set[0]),)
+    names = (place.name for place in places)
+    return tuple(
+        (f"{name}: {model}", model, is_set)
+        for name, model, is_set in zip(names, case.cavitations, are_set, strict=True)
+    )
+
+
+def _coupling_of_films(case: Case, bearing: FloatingRingBearing) -> str:
+    end = "a groove of given pressure in the outer film" if opens_to_groove(bearing) else "the outer film"
+    return f"oil flows between the inner film and {end}; resistance {resistance(case, bearing):.3g} Pa s/m^3 each"
+
+
+def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
+    """Form and mesh, with the error of the force."""
+    for decided in films.form.decisions(case, films):
+        decide(*decided)
+    with_oil = [place.name for place in film_places(case) if turns_with_oil(case, place)]
+    if with_oil and films.form.turns_cells:
+        told = "set in the case" if case.film.grid != "auto" else "no openings, and the film keeps its oil"
+        several = len(with_oil) < len(film_places(case))
+        which = f"{', '.join(with_oil)}: half-speed" if several else "half-speed"
+        decide("grid", which, f"{told}; the cells turn as the oil does, so that it does not diffuse")
+
+
+def _time_integration(case: Case, films: FilmChoice, target: float, decide: Decide) -> tuple[str, float, float]:
+    """Method, tolerance and steps per revolution."""
+    by_cells = films.form.by_cells
+    if by_cells and target > FINE_TARGET:
+        reason = "third order, L-stable: cavity fronts that cross cells limit the order"
+        method, share = "esdirk3", LOOSE_SHARE
+    elif target > LOOSE_TARGET:
+        method, share, reason = "esdirk3", LOOSE_SHARE, "third order, L-stable: sufficient for a large target"
+    else:
+        method, share, reason = "esdirk4", TIGHT_SHARE, "fourth order, L-stable: its error is far below the target"
+    decide("integrator", method, reason)
+    whole = "the target" if target == case.accuracy.target else f"{target:.2g}, the target that the budget pays for"
+    tolerance, reason = share * target, f"{share:g} of {whole}, for each step"
+    if films.form.chosen_by_target:
+        tolerance, reason = CELL_SHARE * target, f"{CELL_SHARE:g} of {whole}, for each step"
+        if films.error > target:
+            tolerance = CELL_SHARE * films.error
+            reason = f"{CELL_SHARE:g} of the error of the cells, for each step: less would cost more and gain nothing"
+    if case.accuracy.tolerance is not None:
+        tolerance, reason = case.accuracy.tolerance, "set in the case"
+    decide("tolerance", f"{tolerance:g}", reason)
+    steps, reason = float(case.accuracy.steps_per_revolution), "set in the case"
+    if "steps_per_revolution" not in case.accuracy.model_fields_set:
+        reason = "at least; more steps raise the cost more than they reduce the error"
+        if by_cells:
+            steps = CELL_STEPS
+        elif films.form.solved_each_call and target > FINE_TARGET:
+            steps = SOLVED_STEPS
+        else:
+            reason = "at least"
+    decide("steps", f"{steps:g} per revolution", reason)
+    return method, tolerance, steps
+
+
+def _gap(film: FilmGeometry) -> tuple[str, str]:
+    supply = film.supply
+    if film.lobes is not None:
+        return "developed gap", f"with {film.lobes.count} lobes, supply {supply.kind}"
+    return supply.gap
