@@ -106,3 +106,17 @@ def test_ci_finds_the_readmes_line_that_sets_up_and_tests() -> None:
     assert pattern
     lines = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
     assert len([line for line in lines if re.search(pattern[1], line)]) == 1
+
+
+def test_rows_of_the_page_of_additions_name_what_is_there() -> None:
+    """Files and folders of the second column, and names with their files in the third."""
+    text = (ROOT / "docs" / "adding-a-model.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("| ")][2:]
+    assert len(rows) > 8
+    for what, place, row in rows:
+        missing = [path for path in re.findall(r"`([\w./-]+/[\w./-]*)`", place) if not (ROOT / path).exists()]
+        assert missing == [], what
+        for name, path in re.findall(r"`(\w+)` in `([\w./-]+)`", row):
+            assert re.search(rf"^(def |class )?{name}\b", (ROOT / path).read_text(encoding="utf-8"), re.MULTILINE), what
+    named = [path for path in re.findall(r"`((?:frbcli|tests)/[\w./-]+)`", text) if not (ROOT / path).exists()]
+    assert named == []
