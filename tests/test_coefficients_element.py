@@ -116,6 +116,10 @@ def test_the_response_of_the_rigid_rotor_is_the_closed_form() -> None:
     assert found.validity == ("linear",) * 3
     assert found.films == ()
     assert found.gap_share.shape == (3, 0)
+    pull = omega[:, None] ** 2 * make_rotor(found.case).unbalance
+    assert found.bearings == ("seal",)  # both of them, with the unbalance, accelerate the rotor
+    inertia = -(omega[:, None] ** 2) * M * found.motion[:, 0]
+    np.testing.assert_allclose(2.0 * found.forces[:, 0] + pull, inertia, rtol=1e-9)
 
 
 def test_the_response_of_the_jeffcott_rotor_is_the_closed_form() -> None:

@@ -140,7 +140,7 @@ _NAMES = replace(NAME, value=attrgetter("films"))
 # Of a Response, over speeds and films
 RESPONSE_FORCES = (
     _SPEEDS,
-    _NAMES,
+    replace(NAME, value=attrgetter("bearings")),
     Column("force_x", "N", "amplitude of the force on the journal along x", lambda found: _size(found.forces[:, :, 0])),
     Column("force_y", "N", "amplitude of the force on the journal along y", lambda found: _size(found.forces[:, :, 1])),
 )

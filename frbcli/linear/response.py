@@ -32,6 +32,7 @@ from frbcli.linear.stability import StabilityPoint, default_speeds, stability_po
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.ring import without_spins
 from frbcli.scene.film_faults import require_films
+from frbcli.scene.machine.elements import element_forces
 
 Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
@@ -52,10 +53,11 @@ class Response(Tabular):
     """The synchronous motion at n speeds.
 
     speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex
-    amplitudes of x and y in m; films: the names of the f films; forces: (n, f, 2) those of the forces on the journals
-    in N, of one bearing; growth: (n,) in 1/s of the least damped whirl: where it is positive, the motion is not seen;
-    critical_speeds_Hz: where the largest motion of any point has a peak; resting: the resting positions; in_films: (n,
-    f, 2) complex amplitudes of the journals in their films, over the clearance; clearances: (n, f) m, warm with heat.
+    amplitudes of x and y in m; films: the names of the f films; elements: those of the e elements; forces: (n, f + e,
+    2) those of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least damped whirl:
+    where it is positive, the motion is not seen; critical_speeds_Hz: where the largest motion of any point has a peak;
+    resting: the resting positions; in_films: (n, f, 2) complex amplitudes of the journals in their films, over the
+    clearance; clearances: (n, f) m, warm with heat.
     """
 
     case: Case
@@ -63,12 +65,18 @@ class Response(Tabular):
     points: tuple[str, ...]
     motion: Amplitudes
     films: tuple[str, ...]
+    elements: tuple[str, ...]
     forces: Amplitudes
     growth: Array
     critical_speeds_Hz: tuple[float, ...]
     resting: tuple[StabilityPoint, ...]
     in_films: Amplitudes
     clearances: Array
+
+    @property
+    def bearings(self) -> tuple[str, ...]:
+        """(f + e,) names of the films and of the elements."""
+        return self.films + self.elements
 
     @property
     def gap_share(self) -> Array:
@@ -144,7 +152,7 @@ def response(
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise InputError(case.name or "case", (Fault("speed", "", None, problem, "Choose other speeds."),))
     rotor = without_spins(system.rotor, system.ring_count)
-    motions, forces, journals = zip(*(_at(rotor, point) for point in resting), strict=True)
+    motions, forces, journals = zip(*(_at(case, rotor, point) for point in resting), strict=True)
     systems = (system if point.warm is None else point.warm.system for point in resting)
     clearances = np.array([each.clearances for each in systems])
     motion = np.array(motions)
@@ -155,6 +163,7 @@ def response(
         points=tuple(name for name, _ in rotor.points),
         motion=motion,
         films=system.names,
+        elements=tuple(element.name for element in case.elements),
         forces=np.array(forces),
         growth=np.array([point.growth for point in resting]),
         critical_speeds_Hz=peak_speeds(speeds, motion),
@@ -178,14 +187,15 @@ def larger_semi_axis(motion: Amplitudes) -> Array:
     return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
 
 
-def _at(rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitudes, Amplitudes]:
-    """Motion (p, 2) of the points, forces (films, 2), and motion (films, 2) of the journals in their films at one
-    speed."""
+def _at(case: Case, rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitudes, Amplitudes]:
+    """Motion (p, 2) of the points, forces (films + elements, 2), and motion (films, 2) of the journals in their films
+    at one speed."""
     omega = 2.0 * math.pi * point.speed_Hz
     stiffness, damping = coefficients_of(point.films)
     q = unbalance_motion(rotor, omega, stiffness, damping)
     journals = rotor.journals @ q
     forces = -np.einsum("fij,fj->fi", stiffness + 1j * omega * damping, journals)
+    forces = np.concatenate([forces, element_forces(case, rotor, omega, q)])
     return np.array([place @ q for _, place in rotor.points]), forces, journals
 
 

@@ -39,8 +39,8 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
             _line(phase, found, found.phase_deg[:, number], colour, dash, None)
             _polar(polar, found, number, colour, dash)
         sizes = larger_semi_axis(found.forces)
-        for number, film in enumerate(found.films):
-            _line(force, found, sizes[:, number], *_line_of(number), film or "bearing")
+        for number, name in enumerate(found.bearings):
+            _line(force, found, sizes[:, number], *_line_of(number), name or "bearing")
         for track in tracks:
             size = np.abs(track.forward) + np.abs(track.backward)
             amplitude.plot(track.speed_Hz, MICRO * size, color=BLACK, linewidth=0.6, label=f"{track.signal} in the run")

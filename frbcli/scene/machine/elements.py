@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
@@ -38,6 +39,16 @@ def with_elements(case: Case, rotor: LinearRotor) -> LinearRotor:
         for element, point in zip(case.elements, element_points(case), strict=True)
     ]
     return rotor.with_parts(parts) if parts else rotor
+
+
+def element_forces(case: Case, rotor: LinearRotor, omega: float, q: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(e, 2) complex amplitudes in N of the forces of the elements on the shaft, of one each. rotor: of the case; q:
+    (n,) complex amplitudes of its motion with omega rad/s."""
+    maps, forces = dict(rotor.points), np.zeros((len(case.elements), 2), dtype=np.complex128)
+    for force, element, point in zip(forces, case.elements, element_points(case), strict=True):
+        stiffness, damping, mass = kind_of(element).linear(element).at(omega)
+        force[:] = -(stiffness + 1j * omega * damping - omega**2 * mass) @ (maps[point] @ q)
+    return forces
 
 
 def changes_with_speed(case: Case) -> bool:
