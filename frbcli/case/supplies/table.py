@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Union, get_args
 from pydantic import Field
 
 from frbcli.case.supplies.axial_grooves import AxialGrooves
+from frbcli.case.supplies.axial_slots import AxialSlots
 from frbcli.case.supplies.bores import Bores
 from frbcli.case.supplies.circumferential_groove import CircumferentialGroove
 from frbcli.case.supplies.none import NoSupply
@@ -19,6 +20,7 @@ SUPPLIES: tuple[type[OilSupply], ...] = (
     AxialGrooves,
     Bores,
     Pocket,
+    AxialSlots,
 )
 
 if TYPE_CHECKING:

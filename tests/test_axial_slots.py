@@ -1,0 +1,117 @@
+"""Axial slots over a part of the width: against pockets and symmetries, and through the program to a run."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run
+from frbcli.errors import InputError
+from frbcli.film.cells.loads import loads
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.section_faults import section_faults
+from frbcli.report.sketch import film_sketches, rotor_sketch
+from frbcli.runs.run import runup
+from frbcli.scene.films import film_places, volume_film
+from frbcli.scene.plan import make_plan
+from frbcli.scene.section import film_section
+
+CELLS, FINE = (48, 6), (192, 24)
+
+
+def case_of(*settings: str, count: int = 2, length: str = "10 mm", angle: str = "10 deg") -> Case:
+    sizes = f'position = "0 deg", opening_angle = "{angle}", length = "{length}", pressure = "2 bar"'
+    return load_case("rigid", [f'bearing.supply={{ kind = "axial-slots", count = {count}, {sizes} }}', *settings])
+
+
+def pocket_of(length: str) -> Case:
+    sizes = f'position = "0 deg", opening_angle = "10 deg", width = "{length}", pressure = "2 bar"'
+    return load_case("rigid", [f'bearing.supply={{ kind = "pocket", {sizes} }}'])
+
+
+def force(
+    case: Case, d: tuple[float, float], v: tuple[float, float], omega: float, cells: tuple[int, int] = CELLS
+) -> np.ndarray:
+    film, motion = volume_film(case, film_places(case)[0], cells), Motion(d, v, omega)
+    return np.array(loads(film, motion, FilmSolver(film).steady(motion)).force)
+
+
+@pytest.mark.parametrize("length", ["10 mm", "20 mm"])
+def test_one_slot_is_a_pocket_of_the_same_size(length: str) -> None:
+    """20 mm is the whole width of the bearing."""
+    slot, pocket = case_of(count=1, length=length), pocket_of(length)
+    sections = [film_section(case, case.bearings[0]) for case in (slot, pocket)]  # type: ignore[arg-type]
+    assert sections[0] == sections[1]
+    assert section_faults(sections[0]) == []
+    motion = ((0.4, -0.3), (2.0, 5.0), 300.0)
+    assert force(slot, *motion) == pytest.approx(force(pocket, *motion), rel=1e-12)
+
+
+def test_two_slots_have_the_symmetry_of_a_half_turn() -> None:
+    """The force turns with a motion that is turned by half a turn. One slot pushes the journal away from it."""
+    d, v, omega = (0.4, -0.3), (2.0, 5.0), 300.0
+    turned = (-d[0], -d[1]), (-v[0], -v[1]), omega
+    found = force(case_of(), d, v, omega)
+    assert force(case_of(), *turned) == pytest.approx(-found, rel=1e-9, abs=1e-9 * float(np.linalg.norm(found)))
+    still = (0.0, 0.0), (0.0, 0.0), 0.0
+    one = force(case_of(count=1), *still)
+    assert one[1] < -1.0
+    assert abs(one[0]) < 1e-9 * abs(one[1])
+    assert np.abs(force(case_of(), *still)).max() < 1e-9 * abs(one[1])
+
+
+def test_force_of_a_slot_over_the_width_is_its_closed_form() -> None:
+    """Laplace's equation on the gap of a journal at rest: beside the slot the modes sin(n pi z / B) of odd n decay as
+    exp(-n pi R phi / B) does."""
+    radius, width, half, gauge = 12.5e-3, 20e-3, math.radians(5.0), 1e5
+    n = np.arange(1.0, 4001.0, 2.0)
+    a = n * math.pi * radius / width
+    beside = 2.0 * (8.0 * width / (math.pi * n) ** 2) @ ((a * math.cos(half) - math.sin(half)) / (a**2 + 1.0))
+    expected = gauge * radius * (2.0 * width * math.sin(half) + beside)
+    still = (0.0, 0.0), (0.0, 0.0), 0.0
+    errors = [-force(case_of(count=1, length="20 mm"), *still, cells)[1] / expected - 1.0 for cells in (CELLS, FINE)]
+    assert abs(errors[0]) < 1e-2
+    assert abs(errors[1]) < 1e-3
+    shorter = [-force(case_of(count=1, length=f"{mm} mm"), *still)[1] for mm in (1, 5, 10, 15, 20)]
+    assert np.diff(shorter).min() > 1.0
+
+
+@pytest.mark.parametrize(
+    ("count", "angle", "length", "key", "value", "problem", "remedy"),
+    [
+        (2, "200 deg", "10 mm", "opening_angle", '"200 deg"', "leaves no land between 2 slots.", "Make it smaller."),
+        (2, "10 deg", "21 mm", "length", '"21 mm"', "is longer than the bearing (20 mm).", "Make it shorter."),
+    ],
+)
+def test_slots_that_cannot_be_are_refused(
+    count: int, angle: str, length: str, key: str, value: str, problem: str, remedy: str
+) -> None:
+    with pytest.raises(InputError) as raised:
+        case_of(count=count, angle=angle, length=length)
+    (fault,) = raised.value.faults
+    assert (fault.key, fault.value, fault.problem, fault.remedy) == (f"bearing.supply.{key}", value, problem, remedy)
+
+
+def test_check_plan_and_sketch_tell_of_slots(capsys: pytest.CaptureFixture[str]) -> None:
+    case = case_of()
+    decisions = {decision.choice: decision for decision in make_plan(case).decisions}
+    assert decisions["gap"].value == "developed gap"
+    assert "axial-slots" in decisions["gap"].reason
+    slots = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", length="10 mm", pressure="2 bar"}'
+    assert run(["check", "rigid", "--set", slots]) == 0
+    assert "2 axial slots, 2 bar" in capsys.readouterr().out
+    (_, around), = film_sketches(case)
+    (_, around_one), = film_sketches(case_of(count=1))
+    assert around.count('"oil"') == 2 * around_one.count('"oil"') == 2
+    assert rotor_sketch(case)[0].count('"oil"') == 4  # above and below the axis, in both bearings
+
+
+def test_a_rotor_runs_on_slots(tmp_path: Path) -> None:
+    found = runup(case_of("speed.duration=0.02 s"), tmp_path / "run.h5")
+    assert found.status == "finished"
