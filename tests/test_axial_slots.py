@@ -85,7 +85,7 @@ def test_force_of_a_slot_over_the_width_is_its_closed_form() -> None:
 @pytest.mark.parametrize(
     ("count", "angle", "length", "key", "value", "problem", "remedy"),
     [
-        (2, "180 deg", "10 mm", "opening_angle", '"180 deg"', "leaves no land between 2 slots.", "Make it smaller."),
+        (2, "200 deg", "10 mm", "opening_angle", '"200 deg"', "leaves no land between 2 slots.", "Make it smaller."),
         (2, "10 deg", "21 mm", "length", '"21 mm"', "is longer than the bearing (20 mm).", "Make it shorter."),
     ],
 )

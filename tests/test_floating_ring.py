@@ -64,7 +64,7 @@ def test_a_concentric_ring_spins_up_as_its_torques_say(tmp_path: Path) -> None:
     """theta omega_F' = k_i (omega_R - omega_F) - k_o omega_F, k = 2 pi eta R^3 B / C, less the area of the bores."""
     case = ringed(*BORES, *WEIGHTLESS, *constant(100.0, 0.15))
     run, system = finished(case, tmp_path), system_of(case)
-    k_i, k_o = 2 * math.pi * np.array(system.drags) * system.sheared
+    k_i, k_o = 2 * math.pi * np.array(system.drags) * system.films.sheared
     assert max(run["eccentricity_inner"].max(), run["eccentricity_outer"].max()) < 1e-6
     ratio = k_i / (k_i + k_o) * (1.0 - np.exp(-run["time_s"] * (k_i + k_o) / 20e-6))
     np.testing.assert_allclose(run["ring_speed_Hz"] / 100.0, ratio, atol=1e-5)
@@ -80,7 +80,7 @@ def test_concentric_ratio_in_closed_form() -> None:
 
 def test_holes_are_not_sheared() -> None:
     """Six bores of 2.5 mm in a bearing of 20 mm x 25 mm, and a groove of no width."""
-    inner, outer = system_of(ringed("film.cavitation=half-sommerfeld", "accuracy.mesh=[40,160]")).sheared
+    inner, outer = system_of(ringed("film.cavitation=half-sommerfeld", "accuracy.mesh=[40,160]")).films.sheared
     assert inner == pytest.approx(1.0 - 6 * math.pi / 4 * 2.5**2 / (math.pi * 20.0 * 25.0), abs=1e-6)
     assert outer == pytest.approx(1.0)
 

@@ -1,0 +1,73 @@
+"""What every row of the table of supplies answers, each made of the examples of its keys."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import frbcli
+from frbcli import load_case
+from frbcli.case.bearing import SingleFilmBearing
+from frbcli.case.schema import json_schema
+from frbcli.case.supplies.supply import OilSupply
+from frbcli.case.supplies.table import SUPPLIES, kind_of, supply_named
+from frbcli.scene.films import film_places, is_plain
+from frbcli.scene.section import film_section
+
+PACKAGE = Path(frbcli.__file__).parent
+ASKED = re.compile(r"isinstance\([a-z_.]*supply|getattr\([a-z_.]*supply|supply\.kind (?:==|!=|in|not in)")
+AMBIENT = 1e5
+each_supply = pytest.mark.parametrize("row", SUPPLIES, ids=kind_of)
+
+
+def film_of(row: type[OilSupply]) -> tuple[frbcli.Case, SingleFilmBearing]:
+    """A bearing with this supply at 3.5 bar, and its case."""
+    entry = json_schema()["$defs"][row.__name__]
+    given = {key: _example(entry["properties"][key]) for key in entry.get("required", ()) if key != "kind"}
+    given = {"kind": kind_of(row), **given, **({"pressure": "3.5 bar"} if row.feeds else {})}
+    table = ", ".join(f"{key} = {value if isinstance(value, int) else repr(value)}" for key, value in given.items())
+    case = load_case("jeffcott", ["bearing.diameter=60 mm", f"bearing.supply={{ {table} }}"])  # with room for all
+    (film,) = (place.geometry for place in film_places(case))
+    assert isinstance(film, SingleFilmBearing)
+    return case, film
+
+
+def _example(entry: dict[str, Any]) -> object:
+    return entry["examples"][0] if "examples" in entry else entry["anyOf"][1]["examples"][0]
+
+
+@each_supply
+def test_all_openings_have_the_gauge_pressure_of_the_supply(row: type[OilSupply]) -> None:
+    case, film = film_of(row)
+    section = film_section(case, film)
+    pressures = [*(groove.pressure for groove in section.grooves), *(hole.pressure for hole in section.holes)]
+    if section.far == "groove":
+        pressures.append(section.far_pressure)
+    assert len(pressures) == (len(film.supply.outlines(section.radius, film.width)) if row.feeds else 0)
+    assert set(pressures) <= {film.supply.gauge(AMBIENT)}
+    assert film.supply.gauge(AMBIENT) == (2.5e5 if row.feeds else 0.0)
+    assert film.supply.absolute(AMBIENT) == (3.5e5 if row.feeds else AMBIENT)
+
+
+@each_supply
+def test_what_a_supply_says_of_the_gap_is_what_its_section_has(row: type[OilSupply]) -> None:
+    case, film = film_of(row)
+    section = film_section(case, film)
+    assert is_plain(film) is not bool(section.grooves or section.holes)
+    assert film.supply.divides is bool(section.grooves)
+    assert film.supply.rectangular is not bool(section.holes)
+    assert film.supply.splits is (section.far == "groove" and section.copies == 2)
+
+
+def test_kinds_are_rows_of_their_own_and_no_other_word_is_one() -> None:
+    assert len({kind_of(row) for row in SUPPLIES}) == len(SUPPLIES)
+    assert [supply_named(kind_of(row)) for row in SUPPLIES] == list(SUPPLIES)
+    assert supply_named("no such supply") is OilSupply
+
+
+def test_nobody_asks_for_the_kind_of_a_supply() -> None:
+    files = [file for file in PACKAGE.rglob("*.py") if "supplies" not in file.parts]
+    assert [file.name for file in files if ASKED.search(file.read_text(encoding="utf-8"))] == []
