@@ -302,7 +302,18 @@ def test_cross_coupling_makes_the_rotor_whirl_where_it_exceeds_c_omega() -> None
 def test_the_shipped_seal_whirls_where_it_says() -> None:
     threshold = stability(frbcli.load_case("seal")).threshold
     assert threshold is not None
-    assert threshold.speed_Hz == pytest.approx(math.sqrt(2.0 * K / M) / 1.1 / TURN, rel=1e-9)
+    assert threshold.speed_Hz == pytest.approx(math.sqrt(2.0 * K / M) / 0.8 / TURN, rel=1e-9)
+
+
+def test_the_run_of_the_shipped_seal_shows_its_critical_speed_and_its_whirl(tmp_path: Path) -> None:
+    """Behind the threshold the whirl grows with its natural frequency until it is seen."""
+    run = runup(frbcli.load_case("seal"), tmp_path / "run.h5")
+    critical, onset = frbcli.find_events(run)
+    natural = math.sqrt(2.0 * K / M) / TURN
+    assert (critical.kind, critical.point, onset.kind, onset.film) == ("critical-speed", "journal", "onset", None)
+    assert critical.speed_Hz == pytest.approx(natural, rel=0.05)
+    assert natural / 0.8 < onset.speed_Hz < 1.1 * natural / 0.8
+    assert onset.frequency_Hz == pytest.approx(natural, rel=0.01)
 
 
 @pytest.mark.parametrize("share", [0.8, 1.25])

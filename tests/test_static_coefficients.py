@@ -13,8 +13,8 @@ import frbcli
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
+from frbcli.equilibrium import static_films
 from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.linear import static_films
 
 SPEED_Hz = 50.0
 ONE_SPEED = (f"speed.from={SPEED_Hz} Hz", f"speed.to={SPEED_Hz} Hz")

@@ -85,6 +85,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
             events += _ring_whirls(run, name, room, turns)
         elif room is not None:
             events += _whirl(run, whirls[plain.index(name)][0] / room, turns, name)
+        else:
+            events += _whirls_without_films(run, name, turns)
     before = min((event.t_s for event in events), default=np.inf)
     seen = [joined(*node) for node in nodes]
     events += _near_the_speed(run, turns, dict(zip(seen, resonances, strict=True)), besides, before)
@@ -151,6 +153,21 @@ def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> It
             speed = signals.speed_at(run, t)
             film, point = joined(name, whirl.side), joined("journal", name)
             yield Event(kind, film, t, speed, frequency, frequency / speed, point)
+
+
+def _whirls_without_films(run: RunLike, name: str, turns: Revolutions) -> Iterator[Event]:
+    """Onset and offset of each whirl of a journal that is in no film, of any frequency well below the speed: what
+    drives it, such as a seal, has no film that would tell how fast. Relative to the length of the machine."""
+    room = run.references.get("length_m", 0.0)
+    settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
+    for whirl in find_whirls(run, name, room, settled_s) if room > 0.0 else ():
+        moments: list[tuple[Kind, int]] = [("onset", 0)]
+        if not whirl.lasts:
+            moments.append(("offset", len(whirl.time_s) - 1))
+        for kind, at in moments:
+            t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
+            speed = signals.speed_at(run, t)
+            yield Event(kind, None, t, speed, frequency, frequency / speed, joined("journal", name))
 
 
 def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Iterator[Event]:
