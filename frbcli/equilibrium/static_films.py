@@ -39,7 +39,7 @@ FINER, FINER_SHARE = 3, 1.5  # times the elements each way, and the lines betwee
 
 
 @dataclass(frozen=True)
-class Films:
+class MeshFilms:
     """The machine on one mesh. share: of the difference between the coefficients on this mesh and on the one of static
     results that is the error of the latter, 0 for itself."""
 
@@ -54,8 +54,8 @@ class StaticFilms:
     largest rotor speed."""
 
     case: Case
-    own: Films
-    others: tuple[Films, ...]
+    own: MeshFilms
+    others: tuple[MeshFilms, ...]
     top_Hz: float | None
 
     @property
@@ -71,7 +71,7 @@ class StaticFilms:
     def warm(self, viscosities: Array, clearances: Array) -> StaticFilms:
         """The same with viscosities in Pa s and clearances in m, (films,) each."""
 
-        def warmed(films: Films) -> Films:
+        def warmed(films: MeshFilms) -> MeshFilms:
             return replace(films, system=warm_system(self.case, films.plan, films.system, viscosities, clearances))
 
         case = warm_case(self.case, viscosities, clearances)
@@ -89,8 +89,8 @@ def static_films(case: Case, load: float | None = None, top_Hz: float | None = N
     rotor = _rotor(case, load)
     plan = _plan(case)
 
-    def made(plan: Plan, share: float = 0.0) -> Films:
-        return Films(plan, make_system(case, plan, rotor, top_Hz), share)
+    def made(plan: Plan, share: float = 0.0) -> MeshFilms:
+        return MeshFilms(plan, make_system(case, plan, rotor, top_Hz), share)
 
     return StaticFilms(case, made(plan), tuple(made(*other) for other in _others(plan)), top_Hz)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm, coefficient_error, films_at_rest, resting_film
 from frbcli.equilibrium.resting import resting_films
-from frbcli.equilibrium.static_films import Films, StaticFilms, static_films
+from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
 from frbcli.scene.machine.system import System, make_system
@@ -93,7 +93,7 @@ class StaticMachines:
 
 
 def _on_others(
-    meshes: tuple[Films, ...], omega: float, start: Array | None
+    meshes: tuple[MeshFilms, ...], omega: float, start: Array | None
 ) -> tuple[Array | None, list[tuple[FilmsAtRest, float]]]:
     """The displacements on the last of several meshes, each sought from those on the one before, and the films of all;
     meshes on which no position is found are left out."""

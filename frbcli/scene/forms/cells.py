@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Array
-from frbcli.scene.forms.form import FINER, FilmForm, Work, cells_B
+from frbcli.scene.forms.form import FINER, FilmForm, SolveCounts, cells_B
 from frbcli.scene.planning.cell_choice import USUAL, cells_time, coarser_cells, compared_states
 
 if TYPE_CHECKING:
@@ -104,4 +104,4 @@ def _steady_s(cells: tuple[int, int]) -> float:
     return STEADY_s * math.pow(cells[0] * cells[1] / STEADY_CELLS, STEADY_POWER)
 
 
-CELLS = CellForm("cells", Work(1.2, 1.5, 2.3, (2.0, 1.0)), 20.0)
+CELLS = CellForm("cells", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 20.0)

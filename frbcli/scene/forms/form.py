@@ -27,7 +27,7 @@ BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held
 
 
 @dataclass(frozen=True)
-class Work:
+class SolveCounts:
     """Of films of a form. crowded: steps over the least number of steps; quiet, whirling: film solves of a stage;
     pressed: steps and solves of a stage over those of another whirl, where it presses the journal into the shell."""
 
@@ -39,10 +39,10 @@ class Work:
 
 @dataclass(frozen=True)
 class FilmForm:
-    """A form of films. name: in words; work: see Work; us: time of a solve in us, of the usual mesh."""
+    """A form of films. name: in words; work: see SolveCounts; us: time of a solve in us, of the usual mesh."""
 
     name: str
-    work: Work
+    work: SolveCounts
     us: float
 
     by_cells: ClassVar[bool] = False  # whether it has cells or elements whose number a plan may choose

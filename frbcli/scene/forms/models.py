@@ -9,7 +9,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.bearing_model.table import model_named
-from frbcli.scene.forms.form import FilmForm, Work
+from frbcli.scene.forms.form import FilmForm, SolveCounts
 
 WHY = "set in the case; added from Python"
 TOLD = "the whole bearing by one function of displacement, velocity and speed; derivatives by {}"
@@ -22,7 +22,7 @@ class ModelForm(FilmForm):
     error_known: ClassVar[bool] = False
 
 
-GIVEN: FilmForm = ModelForm("force of a bearing model", Work(1.0, 1.0, 1.6, (1.0, 2.0)), 1.0)
+GIVEN: FilmForm = ModelForm("force of a bearing model", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 1.0)
 
 
 def chosen_model(case: Case) -> BearingModel | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from frbcli.scene.forms.form import FilmForm, Work
+from frbcli.scene.forms.form import FilmForm, SolveCounts
 
 
 @dataclass(frozen=True)
@@ -15,4 +15,4 @@ class NoForm(FilmForm):
     error_known: ClassVar[bool] = False
 
 
-NO_FILM: FilmForm = NoForm("no film", Work(1.0, 1.0, 1.0, (1.0, 1.0)), 0.35)
+NO_FILM: FilmForm = NoForm("no film", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 0.35)

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
 from frbcli.scene.forms.cells import cells_of
-from frbcli.scene.forms.form import FilmForm, Work, cells_B
+from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
 from frbcli.scene.planning.cell_choice import given_cells
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class PublishedForm(FilmForm):
 
 
 PUBLISHED = PublishedForm(
-    "quadratic elements, two-phase model as published", Work(1.5, 4.0, 4.0, (1.0, 1.0)), 1300.0
+    "quadratic elements, two-phase model as published", SolveCounts(1.5, 4.0, 4.0, (1.0, 1.0)), 1300.0
 )
 
 

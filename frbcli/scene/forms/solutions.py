@@ -11,7 +11,7 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, is_plain
-from frbcli.scene.forms.form import BLOCKS, SAMPLES, FilmForm, Work
+from frbcli.scene.forms.form import BLOCKS, SAMPLES, FilmForm, SolveCounts
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan
@@ -55,7 +55,7 @@ def _along_factor(mesh: Mesh) -> float:
     return 0.37 + 0.03 * along + 0.01065 * along**2 + 3.09e-4 * float(along) ** 3
 
 
-SOLUTIONS = SolutionForm("table over eccentricity, direction and speed", Work(1.0, 1.0, 1.5, (1.0, 1.0)), 0.6)
+SOLUTIONS = SolutionForm("table over eccentricity, direction and speed", SolveCounts(1.0, 1.0, 1.5, (1.0, 1.0)), 0.6)
 
 
 def table_obstacle(case: Case) -> str:

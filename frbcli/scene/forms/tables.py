@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.film.grid import CHAIN_MODES
-from frbcli.scene.forms.form import FINER, SAMPLES, FilmForm, Work, mean_us
+from frbcli.scene.forms.form import FINER, SAMPLES, FilmForm, SolveCounts, mean_us
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan
@@ -72,9 +72,9 @@ def _modes_s(plan: Plan) -> float:
     return MODES_s * plan.mesh.axial**3
 
 
-CLOSED_FORM = TableForm("closed form", Work(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35)
-CLIPPED = TableForm("clipped exactly along z, 96 points around", Work(1.0, 1.0, 2.2, (1.2, 2.5)), 14.0)
-TABLE = TableForm("table over eccentricity and direction", Work(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35, TABLE_MODES)
-FIELDS = FieldsForm("tabulated fields, clipped at every call", Work(1.0, 1.0, 2.2, (1.2, 2.5)), 10.5)
-CHAINS = ChainForm("solved between the grooves at every call", Work(1.0, 1.0, 1.7, (3.3, 2.4)), 17.5)
+CLOSED_FORM = TableForm("closed form", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35)
+CLIPPED = TableForm("clipped exactly along z, 96 points around", SolveCounts(1.0, 1.0, 2.2, (1.2, 2.5)), 14.0)
+TABLE = TableForm("table over eccentricity and direction", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35, TABLE_MODES)
+FIELDS = FieldsForm("tabulated fields, clipped at every call", SolveCounts(1.0, 1.0, 2.2, (1.2, 2.5)), 10.5)
+CHAINS = ChainForm("solved between the grooves at every call", SolveCounts(1.0, 1.0, 1.7, (3.3, 2.4)), 17.5)
 MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)
