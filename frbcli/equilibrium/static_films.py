@@ -8,7 +8,9 @@ other meshes, whose coefficients tell the error of theirs.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,13 +52,18 @@ class MeshFilms:
 
 @dataclass(frozen=True)
 class StaticFilms:
-    """The machine on the films of static results, and on others for the error; case: whose films they are; top_Hz:
-    largest rotor speed."""
+    """The machine on the films of static results, and on others for the error, which are made when they are asked for;
+    case: whose films they are; top_Hz: largest rotor speed."""
 
     case: Case
     own: MeshFilms
-    others: tuple[MeshFilms, ...]
+    make_others: Callable[[], tuple[MeshFilms, ...]]
     top_Hz: float | None
+
+    @cached_property
+    def others(self) -> tuple[MeshFilms, ...]:
+        """The machine on other meshes."""
+        return self.make_others()
 
     @property
     def system(self) -> System:
@@ -75,7 +82,7 @@ class StaticFilms:
             return replace(films, system=warm_system(self.case, films.plan, films.system, viscosities, clearances))
 
         case = warm_case(self.case, viscosities, clearances)
-        return StaticFilms(case, warmed(self.own), tuple(map(warmed, self.others)), self.top_Hz)
+        return StaticFilms(case, warmed(self.own), lambda: tuple(map(warmed, self.others)), self.top_Hz)
 
     def volumes(self) -> tuple[VolumeFilm, ...]:
         """The films on CELLS, for the fields of pressure and flow."""
@@ -92,7 +99,7 @@ def static_films(case: Case, load: float | None = None, top_Hz: float | None = N
     def made(plan: Plan, share: float = 0.0) -> MeshFilms:
         return MeshFilms(plan, make_system(case, plan, rotor, top_Hz), share)
 
-    return StaticFilms(case, made(plan), tuple(made(*other) for other in _others(plan)), top_Hz)
+    return StaticFilms(case, made(plan), lambda: tuple(made(*other) for other in _others(plan)), top_Hz)
 
 
 def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
