@@ -21,8 +21,8 @@ import frbcli
 from frbcli.caches import temporary_cache
 from frbcli.case.reading.load import load_case
 from frbcli.cli.common import Terminal
-from frbcli.cli.runs.compiling import compilation_shown
 from frbcli.cli.runs import compiling
+from frbcli.cli.runs.compiling import compilation_shown
 from frbcli.runs.run import runup
 from frbcli.scene.costs.preparation import compile_s
 

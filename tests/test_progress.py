@@ -12,8 +12,8 @@ import frbcli
 from frbcli.cli import common
 from frbcli.cli.common import Terminal
 from frbcli.cli.main import run
-from frbcli.cli.runs.live import counting, of_runs
 from frbcli.cli.runs import live
+from frbcli.cli.runs.live import counting, of_runs
 from frbcli.runs.march import Progress
 
 PROGRESS = Progress(0.5, 1.0, 30.0, 0.4, 100, 40.0, 1e6, 3.0)
