@@ -23,7 +23,11 @@ from frbcli.errors import InputError
 ROOT = Path(__file__).parent.parent
 OWN_TEST = ("command-line.md",)  # its lines are run by test_command_line.py
 PLACEHOLDERS = {
-    "CASE": "my.toml", "RUN.h5": "run.h5", "NAME": "jeffcott", "FILE": "out.txt", "DIR": "study",
+    "CASE": "my.toml",
+    "RUN.h5": "run.h5",
+    "NAME": "jeffcott",
+    "FILE": "out.txt",
+    "DIR": "study",
 }
 WRONG_ON_PURPOSE = ("bearing.clearnce",)
 NO_LINE = ("...", "KEY=")  # shows a form, not a line
@@ -52,7 +56,11 @@ def words_of(line: str) -> list[str]:
     """The arguments behind `frb`, up to a pipe, a redirection or a comment; placeholders stand for files."""
     words = shlex.split(line, comments=True)[1:]
     ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
-    return [PLACEHOLDERS.get(word, word) for word in words[: min(ends, default=len(words))]]
+    words = words[: min(ends, default=len(words))]
+    measured = [at + 1 for at, word in enumerate(words) if word == "--measured"]  # a run is a measurement, too
+    return [
+        "run.h5" if at in measured and word == "FILE" else PLACEHOLDERS.get(word, word) for at, word in enumerate(words)
+    ]
 
 
 @pytest.fixture(scope="module")

@@ -156,7 +156,8 @@ def test_no_hard_case_has_a_number_without_a_unit() -> None:
     ("name", "setting", "key", "problem"),
     [
         ("floating-ring", "bearing.ring.inertia=0", "bearing.ring.inertia", "greater than 0"),
-        ("axial-groove-two-phase", "bearing.supply.count=24", "bearing", "its openings leave no land"),  # 24 x 15 deg
+        ("jeffcott", "bearing.width=2e10 m", "bearing.width", "8e\\+11 times the diameter"),
+        ("axial-groove-two-phase", "bearing.supply.count=24", "bearing.supply.opening_angle", "leaves no land"),
     ],
 )
 def test_what_leaves_nothing_to_compute_is_refused(name: str, setting: str, key: str, problem: str) -> None:

@@ -18,6 +18,7 @@ from frbcli.units import NUMBER, display
 
 THICKEST_MACHINED = 0.05  # clearance of a lobe over the radius
 VISCOSITY_RANGE = (1e-6, 1e4)
+LONGEST = 1e5  # width over the diameter
 
 
 def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -25,6 +26,9 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     oil = table(data, "oil")
     diameter, width = number(film, "diameter", "m"), number(film, "width", "m")
     clearance = warm_clearance(film, diameter)
+    if diameter and width and width > LONGEST * diameter:
+        problem = f"is {width / diameter:.3g} times the diameter: no bearing, and no table of its forces is finite."
+        yield Breach((*path, "width"), problem, "Check its unit.")
     if diameter and clearance is not None and not 0 < clearance < diameter / 2:
         yield _too_thick((*path, "clearance"), clearance, diameter)
     elif diameter and clearance is not None:
