@@ -56,11 +56,9 @@ def words_of(line: str) -> list[str]:
     """The arguments behind `frb`, up to a pipe, a redirection or a comment; placeholders stand for files."""
     words = shlex.split(line, comments=True)[1:]
     ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
-    words = words[: min(ends, default=len(words))]
-    measured = [at + 1 for at, word in enumerate(words) if word == "--measured"]  # a run is a measurement, too
-    return [
-        "run.h5" if at in measured and word == "FILE" else PLACEHOLDERS.get(word, word) for at, word in enumerate(words)
-    ]
+    # A run is a measurement, too: a long one, in which orders can be told.
+    measured = {"RUN.h5": "jeffcott.h5", "FILE": "jeffcott.h5"} if "--measured" in words else {}
+    return [(PLACEHOLDERS | measured).get(word, word) for word in words[: min(ends, default=len(words))]]
 
 
 @pytest.fixture(scope="module")
