@@ -96,12 +96,21 @@ def film_course(
         error, spent = _error_of_course(case, plan, path, times[: len(moments) + 1], moments)
     else:
         error, spent = _error_of_moment(case, plan, path, times, worst)
+    return course_of(moments, worst, _field(plan, film, worst), error, film.grid.fixed, spent, problem)
+
+
+def course_of(
+    moments: Sequence[MovedFilm], worst: MovedFilm, field: FilmField, error: float, fixed: NDArray[np.bool_],
+    spent: int, problem: str,
+) -> Course:  # fmt: skip
+    """The course of a film. worst: its moment of the largest force; fixed: where pressures are given; spent: iterations
+    for the error."""
     return Course(
         history=history_of(moments),
-        field=_field(plan, film, worst),
+        field=field,
         loads=worst.loads,
         force_error=error,
-        unknowns=int(np.count_nonzero(~film.grid.fixed)),
+        unknowns=int(np.count_nonzero(~fixed)),
         iterations=spent + sum(moment.iterations for moment in moments),
         problem=problem,
     )

@@ -15,8 +15,8 @@ from frbcli.bearing_tests.history import (
     PROBE_WIDTH,
     Course,
     MovedFilm,
+    course_of,
     every_second,
-    history_of,
     peak_error,
 )
 from frbcli.bearing_tests.journal_path import Path
@@ -101,15 +101,8 @@ def published_course(
     except NotConverged:
         pass
     field = _field(film, solutions[worst])
-    return Course(
-        history=history_of(moments),
-        field=replace(field, phi=field.phi + plan.turning * moments[worst].time),
-        loads=moments[worst].loads,
-        force_error=error,
-        unknowns=int(np.count_nonzero(~film.elements.fixed)),
-        iterations=spent + sum(moment.iterations for moment in moments),
-        problem=problem,
-    )
+    field = replace(field, phi=field.phi + plan.turning * moments[worst].time)
+    return course_of(moments, moments[worst], field, error, film.elements.fixed, spent, problem)
 
 
 def _moments(
