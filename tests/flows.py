@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from frbcli.film.cells.balances import CHANNELS_NET, ENDS_NET, SUPPLY_NET
-from frbcli.solve.films import PASSED
+from frbcli.film.cells.balance.balances import CHANNELS_NET, ENDS_NET, SUPPLY_NET
+from frbcli.solve.films.steps import PASSED
 from frbcli.solve.state import State
 
 

@@ -142,3 +142,27 @@ def test_functions_are_short_and_take_few_arguments(file: Path) -> None:
             given, place = node.args, (str(file.relative_to(PACKAGE)), node.name)
             assert len(given.posonlyargs + given.args + given.kwonlyargs) <= MOST_ARGUMENTS, place
             assert (node.end_lineno or 0) - node.lineno < MOST_LINES, place
+
+
+MOST_FILES = 12
+# Rooms that hold more, until they are grouped. No other one may.
+LARGER_ROOMS: frozenset[str] = frozenset({"bearing_tests", "film/rectangles", "rotor"})
+
+
+@pytest.mark.parametrize("room", sorted({file.parent for file in PACKAGE.rglob("*.py")}), ids=lambda room: room.name)
+def test_rooms_are_small(room: Path) -> None:
+    """A stranger can draw a room after one look."""
+    assert len(list(room.glob("*.py"))) <= MOST_FILES or str(room.relative_to(PACKAGE)) in LARGER_ROOMS
+
+
+def test_a_class_name_has_one_meaning() -> None:
+    names = [
+        (node.name, str(file.relative_to(PACKAGE)))
+        for file in PACKAGE.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+    ]
+    places: dict[str, list[str]] = {}
+    for name, place in names:
+        places.setdefault(name, []).append(place)
+    assert not {name: found for name, found in places.items() if len(found) > 1}

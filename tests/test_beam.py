@@ -12,16 +12,16 @@ from scipy.linalg import eigh, expm
 from scipy.optimize import brentq
 
 from frbcli.rotor import reduction
-from frbcli.rotor.beam import Plane, Section, beam
+from frbcli.rotor.beam import BeamSection, Plane, beam
 from frbcli.rotor.reduction import MOST, free_modes, reduction_error, whirl_modes
 from frbcli.rotor.turbocharger import Journal, Wheel, wheels_on_shaft
 
 Array = NDArray[np.float64]
 
-SLENDER = Section(1.0, 5e-4, 0.0, 7850.0, 210e9, 0.3)
-THICK = Section(0.2, 0.05, 0.02, 7850.0, 210e9, 0.3)
-STEPPED = (Section(0.05, 0.02, 0.0, 7850.0, 210e9, 0.3), Section(0.08, 0.03, 0.01, 4500.0, 110e9, 0.34))
-NO_SHAFT = Section(0.1, 0.02, 0.0, 1e-6, 1e22, 0.3)  # next to no mass, next to rigid
+SLENDER = BeamSection(1.0, 5e-4, 0.0, 7850.0, 210e9, 0.3)
+THICK = BeamSection(0.2, 0.05, 0.02, 7850.0, 210e9, 0.3)
+STEPPED = (BeamSection(0.05, 0.02, 0.0, 7850.0, 210e9, 0.3), BeamSection(0.08, 0.03, 0.01, 4500.0, 110e9, 0.34))
+NO_SHAFT = BeamSection(0.1, 0.02, 0.0, 1e-6, 1e22, 0.3)  # next to no mass, next to rigid
 
 
 def pinned(plane: Plane) -> Array:
@@ -34,7 +34,7 @@ def pinned_frequencies(plane: Plane) -> Array:
     return np.sqrt(eigh(plane.stiffness.toarray()[kept], plane.mass.toarray()[kept], eigvals_only=True))
 
 
-def exact_pinned(section: Section, half_waves: int, omega: float = 0.0) -> float:
+def exact_pinned(section: BeamSection, half_waves: int, omega: float = 0.0) -> float:
     """Slowest forward whirl of a pinned Timoshenko shaft, v = V sin(k z), psi = P cos(k z), polar inertia 2 rho I."""
     k = half_waves * math.pi / section.length
     shear, bending = section.shear_stiffness, section.youngs_modulus * section.second_moment
@@ -48,7 +48,7 @@ def exact_pinned(section: Section, half_waves: int, omega: float = 0.0) -> float
     return float(np.min(roots.real[roots.real > 0]))
 
 
-def free_end_determinant(sections: tuple[Section, ...], omega: float) -> float:
+def free_end_determinant(sections: tuple[BeamSection, ...], omega: float) -> float:
     """Zero where free ends fit the exact solution, by transfer matrices of (v, psi, moment, shear force)."""
     transfer = np.eye(4)
     for part in sections:
@@ -82,14 +82,14 @@ def test_thick_pinned_beam() -> None:
 
 
 @pytest.mark.parametrize("sections", [(THICK,), STEPPED], ids=["thick", "stepped"])
-def test_free_beams_against_transfer_matrices(sections: tuple[Section, ...]) -> None:
+def test_free_beams_against_transfer_matrices(sections: tuple[BeamSection, ...]) -> None:
     for found in extrapolated(*(free_modes(beam(sections, [], n)).frequencies[2:5] for n in (78, 156))):
         exact = brentq(lambda omega: free_end_determinant(sections, omega), 0.999 * found, 1.001 * found, rtol=1e-12)
         assert found == pytest.approx(exact, rel=2e-7)
 
 
 @pytest.mark.parametrize(("section", "order", "meshes"), [(THICK, 2.0, (24, 48, 96)), (SLENDER, 4.0, (6, 12, 24))])
-def test_order_of_convergence(section: Section, order: float, meshes: tuple[int, ...]) -> None:
+def test_order_of_convergence(section: BeamSection, order: float, meshes: tuple[int, ...]) -> None:
     """The exact static solution of a slender element is a cubic; where shear counts, slopes are next to linear."""
     errors = [pinned_frequencies(beam([section], [], n))[2] / exact_pinned(section, 3) - 1 for n in meshes]
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
@@ -113,7 +113,7 @@ def test_gyroscopic_whirl_of_a_thick_pinned_shaft(direction: float) -> None:
 def test_shear_coefficient_is_that_of_cowper() -> None:
     nu = 0.3
     assert SLENDER.shear_coefficient == pytest.approx(6 * (1 + nu) / (7 + 6 * nu))
-    tube = Section(1.0, 1.0, 1.0 - 1e-9, 7850.0, 210e9, nu)
+    tube = BeamSection(1.0, 1.0, 1.0 - 1e-9, 7850.0, 210e9, nu)
     assert tube.shear_coefficient == pytest.approx(2 * (1 + nu) / (4 + 3 * nu))  # thin-walled
 
 

@@ -11,10 +11,10 @@ from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
-from frbcli.film.cells import bores
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.grid import VolumeGrid, force_weights, volume_grid
 from frbcli.film.cells.loads import force, oil_balance
+from frbcli.film.cells.mesh import bores
+from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights, volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Hole, Section

@@ -19,18 +19,18 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.table import SHIPPED
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balances import FLOWS, SIDES, GridMotion, balances
-from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
-from frbcli.film.cells.carried import before_upstream, limited, limited_at
+from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion, balances
+from frbcli.film.cells.balance.carried import before_upstream, limited, limited_at
+from frbcli.film.cells.balance.newton_step import film_newton
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, FRACTION, STATES, cell_states, follow_law, hold
 from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
+from frbcli.film.cells.elimination.ring_solver import ring_solver, solve_ring_at
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import volume_grid
+from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion, Storage
-from frbcli.film.cells.newton_step import film_newton
-from frbcli.film.cells.plain.balance import Balance
-from frbcli.film.cells.ring_solver import ring_solver, solve_ring_at
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.states import BEFORE_UPSTREAM, FRACTION, STATES, cell_states, follow_law, hold
 from frbcli.film.gap import Hole, Section, gap_height, gap_rate
 
 LAWS: dict[str, Law] = {
@@ -152,7 +152,7 @@ def test_balances_are_the_plain_ones(law: Law, omega: float, ends: tuple[str, st
     motion = Motion((0.3, -0.5), (10.0, 40.0), omega)
     gap = gap_height(film.section, motion.d, film.grid.centre)[:, None]
     before = random.uniform(0.0, 1.0, (M, K))
-    balance = Balance(film.section, film.grid, motion, before)
+    balance = CellBalances(film.section, film.grid, motion, before)
     residual, plain = balance.residual(film.cells(w), Storage(rate * gap, past))
     data = volume_films([film])
     states, stencil, _, fields, flows = arrays()
@@ -217,7 +217,7 @@ def test_solved_films_balance_by_the_plain_equations(law: Law, flowing: Motion |
         assert np.isnan(solution.before).all()
     else:  # held by the last of several solutions: nearly its own, but for single cells where the limiter switches
         assert np.abs(solution.before - before_upstream(state.fraction, motion.omega)).mean() < 1e-3
-    balance = Balance(film.section, film.grid, flowing or motion, solution.before)
+    balance = CellBalances(film.section, film.grid, flowing or motion, solution.before)
     residual, stencil = balance.residual(state, storage)
     size = np.abs(stencil.centre) * (1.0 + np.abs(solution.w))
     assert np.abs(residual).max() < 1e-11 * size.max()

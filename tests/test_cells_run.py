@@ -15,8 +15,8 @@ import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.film.cells.balance.states import whirl_share
 from frbcli.film.cells.data import SETTLED, VolumeFilms
-from frbcli.film.cells.states import whirl_share
 from frbcli.results.store import read_run
 from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect

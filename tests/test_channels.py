@@ -17,9 +17,9 @@ from scipy.optimize import brentq
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.cells.balances import CHANNELS_NET
-from frbcli.film.cells.channel_data import with_channels
-from frbcli.film.cells.channels import Channel, channel_resistance
+from frbcli.film.cells.balance.balances import CHANNELS_NET
+from frbcli.film.cells.channels.channel import Channel, channel_resistance
+from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import FLOW_SCALE, UNKNOWN, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
@@ -34,10 +34,10 @@ from frbcli.scene.channels import coupled_channels
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
-from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
-from frbcli.solve.films import begin_stage, make_work
-from frbcli.solve.micro_step import _solve_films
-from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
+from frbcli.solve.cosimulation.micro_step import _solve_films
+from frbcli.solve.films.cells import GRID_SPEED, GRID_TURN
+from frbcli.solve.films.steps import begin_stage, make_work
+from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
 from frbcli.solve.state import RUNNING, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
-from frbcli.film.cells.balances import SIDES
-from frbcli.film.cells.clipped import clipped_push
+from frbcli.film.cells.balance.balances import SIDES
+from frbcli.film.cells.balance.clipped import clipped_push
+from frbcli.film.cells.balance.plain_clipped import clipped_means
+from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES
 from frbcli.film.cells.data import CLIPS, FORCE_SCALE, volume_films
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import volume_grid
 from frbcli.film.cells.loads import force
+from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.plain.clipped import clipped_means
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.states import PRESSURE, PRESSURE_SLOPE, STATES
 from frbcli.film.gap import Section
 
 TURN = 2.0 * math.pi

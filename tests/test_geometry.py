@@ -19,15 +19,13 @@ from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.frame import path_seen_from, seen_from, turned
-from frbcli.film.cells.grid import fitted_grid, volume_grid
-from frbcli.film.cells.loads import Loads, loads
-from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.openings import hole_area
+from frbcli.film.cells.film import VolumeFilm, supplied, supply_share
+from frbcli.film.cells.loads import FilmLoads, loads
+from frbcli.film.cells.mesh.grid import fitted_grid, volume_grid
+from frbcli.film.cells.mesh.openings import hole_area
+from frbcli.film.cells.motion import Motion, path_seen_from, seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.supply import supplied, supply_share
-from frbcli.film.gap import AxialGroove, Hole, Lobes, Section, gap_height, graded_ring, smallest_gap
+from frbcli.film.gap import AxialGroove, Hole, LobedShell, Section, gap_height, graded_ring, smallest_gap
 from frbcli.film.operating import reynolds_number, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import BRASS, STEEL
 from frbcli.scene.machine.operating import operating_points
@@ -41,7 +39,7 @@ def film_on(section: Section, phi: np.ndarray, along: int = 8, law: Law | None =
     return VolumeFilm(section, volume_grid(section, phi, np.linspace(0.0, 1.0, along + 1)), law or Reynolds(), 50.0)
 
 
-def steady_loads(film: VolumeFilm, motion: Motion) -> Loads:
+def steady_loads(film: VolumeFilm, motion: Motion) -> FilmLoads:
     return loads(film, motion, FilmSolver(film).steady(motion))
 
 
@@ -50,14 +48,14 @@ def steady_loads(film: VolumeFilm, motion: Motion) -> Loads:
 
 def test_lobes_without_preload_are_a_plain_bearing() -> None:
     phi = np.linspace(0.0, TURN, 40)
-    assert np.array_equal(gap_height(replace(PLAIN, lobes=Lobes(3, 0.0, 0.4)), (0.3, 0.2), phi),
+    assert np.array_equal(gap_height(replace(PLAIN, lobes=LobedShell(3, 0.0, 0.4)), (0.3, 0.2), phi),
                           gap_height(PLAIN, (0.3, 0.2), phi))  # fmt: skip
 
 
 @pytest.mark.parametrize("offset", [0.3, 0.5, 1.0])
 def test_gap_of_lobes_is_between_assembled_and_machined_clearance(offset: float) -> None:
     """Smallest, 1, at the offset of each lobe; the centre of a lobe's bore is c_p - c_b away from the bearing's."""
-    lobes = Lobes(3, 0.5, 0.7, offset)
+    lobes = LobedShell(3, 0.5, 0.7, offset)
     section = replace(PLAIN, lobes=lobes)
     narrowest = lobes.start + (np.arange(3) + offset) * lobes.arc - (1e-6 if offset == 1.0 else 0.0)
     assert gap_height(section, (0.0, 0.0), narrowest) == pytest.approx(1.0, abs=1e-11)
@@ -73,7 +71,7 @@ def test_one_lobe_is_a_plain_bearing_of_the_machined_clearance() -> None:
     """Its bore is a whole circle, only placed elsewhere: the same film in two descriptions."""
     preload, position = 0.4, 0.7
     machined = replace(PLAIN, clearance=PLAIN.clearance / (1.0 - preload))
-    lobed = replace(PLAIN, lobes=Lobes(1, preload, position))
+    lobed = replace(PLAIN, lobes=LobedShell(1, preload, position))
     motion = Motion((0.2, -0.3), (3.0, 4.0), 300.0)
     shift = (-preload * math.sin(position), preload * math.cos(position))
     share = 1.0 - preload
@@ -90,7 +88,7 @@ def test_one_lobe_is_a_plain_bearing_of_the_machined_clearance() -> None:
 @pytest.mark.parametrize("count", [3, 4])
 def test_symmetric_lobes_carry_nothing_at_the_centre_and_are_isotropic(count: int) -> None:
     """A matrix of a count-fold symmetry, count at least 3, is a multiple of a rotation: K = [[a, b], [-b, a]]."""
-    section = replace(PLAIN, lobes=Lobes(count, 0.5, 0.2))
+    section = replace(PLAIN, lobes=LobedShell(count, 0.5, 0.2))
     ring = section.lobes.start + np.linspace(0.0, TURN, 24 * count + 1) if section.lobes else RING
     film = film_on(section, ring)
 
@@ -111,7 +109,7 @@ def test_preload_makes_direct_stiffness_which_a_plain_bearing_has_not() -> None:
     step = 1e-4
     ratios = []
     for preload in (0.0, 0.3, 0.6):
-        film = film_on(replace(PLAIN, lobes=Lobes(3, preload, 0.0)), RING)
+        film = film_on(replace(PLAIN, lobes=LobedShell(3, preload, 0.0)), RING)
         force = np.array(steady_loads(film, Motion((step, 0.0), (0.0, 0.0), 600.0)).force)
         force -= np.array(steady_loads(film, Motion((-step, 0.0), (0.0, 0.0), 600.0)).force)
         ratios.append(-force[0] / np.linalg.norm(force))
@@ -121,7 +119,7 @@ def test_preload_makes_direct_stiffness_which_a_plain_bearing_has_not() -> None:
 
 def test_long_lobed_bearing_is_the_integral_of_the_reynolds_equation() -> None:
     """No flow along, full film: H^3 p' = omega / 2 (H - H_m) with the H_m that closes the turn."""
-    section = replace(PLAIN, near="symmetry", far="symmetry", lobes=Lobes(2, 0.4, 0.3))
+    section = replace(PLAIN, near="symmetry", far="symmetry", lobes=LobedShell(2, 0.4, 0.3))
     bath = Hole(section.lobes.start if section.lobes else 0.0, 0.5e-2, 1e-2, 10.0, 0.0, round=False)
     motion = Motion((0.25, -0.1), (0.0, 0.0), 400.0)
     phi = bath.position + bath.half_angle + np.linspace(0.0, TURN, 20_001)
@@ -143,7 +141,7 @@ def test_long_lobed_bearing_is_the_integral_of_the_reynolds_equation() -> None:
 
 
 def test_grid_has_faces_at_the_edges_of_lobes_and_meets_edges_that_fall_together() -> None:
-    lobes = Lobes(2, 0.5, 0.0)
+    lobes = LobedShell(2, 0.5, 0.0)
     groove = AxialGroove(lobes.start + 0.15, 0.3, 1e5)  # begins where the lobe does
     section = replace(PLAIN, lobes=lobes, grooves=(groove,))
     grid = fitted_grid(section, (0.0, 0.3), 64, 8)
@@ -350,7 +348,7 @@ def plan_of(*settings: str, test: str = "rotation", cavitation: str = "elrod") -
 
 def test_lobes_of_a_case_reach_the_section() -> None:
     plan = plan_of("bearing.lobes={count=3, preload=0.5, position='1.5 rad', offset=0.6}", cavitation="half-sommerfeld")
-    assert plan.section.lobes == Lobes(3, 0.5, 1.5, 0.6)
+    assert plan.section.lobes == LobedShell(3, 0.5, 1.5, 0.6)
     assert plan.section.clearance == pytest.approx(40e-6)  # that of the assembled bearing
     assert not plan.modal  # the modal film knows a plain gap only
     assert "lobes" in {decision.choice for decision in plan.decisions}

@@ -16,9 +16,9 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError, NotConverged
+from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow

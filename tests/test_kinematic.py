@@ -14,10 +14,9 @@ from frbcli.bearing_tests.journal_path import whirl_path
 from frbcli.bearing_tests.kinematic import KinematicResult
 from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure, supplied
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.supply import supplied
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import evaluate, make_film
 

@@ -25,7 +25,7 @@ from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import film_loads, transfer
 from frbcli.equilibrium.resting import resting_position, ring_speeds
-from frbcli.film.cells.frame import turned
+from frbcli.film.cells.motion import turned
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force

@@ -9,7 +9,7 @@ import pytest
 
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.errors import InputError
-from frbcli.film.cells.channels import channel_resistance
+from frbcli.film.cells.channels.channel import channel_resistance
 from frbcli.materials.oils import OILS, conductivity, density, heat_capacity
 from frbcli.materials.solids import SOLIDS
 from frbcli.materials.viscosity import ZERO_CELSIUS, VogelLaw, through_three, walther

@@ -16,13 +16,13 @@ from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.balance.states import FRACTION
 from frbcli.film.cells.data import COS, GAP, SIN, VolumeFilms
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.states import FRACTION
 from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.published.data import ElementFilm
-from frbcli.film.published.unknown import unknowns_of
+from frbcli.film.published.equations.unknown import unknowns_of
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.film.state import WET
 from frbcli.rotor.rigid import rigid_rotor
@@ -31,12 +31,12 @@ from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
-from frbcli.solve.cell_films import BALANCE, EMPTY, LAW, OPEN, cell_numbers, move_cells
-from frbcli.solve.contact import push_back
-from frbcli.solve.element_films import HERE, MOST_ITERATIONS, make_element_work
-from frbcli.solve.films import make_work
-from frbcli.solve.journal_newton import correct, forces
-from frbcli.solve.stage import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, FilmMotion, U
+from frbcli.solve.films.cells import BALANCE, EMPTY, LAW, OPEN, cell_numbers, move_cells
+from frbcli.solve.films.elements import HERE, MOST_ITERATIONS, make_element_work
+from frbcli.solve.films.steps import make_work
+from frbcli.solve.stage.contact import push_back
+from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, FilmMotion, U
+from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.state import FINISHED, RUNNING, Control
 
 Array = NDArray[np.float64]

@@ -22,13 +22,13 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array, Mesh
-from frbcli.film.published.assembly import artificial_diffusion, assemble
+from frbcli.film.published.equations.assembly import artificial_diffusion, assemble
+from frbcli.film.published.equations.law import make_step, oil_fraction, step_pressure
+from frbcli.film.published.equations.ring import make_ring, solve_ring
+from frbcli.film.published.equations.unknown import make_unknowns, pressures_of, unknowns_of
 from frbcli.film.published.film import PublishedFilm
-from frbcli.film.published.law import make_step, oil_fraction, step_pressure
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.plain import terms
-from frbcli.film.published.ring import make_ring, solve_ring
-from frbcli.film.published.unknown import make_unknowns, pressures_of, unknowns_of
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.untabulated import direct_force
 

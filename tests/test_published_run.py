@@ -17,10 +17,10 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.motion import Motion
 from frbcli.film.published.data import ElementFilm, make_room
+from frbcli.film.published.equations.unknown import pressures_of, unknowns_of
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import oil_flows, open_area, published_loads
 from frbcli.film.published.moving import oil_held, oil_passing, residual
-from frbcli.film.published.unknown import pressures_of, unknowns_of
 from frbcli.film.state import OIL, W
 from frbcli.runs.march import control_of
 from frbcli.runs.start import first_state, rotor_data
@@ -28,9 +28,9 @@ from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.planning.profiles import run_up_profile
-from frbcli.solve.element_films import HERE, MOST_ITERATIONS, ElementWork, make_element_work
-from frbcli.solve.journal_newton import correct, forces
-from frbcli.solve.stage import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
+from frbcli.solve.films.elements import HERE, MOST_ITERATIONS, ElementWork, make_element_work
+from frbcli.solve.stage.equations import FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, U
+from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.state import FINISHED, RUNNING, Control, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from frbcli.film.cells.openings import hole_area
-from frbcli.film.gap import AxialGroove, Hole, Lobes, Section
-from frbcli.film.published.mesh import quadratic_mesh
+from frbcli.film.cells.mesh.openings import hole_area
+from frbcli.film.gap import AxialGroove, Hole, LobedShell, Section
+from frbcli.film.published.mesh.quadratic import quadratic_mesh
 
 Array = np.ndarray
 RADIUS, WIDTH = 12.5e-3, 20e-3
@@ -31,7 +31,7 @@ SECTIONS = {
     "axial groove": replace(PLAIN, grooves=(AxialGroove(0.0, 0.26, 1e5),)),
     "groove and bore": replace(PLAIN, grooves=(AxialGroove(2.0, 0.2, 1e5),), holes=(bore(-1.0, 5e-3),)),
     "circumferential groove": replace(PLAIN, width=WIDTH / 2, copies=2, far="groove", far_pressure=1e5),
-    "lobes": replace(PLAIN, lobes=Lobes(3, 0.4, 0.2)),
+    "lobes": replace(PLAIN, lobes=LobedShell(3, 0.4, 0.2)),
 }
 
 

@@ -13,14 +13,14 @@ from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.shooting.branch import follow_shots
 from frbcli.cycles.shooting.fixed_point import SlowSpace
-from frbcli.cycles.shooting.rest import Threshold, located, thresholds
+from frbcli.cycles.shooting.rest import RestThreshold, located, thresholds
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, Shooting, Shot, multipliers_of
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
 
-def started(shooting: Shooting, flow: KnownFlow, begun: tuple[float, float]) -> tuple[Threshold, Shot]:
+def started(shooting: Shooting, flow: KnownFlow, begun: tuple[float, float]) -> tuple[RestThreshold, Shot]:
     """The Hopf point between two speeds and the first cycle beside it."""
     rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in begun]
     assert rests[0] is not None
@@ -31,7 +31,9 @@ def started(shooting: Shooting, flow: KnownFlow, begun: tuple[float, float]) -> 
     return hopf, first
 
 
-def branch(flow: KnownFlow, low: float, high: float, begun: tuple[float, float]) -> tuple[Threshold, tuple[Shot, ...]]:
+def branch(
+    flow: KnownFlow, low: float, high: float, begun: tuple[float, float]
+) -> tuple[RestThreshold, tuple[Shot, ...]]:
     """The Hopf point between two speeds and the cycles that begin there."""
     shooting = Shooting(flow, high)  # type: ignore[arg-type]
     hopf, first = started(shooting, flow, begun)

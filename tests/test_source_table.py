@@ -13,8 +13,8 @@ from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import fitted_grid
 from frbcli.film.cells.loads import force
+from frbcli.film.cells.mesh.grid import fitted_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at

@@ -21,10 +21,10 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells import solver
+from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import Torque, estimate, loads
 from frbcli.film.cells.motion import Motion, Storage
-from frbcli.film.cells.plain.balance import Balance
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 
@@ -242,7 +242,7 @@ def test_stencil_is_the_derivative_of_the_residual(law: str, omega: float) -> No
     motion = Motion((0.2, -0.3), (3.0, -5.0), omega)
     film = VolumeFilm(section, fitted_grid(section, motion.d, 12, 4), LAWS[law], 30.0)
     w = np.random.default_rng(1).uniform(-0.9, 1.0, film.grid.shape)
-    balance = Balance(section, film.grid, motion)
+    balance = CellBalances(section, film.grid, motion)
     storage = Storage(np.full((film.grid.shape[0], 1), 40.0), np.zeros(film.grid.shape))
     stencil = balance.residual(film.cells(w), storage)[1]
     step = 1e-7

@@ -18,10 +18,10 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.film import VolumeFilm, reference_pressure
-from frbcli.film.cells.grid import fitted_grid, volume_grid
 from frbcli.film.cells.loads import loads
+from frbcli.film.cells.mesh.grid import fitted_grid, volume_grid
+from frbcli.film.cells.mesh.openings import hole_area
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.openings import hole_area
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_height
 from frbcli.film.section_faults import runs_dry, section_faults

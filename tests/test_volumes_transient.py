@@ -19,8 +19,8 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, reference_pressure
-from frbcli.film.cells.grid import volume_grid
 from frbcli.film.cells.loads import force, loads
+from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section

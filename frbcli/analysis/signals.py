@@ -20,7 +20,7 @@ PIECE = 2**17  # samples of a signal that are looked at together: 1 MB
 CORNERS = 400  # intervals of a run in which its ramp is determined
 
 
-class Column(Protocol):
+class SignalColumn(Protocol):
     """Values (n,) that are given in slices: an array, or a signal of a run that is too long to be read at once."""
 
     def __len__(self) -> int: ...
@@ -74,7 +74,7 @@ def piece(run: RunLike, name: str, start: int, stop: int) -> Values:
     return np.asarray(run[name][start:stop] if read is None else read(name, start, stop))
 
 
-def samples(column: Column, places: NDArray[np.int64]) -> Values:
+def samples(column: SignalColumn, places: NDArray[np.int64]) -> Values:
     """The values at some samples (k,), ascending, read in pieces."""
     if len(places) == 0:
         return np.empty(0)
@@ -88,14 +88,14 @@ def samples(column: Column, places: NDArray[np.int64]) -> Values:
     return np.concatenate(found)
 
 
-def course(time_s: Column, speed_Hz: Column) -> tuple[Values, Values]:
+def course(time_s: SignalColumn, speed_Hz: SignalColumn) -> tuple[Values, Values]:
     """Time in s and rotor speed in Hz at the ends of CORNERS intervals of a run (n,)."""
     count = len(time_s)
     places = np.unique(np.linspace(0, count - 1, CORNERS + 1).round().astype(np.int64))
     return samples(time_s, places), samples(speed_Hz, places)
 
 
-def steepest_ramp(time_s: Column, speed_Hz: Column) -> float:
+def steepest_ramp(time_s: SignalColumn, speed_Hz: SignalColumn) -> float:
     """The largest change of the rotor speed of a run (n,) in Hz/s, 0 at a constant speed."""
     time, speed = course(time_s, speed_Hz)
     return float(np.max(np.abs(np.diff(speed) / np.diff(time)), initial=0.0)) if time[-1] > time[0] else 0.0

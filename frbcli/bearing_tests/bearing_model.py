@@ -11,7 +11,7 @@ from frbcli.bearing_tests.journal_path import Path
 from frbcli.bearing_tests.plan import KinematicPlan
 from frbcli.bearing_tests.steady_film import Array, FilmMoment
 from frbcli.case.schema import Case
-from frbcli.film.cells.loads import Loads, OilBalance, Torque
+from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion
 from frbcli.film.rectangles.film import evaluate
 from frbcli.scene.machine.bearing_model_films import bearing_film
@@ -48,5 +48,5 @@ def model_forces(case: Case, plan: KinematicPlan, motions: list[Motion]) -> Arra
     return np.array([moment.force for moment in found])
 
 
-def _loads(x: float, y: float) -> Loads:
-    return Loads((x, y), Torque(*[UNKNOWN] * 2), UNKNOWN, UNKNOWN, UNKNOWN, OilBalance(*[UNKNOWN] * 5))
+def _loads(x: float, y: float) -> FilmLoads:
+    return FilmLoads((x, y), Torque(*[UNKNOWN] * 2), UNKNOWN, UNKNOWN, UNKNOWN, OilBalance(*[UNKNOWN] * 5))

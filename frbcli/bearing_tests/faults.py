@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from frbcli.case.bearing import SingleFilmBearing
-from frbcli.case.schema import Case, Motion
+from frbcli.case.schema import Case, KinematicMotion
 from frbcli.errors import Fault
 from frbcli.scene.machine.elements import without_film
 
 
-def motion_faults(motion: Motion | None, test: str) -> list[Fault]:
+def motion_faults(motion: KinematicMotion | None, test: str) -> list[Fault]:
     """Of the motion, for the test called "rotation", "squeeze" or "whirl"."""
     if motion is None:
         remedy = 'Add e.g. [motion] with eccentricity = 0.6, angle = "-60 deg", speed = "20 Hz".'

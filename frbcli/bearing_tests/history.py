@@ -15,12 +15,10 @@ from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
-from frbcli.film.cells.frame import path_seen_from, turned
-from frbcli.film.cells.loads import Loads, estimate, loads
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure, supplied, supply_share
+from frbcli.film.cells.loads import FilmLoads, estimate, loads
+from frbcli.film.cells.motion import Motion, path_seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.supply import supplied, supply_share
 
 Array = NDArray[np.float64]
 
@@ -47,7 +45,7 @@ class Course:
 
     history: History
     field: FilmField | None
-    loads: Loads
+    loads: FilmLoads
     force_error: float
     unknowns: int
     iterations: int
@@ -61,7 +59,7 @@ class MovedFilm:
 
     time: float
     displacement: tuple[float, float]
-    loads: Loads
+    loads: FilmLoads
     probe: float
     gap: float
     iterations: int

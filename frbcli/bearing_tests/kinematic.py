@@ -21,10 +21,10 @@ from frbcli.bearing_tests.warm import warm_film
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import NotConverged
-from frbcli.film.cells.loads import Loads
+from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
-from frbcli.film.published.solution import FilmState
+from frbcli.film.published.solution import NodeState
 from frbcli.html import Tabular
 from frbcli.scene.remedies import advised, film_advice
 from frbcli.thermal.steady import SteadyHeat
@@ -50,7 +50,7 @@ class KinematicResult:
     cavitation: str
     status: str
     displacement: tuple[float, float]
-    loads: Loads | None
+    loads: FilmLoads | None
     sommerfeld_number: float
     force_error: float
     field: FilmField | None
@@ -189,11 +189,11 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
     )
 
 
-def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, FilmState | None]:
+def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]:
     """The motion of a rotation, which lasts, and what the published form begins with. Raises NotConverged."""
     motion = case.motion
     assert motion is not None
-    start: FilmState | None = None
+    start: NodeState | None = None
     omega = 2.0 * math.pi * (motion.speed or 0.0)
     if motion.load is not None:
         if plan.published:
@@ -255,7 +255,7 @@ def _failed(plan: KinematicPlan, displacement: tuple[float, float], begun: float
     )
 
 
-def _sommerfeld_number(plan: KinematicPlan, loads: Loads, omega: float) -> float:
+def _sommerfeld_number(plan: KinematicPlan, loads: FilmLoads, omega: float) -> float:
     section = plan.section
     force, width = math.hypot(*loads.force), section.bearing_width
     return sommerfeld_number(force, width, section.radius, section.clearance, section.viscosity, omega)

@@ -25,13 +25,12 @@ from frbcli.bearing_tests.steady_film import FilmField, FilmMoment, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.frame import path_seen_from, turned
 from frbcli.film.cells.loads import estimate
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, path_seen_from, turned
 from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
-from frbcli.film.published.solution import FilmState, PublishedSolution
+from frbcli.film.published.solution import NodeState, PublishedSolution
 from frbcli.scene.machine.machine_films import published_film
 
 Array = NDArray[np.float64]
@@ -47,7 +46,7 @@ STARTS = (0.6, 0.3, 0.85, 0.15)
 ATTITUDE = math.radians(40.0)
 
 
-def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: FilmState | None = None) -> FilmMoment:
+def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: NodeState | None = None) -> FilmMoment:
     """The film for a motion that lasts, its error estimated from half as many elements each way.
 
     start: of nearly the same motion. Raises NotConverged.
@@ -65,7 +64,7 @@ def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: Fil
     return FilmMoment(_field(film, solution), loads, error, unknowns, solution.iterations)
 
 
-def resting_in_published(case: Case, plan: KinematicPlan, load: float, omega: float) -> tuple[Array, FilmState]:
+def resting_in_published(case: Case, plan: KinematicPlan, load: float, omega: float) -> tuple[Array, NodeState]:
     """(2,) displacement over the clearance where the film carries a load in N along -y, and the film there.
 
     omega: in rad/s. Raises NotConverged if no start leads to one.
@@ -143,10 +142,10 @@ def _moment(
     return MovedFilm(time, turned(motion.d, angle), found, probe, gap, solution.iterations)
 
 
-def _rest(film: PublishedFilm, load: float, omega: float, position: Array) -> tuple[Array, FilmState]:
+def _rest(film: PublishedFilm, load: float, omega: float, position: Array) -> tuple[Array, NodeState]:
     """Newton's method with the derivatives that the film gives."""
     target, slope, least, since = np.array([0.0, load]), np.eye(2), math.inf, 0
-    state: FilmState | None = None
+    state: NodeState | None = None
     best = (position, film.full())
     for _ in range(ITERATIONS):
         solution = film.steady(Motion((float(position[0]), float(position[1])), (0.0, 0.0), omega), state)

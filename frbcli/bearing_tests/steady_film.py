@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import Law
+from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
-from frbcli.film.cells.loads import CavitationFactor, Loads, estimate, force, loads
+from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, force, loads
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
@@ -43,7 +43,7 @@ class FilmMoment:
     error of the force, and what it took; side_flow: m^3/s that leave through the open ends, where it was asked for."""
 
     field: FilmField | None
-    loads: Loads
+    loads: FilmLoads
     force_error: float
     unknowns: int
     iterations: int

@@ -103,7 +103,7 @@ class FilmModel(Model):
 adopt(FilmModel)
 
 
-class SpeedProfile(Model):
+class SpeedRamp(Model):
     """Rotor speed [Hz]: linear from `start` to `end` in `duration`; a run-down holds it and goes back."""
 
     start: FirstSpeed = Field(alias="from", description="at the start of a run; negative: it turns the other way round")
@@ -118,7 +118,7 @@ class SpeedProfile(Model):
         return with_default(data, "down_duration", "duration")
 
 
-class Motion(Model):
+class KinematicMotion(Model):
     """A kinematic test of a bearing: the motion of the journal is given."""
 
     eccentricity: Eccentricity | None = Field(default=None, description="displacement over the clearance")
@@ -218,10 +218,10 @@ class Case(Model):
     )
     film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
     thermal: Thermal | None = Field(default=None, description="heat; without it every film keeps its temperature")
-    given_speed: SpeedProfile | None = Field(
+    given_speed: SpeedRamp | None = Field(
         default=None, alias="speed", description="must be given, but for a case with [motion]"
     )
-    motion: Motion | None = Field(default=None, description="motion of the journal in a kinematic test")
+    motion: KinematicMotion | None = Field(default=None, description="motion of the journal in a kinematic test")
     start: Start = Field(default=Start(), description="where the rotor begins a run")
     contact: Contact = Field(default=Contact(), description="what happens where journal and shell touch")
     accuracy: Accuracy = Field(default=Accuracy(), description="target, or mesh and tolerance")
@@ -303,7 +303,7 @@ class Case(Model):
         return self.given_rotor
 
     @property
-    def speed(self) -> SpeedProfile:
+    def speed(self) -> SpeedRamp:
         """The speeds of a run. Raises InputError for a case of kinematic tests, which has none."""
         if self.given_speed is None:
             raise self._without("speed")

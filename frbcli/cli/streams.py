@@ -23,7 +23,7 @@ class OutputLost(Exception):
     """stdout takes no more: who writes much of it can stop."""
 
 
-class Output(io.TextIOWrapper):
+class OutputStream(io.TextIOWrapper):
     """stdout or stderr. lost: why it takes no more, None as long as it does.
 
     raises: whether OutputLost is raised when that happens; what is written afterwards is dropped.
@@ -39,7 +39,7 @@ class Output(io.TextIOWrapper):
         self._raises = raises
 
     def write(self, text: str) -> int:
-        self._try(lambda: super(Output, self).write(text))
+        self._try(lambda: super(OutputStream, self).write(text))
         return len(text)
 
     def flush(self) -> None:
@@ -57,19 +57,19 @@ class Output(io.TextIOWrapper):
                 raise OutputLost from None
 
 
-def take_streams() -> tuple[Output, Output]:
+def take_streams() -> tuple[OutputStream, OutputStream]:
     """Make stdout and stderr of this process an Output each."""
     for descriptor, way in DESCRIPTORS.items():
         try:
             os.fstat(descriptor)
         except OSError:  # closed: else the next file to be opened gets its number, and what is said ends in that file
             os.set_inheritable(os.open(os.devnull, way), True)
-    out, err = Output(1, sys.stdout, raises=True), Output(2, sys.stderr, raises=False)
+    out, err = OutputStream(1, sys.stdout, raises=True), OutputStream(2, sys.stderr, raises=False)
     sys.stdout, sys.stderr = out, err
     return out, err
 
 
-def closing_code(code: int, out: Output, err: Output, only_json: bool) -> int:
+def closing_code(code: int, out: OutputStream, err: OutputStream, only_json: bool) -> int:
     """The exit code of a command that ended with `code`; a stream that was not written is reported on the other.
 
     only_json: stdout is for one JSON document alone. A code that is not 0 stands: it says more.

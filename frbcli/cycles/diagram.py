@@ -12,7 +12,7 @@ from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, F
 from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.method.continuation import oriented
 from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
-from frbcli.cycles.method.equilibria import Course, Equilibrium, HopfPoint, Resting
+from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint, Resting
 from frbcli.cycles.method.seed import seed_cycle
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import (
@@ -42,7 +42,7 @@ class Walk:
     over: str
     unit: str
     films: tuple[str, ...]
-    course: Course
+    course: EquilibriumCourse
     resting: Resting
     scale: float
     follower: Follower

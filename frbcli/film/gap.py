@@ -45,7 +45,7 @@ class Hole:
 
 
 @dataclass(frozen=True)
-class Lobes:
+class LobedShell:
     """Equal arcs of the shell, each bored with a larger radius than the journal needs, around a centre of its own.
 
     With the clearance c_b of the centred journal at the narrowest place of a lobe and the machined clearance c_p of its
@@ -90,7 +90,7 @@ class Section:
     far_pressure: float = 0.0
     grooves: tuple[AxialGroove, ...] = ()
     holes: tuple[Hole, ...] = field(default=())
-    lobes: Lobes | None = None
+    lobes: LobedShell | None = None
 
     @property
     def pressure_scale(self) -> float:
@@ -123,7 +123,7 @@ def gap_rate(v: tuple[float, float], phi: Array) -> Array:
     return np.asarray(v[0] * np.sin(phi) - v[1] * np.cos(phi), dtype=np.float64)
 
 
-def lobe_depth(lobes: Lobes, phi: Array) -> Array:
+def lobe_depth(lobes: LobedShell, phi: Array) -> Array:
     """H of the centred journal at the angles phi (n,) without the 1 that it is at the narrowest places.
 
     An edge between two lobes belongs to the one that begins there.

@@ -13,10 +13,10 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import RestingFilm, force_error, settled_force
 from frbcli.equilibrium.static_films import StaticFilms
 from frbcli.errors import NotConverged
+from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.side_flow import outflow
 from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import friction_coefficient, sommerfeld_number

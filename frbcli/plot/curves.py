@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from frbcli.plot.run.envelope import Column, Envelope, curve, extremes
+from frbcli.plot.run.envelope import Envelope, EnvelopeColumn, curve, extremes
 from frbcli.plot.signals import cut, labels
 from frbcli.plot.style import COLOURS
 from frbcli.results.files.container import refuse
@@ -29,7 +29,7 @@ WAYS = {"run-up": 1.0, "run-down": -1.0}
 
 
 def draw_curves(
-    axes: Axes, runs: Sequence[Run], signals: Sequence[tuple[str, Sequence[Column]]], over: Over, span: Span
+    axes: Axes, runs: Sequence[Run], signals: Sequence[tuple[str, Sequence[EnvelopeColumn]]], over: Over, span: Span
 ) -> None:
     """Curves of all runs on axes of a figure, from and to the times of span in s.
 
@@ -54,7 +54,7 @@ def finish(axes: Axes, over: Over) -> None:
     axes.set_xlabel(WORDS[over])
 
 
-def _ways(run: Run, over: Over, shown: tuple[int, int], column: Column) -> list[tuple[str, Values, Values]]:
+def _ways(run: Run, over: Over, shown: tuple[int, int], column: EnvelopeColumn) -> list[tuple[str, Values, Values]]:
     """The way up and the way down of the rotor speed with their thinned curves; all of a curve over time."""
     if over == "time":
         return [("", *curve(run, column, *shown))]

@@ -49,7 +49,7 @@ TEXTS = ("page.html", "style.css", "waterfall.js")
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownRun:
     """A picture as a data URI, and what it shows."""
 
     data: str
@@ -181,7 +181,7 @@ def _note(run: Run, signal: str, words: str) -> str:
     return f"{label[:1].upper()}{label[1:]}, x of the {point}; {words}. Numbers are those of the events."
 
 
-def _courses(run: Run) -> list[Shown]:
+def _courses(run: Run) -> list[ShownRun]:
     """Pictures over time of all that the run holds."""
     figures = [(displacement_figure([run]), "Displacement.")]
     if any(True for _ in films(run.signals)):
@@ -200,10 +200,10 @@ def _courses(run: Run) -> list[Shown]:
     return [_shown(*figure) for figure in figures]
 
 
-def _shown(figure: Picture, caption: str) -> Shown:
+def _shown(figure: Picture, caption: str) -> ShownRun:
     figure.suptitle("")
     data = base64.b64encode(picture(figure, ".svg", own_letters=True)).decode()
-    return Shown(f"data:image/svg+xml;base64,{data}", caption)
+    return ShownRun(f"data:image/svg+xml;base64,{data}", caption)
 
 
 def _moments(run: Run, speeds_Hz: Sequence[float], found: Sequence[dict[str, Any]], end: float) -> list[float]:

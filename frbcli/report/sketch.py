@@ -29,7 +29,7 @@ DENSITY = 7850.0  # kg/m^3 of steel, for the thickness of a disk without inertia
 
 
 @dataclass(frozen=True)
-class _Scale:
+class _SketchScale:
     """From m along and across the axis to the drawing."""
 
     per_m: float
@@ -62,7 +62,7 @@ def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
     return tuple((place.name or "the film", _around(place.geometry, place.name or "film")) for place in films)
 
 
-def _bearing_parts(case: Case, number: int, at: float, scale: _Scale) -> Iterator[str]:
+def _bearing_parts(case: Case, number: int, at: float, scale: _SketchScale) -> Iterator[str]:
     """A bearing with its middle at z = at, in m; shells are as thick as they look."""
     bearing = case.bearings[number]
     if isinstance(bearing, SingleFilmBearing):
@@ -75,14 +75,14 @@ def _bearing_parts(case: Case, number: int, at: float, scale: _Scale) -> Iterato
     yield from _shell(outer, at, scale, "shell")
 
 
-def _shell(film: FilmGeometry, at: float, scale: _Scale, kind: str) -> Iterator[str]:
+def _shell(film: FilmGeometry, at: float, scale: _SketchScale, kind: str) -> Iterator[str]:
     inner, half = 0.5 * film.diameter + film.clearance, 0.5 * film.width
     outer = (1.0 + HOUSING) * inner
     yield scale.box(at - half, at + half, inner, outer, kind)
     yield from _supply(film, at, outer, scale)
 
 
-def _supply(film: FilmGeometry, at: float, outer: float, scale: _Scale) -> Iterator[str]:
+def _supply(film: FilmGeometry, at: float, outer: float, scale: _SketchScale) -> Iterator[str]:
     """Where oil enters: through the body outside of the film, or out of a recess in it."""
     start, inner = at - 0.5 * film.width, 0.5 * film.diameter
     found = {(each.axial, each.half_width, each.through): None for each in film.supply.outlines(inner, film.width)}
@@ -104,7 +104,7 @@ def _turbocharger(case: Case) -> str:
     right = max([length, *(disk.position + 0.5 * width for disk, _, width in disks)])
     per_m = min((WIDTH - 2.0 * MARGIN) / (right - left), HIGHEST / reach)
     half = per_m * reach
-    scale = _Scale(per_m, 0.5 * (WIDTH - per_m * (right + left)), half + 30.0)
+    scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * (right + left)), half + 30.0)
     parts, z = [], 0.0
     for disk, radius, width in disks:
         parts.append(scale.box(disk.position - 0.5 * width, disk.position + 0.5 * width, 0.0, radius, "disk"))
@@ -133,7 +133,7 @@ def _symmetric(case: Case) -> str:
     half_width = 0.5 * max(width, _outer_width(case))
     per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
     half = per_m * disk
-    scale = _Scale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
+    scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
     thin = 0.45 * journal if case.rotor.kind == "jeffcott" else journal
     parts = [scale.box(0.0, span, 0.0, thin, "vague")]
     parts.append(scale.box(0.5 * span - 0.3 * width, 0.5 * span + 0.3 * width, 0.0, disk, "vague"))
@@ -183,11 +183,11 @@ def _outer_width(case: Case) -> float:
     return bearing.width if isinstance(bearing, SingleFilmBearing) else bearing.outer.width
 
 
-def _named(words: str, at: float, scale: _Scale, y: float) -> str:
+def _named(words: str, at: float, scale: _SketchScale, y: float) -> str:
     return text(scale.left + scale.per_m * at, scale.middle + y, words)
 
 
-def _finish(parts: list[str], scale: _Scale, half: float, length: float | None, to_scale: bool = True) -> str:
+def _finish(parts: list[str], scale: _SketchScale, half: float, length: float | None, to_scale: bool = True) -> str:
     """With the axis and a bar for the scale, where there is one."""
     height = 2.0 * half + 86.0
     bar = _round_length((WIDTH - 2.0 * MARGIN) / scale.per_m / 6.0)

@@ -35,7 +35,7 @@ _IN_NAME = re.compile(r".*\S\s*[\[(]([^\[\]()]+)[\])]")
 
 
 @dataclass(frozen=True)
-class Table:
+class DelimitedTable:
     """names (k,) and units (k,), "" where there is none; values: columns 0 to k - 1, text where they hold some; lines:
     number of the line of each row."""
 
@@ -45,7 +45,7 @@ class Table:
     lines: tuple[int, ...]
 
 
-def read_table(content: bytes) -> Table:
+def read_table(content: bytes) -> DelimitedTable:
     """The table in a file of text. Raises ValueError if there is none, or its rows are ragged."""
     numbered = [(number, line) for number, line in _lines(content) if not line.lstrip().startswith(COMMENT)]
     if not numbered:
@@ -63,7 +63,7 @@ def read_table(content: bytes) -> Table:
         io.StringIO("\n".join(rows)), sep=r"\s+" if delimiter == " " else delimiter, header=None, decimal=mark,
         names=range(len(names)), skipinitialspace=True, low_memory=False,
     )  # fmt: skip
-    return Table(names, units, values, lines)
+    return DelimitedTable(names, units, values, lines)
 
 
 def fields(line: str, delimiter: str) -> list[str]:

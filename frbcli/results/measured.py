@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.errors import Fault, InputError, printable
-from frbcli.results.delimited import MOST_COLUMNS, Table, read_table
+from frbcli.results.delimited import MOST_COLUMNS, DelimitedTable, read_table
 from frbcli.results.records import LARGEST, MOST_SAMPLES
 
 Values = NDArray[np.float64]
@@ -112,7 +112,7 @@ def _csv(path: Path) -> Columns:
     return Columns(path, values, None, units, table.lines, doubtful)
 
 
-def _numbers(table: Table, place: int) -> Values:
+def _numbers(table: DelimitedTable, place: int) -> Values:
     """A column, NaN where it holds no number."""
     import pandas as pd
 

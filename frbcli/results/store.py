@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from frbcli.html import html_table
 from frbcli.results.files import parts
 from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
-from frbcli.results.files.stored import Place, Stored, StoredArrays
+from frbcli.results.files.stored import RunPlace, Stored, StoredArrays
 from frbcli.results.records import (
     LARGEST,
     MOST_EVENTS,
@@ -282,14 +282,14 @@ def read_run(path: str | Path) -> Run:
     with open_whole(path) as content:
         try:
             with h5py.File(content, "r") as file:
-                return _read(path, file, Place.of(path, content))
+                return _read(path, file, RunPlace.of(path, content))
         except parts.WrongPart as error:
             raise refuse(path, f"is not a complete run: {error}.", "Run the case again.") from None
         except UNREADABLE as error:
             raise refuse(path, f"is not a complete run: {error}.", "Run the case again.") from error
 
 
-def _read(path: Path, file: h5py.File, place: Place) -> Run:
+def _read(path: Path, file: h5py.File, place: RunPlace) -> Run:
     """The run in a file with a valid checksum."""
     group = parts.group(file, "signals")
     columns = {name: parts.array(group, name, place, dimensions=1) for name in parts.names(group, "signals")}
@@ -323,7 +323,7 @@ def _read(path: Path, file: h5py.File, place: Place) -> Run:
     )
 
 
-def _checkpoint(file: h5py.File, place: Place) -> tuple[dict[str, Stored] | None, int]:
+def _checkpoint(file: h5py.File, place: RunPlace) -> tuple[dict[str, Stored] | None, int]:
     """Where the arrays of the checkpoint lie, None if there is none, and how many samples there were then."""
     if not parts.has(file, "checkpoint"):
         return None, 0

@@ -26,7 +26,7 @@ ELEMENTS = 80  # of a shaft, at least
 
 
 @dataclass(frozen=True)
-class Section:
+class BeamSection:
     """A cylindrical section of a shaft: lengths in m, density in kg/m^3, youngs_modulus in Pa."""
 
     length: float
@@ -124,7 +124,7 @@ def element_matrices(
     return mass, stiffness, 2 * rotary
 
 
-def beam(sections: Sequence[Section], stations: Sequence[float], elements: int = ELEMENTS) -> Plane:
+def beam(sections: Sequence[BeamSection], stations: Sequence[float], elements: int = ELEMENTS) -> Plane:
     """The free shaft of sections that follow each other, with nodes at all their ends and at the stations (m).
 
     No element is longer than the shaft over `elements`.

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.rotor.beam import Plane, Section, beam
+from frbcli.rotor.beam import BeamSection, Plane, beam
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.reduction import FreeModes
 
@@ -38,7 +38,7 @@ class Journal:
     position: float
 
 
-def wheels_on_shaft(sections: Sequence[Section], wheels: Sequence[Wheel], journals: Sequence[Journal]) -> Plane:
+def wheels_on_shaft(sections: Sequence[BeamSection], wheels: Sequence[Wheel], journals: Sequence[Journal]) -> Plane:
     """The free rotor in one plane, with nodes at all wheels and journals."""
     from scipy.sparse import diags_array
 

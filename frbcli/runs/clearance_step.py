@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from frbcli.film.cells.frame import turned
+from frbcli.film.cells.motion import turned
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.cosimulation import in_turn
 from frbcli.runs.oil import displacement, grid_angle

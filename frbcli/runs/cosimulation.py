@@ -6,7 +6,7 @@ import numpy as np
 
 from frbcli.runs.start import FIRST_STEP, settled_forces
 from frbcli.scene.machine.system import System
-from frbcli.solve.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
+from frbcli.solve.cosimulation.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
 from frbcli.solve.state import HISTORY, STEPS, TIME, State
 
 

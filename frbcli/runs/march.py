@@ -29,7 +29,7 @@ from frbcli.scene.machine.segments import Segment, make_segments
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.remedies import advised
-from frbcli.solve.macro_step import advance_in_turn
+from frbcli.solve.cosimulation.macro_step import advance_in_turn
 from frbcli.solve.state import (
     CONTACT,
     FINISHED,
@@ -42,7 +42,7 @@ from frbcli.solve.state import (
     TIME,
     TURNS,
     Array,
-    Output,
+    LoopOutput,
 )
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
@@ -99,7 +99,7 @@ class March:
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
-        self._output = Output(self._q, self._v, self._oil, self._heat.buffer(rows))
+        self._output = LoopOutput(self._q, self._v, self._oil, self._heat.buffer(rows))
         # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
         self._watches = any(kind in OF_THE_STEPS for kind in case.output.signals)
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0

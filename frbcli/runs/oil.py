@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.film.cells.frame import turned
+from frbcli.film.cells.motion import turned
 from frbcli.scene.machine.system import System
 from frbcli.solve.state import GRID, State
 

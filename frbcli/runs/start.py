@@ -15,7 +15,7 @@ from frbcli.rotor.linear import unbalance_shares
 from frbcli.rotor.over_speed import no_part
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.machine.system import System
-from frbcli.solve.cell_films import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
+from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps

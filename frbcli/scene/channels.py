@@ -10,7 +10,7 @@ from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores
 from frbcli.case.supplies.supply import MIDDLE
 from frbcli.errors import Fault
-from frbcli.film.cells.channels import Channel, FeedHole, channel_resistance
+from frbcli.film.cells.channels.channel import Channel, FeedHole, channel_resistance
 from frbcli.film.cells.film import VolumeFilm
 
 INLETS = "a groove around one end of the outer film, or an end in an oil bath"

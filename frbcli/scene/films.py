@@ -14,7 +14,7 @@ from frbcli.case.supplies.bores import Bores
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import run_grid
+from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.grid import Array
 from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film

@@ -7,7 +7,7 @@ from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores
 from frbcli.case.supplies.supply import MIDDLE
-from frbcli.film.gap import Lobes, Section
+from frbcli.film.gap import LobedShell, Section
 from frbcli.film.rectangles.bearing import RectangularBearing, rectangular
 
 
@@ -43,9 +43,9 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
     )
 
 
-def _lobes(bearing: FilmGeometry) -> Lobes | None:
+def _lobes(bearing: FilmGeometry) -> LobedShell | None:
     given = bearing.lobes
-    return None if given is None else Lobes(given.count, given.preload, given.position, given.offset)
+    return None if given is None else LobedShell(given.count, given.preload, given.position, given.offset)
 
 
 def film_rectangle(section: Section) -> RectangularBearing | None:

@@ -17,6 +17,7 @@ from numba import types
 from numba.extending import overload
 
 from frbcli.compiled import Array, compiled
+from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.data import (
     AMBIENT,
     CAVITY,
@@ -33,15 +34,14 @@ from frbcli.film.cells.data import (
     RESISTANCE,
     VolumeFilms,
 )
-from frbcli.film.cells.side_flow import side_flow
 from frbcli.film.kinds.cells import CellEnds
 from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.film.state import OIL, RATE
-from frbcli.solve.cell_films import GRID_X, GRID_Y, oil_fraction
-from frbcli.solve.contact import feel
-from frbcli.solve.film_forces import drag_integral
-from frbcli.solve.films import have_cells
-from frbcli.solve.stage import FORCE, OMEGA, X_0, U
+from frbcli.solve.films.cells import GRID_X, GRID_Y, oil_fraction
+from frbcli.solve.films.forces import drag_integral
+from frbcli.solve.films.steps import have_cells
+from frbcli.solve.stage.contact import feel
+from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
 from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData
 from frbcli.thermal.exchange import (
     BOOKS,

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import Array, Indices, compiled
-from frbcli.solve.cell_films import GRID_SPEED, GRID_TURN
-from frbcli.solve.contact import feel
-from frbcli.solve.film_forces import drag_integral
+from frbcli.solve.films.cells import GRID_SPEED, GRID_TURN
+from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.scratch import Scratch
-from frbcli.solve.stage import FORCE, OMEGA, X_0, Q, U, V
+from frbcli.solve.stage.contact import feel
+from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, Q, U, V
 from frbcli.solve.state import GRID, SLIP, SUM, Control, RotorData
 
 

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.solve.inverse import prepare
-from frbcli.solve.stage import JOURNAL_ROWS, STAGE_ROWS
+from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS
+from frbcli.solve.stage.inverse import prepare
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
 
 

@@ -83,7 +83,7 @@ class State(NamedTuple):
     errors: Array
 
 
-class Output(NamedTuple):
+class LoopOutput(NamedTuple):
     """What the time loop writes, one row for each output time: displacements q and velocities v (rows, n), the mean oil
     fraction (4.46) of films that keep their oil (rows, films), and of a machine with heat what heat.py tells."""
 
@@ -92,11 +92,11 @@ class Output(NamedTuple):
     oil: Array
     heat: Array
 
-    def after(self, row: int) -> Output:
+    def after(self, row: int) -> LoopOutput:
         """What is left behind so many rows."""
-        return Output(self.q[row:], self.v[row:], self.oil[row:], self.heat[row:])
+        return LoopOutput(self.q[row:], self.v[row:], self.oil[row:], self.heat[row:])
 
 
-def make_output(rows: int, n: int, films: int = 0, columns: int = 0) -> Output:
+def make_output(rows: int, n: int, films: int = 0, columns: int = 0) -> LoopOutput:
     """For a rotor with n degrees of freedom and so many films that keep their oil; columns of heat."""
-    return Output(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, films)), np.zeros((rows, columns)))
+    return LoopOutput(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, films)), np.zeros((rows, columns)))

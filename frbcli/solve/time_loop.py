@@ -13,15 +13,15 @@ import numpy as np
 
 from frbcli.compiled import compiled
 from frbcli.rotor.excitation import rotation
-from frbcli.solve.film_forces import left_over
-from frbcli.solve.films import accept_films, begin_stage, make_work, most_iterations, write_oil
+from frbcli.solve.films.forces import left_over
+from frbcli.solve.films.steps import accept_films, begin_stage, make_work, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
-from frbcli.solve.inverse import outdated, prepare
-from frbcli.solve.journal_newton import correct, forces
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.stage import U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
-from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, Output, RotorData, State
+from frbcli.solve.stage.equations import U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
+from frbcli.solve.stage.inverse import outdated, prepare
+from frbcli.solve.stage.journal_newton import correct, forces
+from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, LoopOutput, RotorData, State
 from frbcli.solve.step import (
     UNSOLVED,
     begin_past,
@@ -94,7 +94,7 @@ def _smallest(clearances: Array) -> float:
 
 
 def advance(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: Output,
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: LoopOutput,
     heat: Any = NO_HEAT,
 ) -> tuple[int, int]:  # fmt: skip
     """Advance the state until the output is full, `budget` steps are done, or the run ends.
@@ -158,7 +158,7 @@ def _solve_stage(
 @compiled()
 def _advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
-    output: Output, heat: Any,
+    output: LoopOutput, heat: Any,
 ) -> tuple[int, int]:  # fmt: skip
     """advance with the arrays that it works in."""
     work, own, scratch = space.work, space.own, space.scratch

@@ -12,13 +12,13 @@ import numpy as np
 from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS, compiled
-from frbcli.film.cells.side_flow import side_flow
+from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.published.data import LEFT
 from frbcli.film.state import NOW
-from frbcli.solve.cell_films import GRID_X, GRID_Y
-from frbcli.solve.film_forces import drag_integral
-from frbcli.solve.films import have_cells, have_elements
-from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Array, Control, Output, RotorData, State
+from frbcli.solve.films.cells import GRID_X, GRID_Y
+from frbcli.solve.films.forces import drag_integral
+from frbcli.solve.films.steps import have_cells, have_elements
+from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Array, Control, LoopOutput, RotorData, State
 from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import Space, _advance, make_space
 
@@ -36,7 +36,7 @@ class Notes(NamedTuple):
 
 
 def advance_watched(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: Output,
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: LoopOutput,
     heat: Any, notes: Notes,
 ) -> tuple[int, int]:  # fmt: skip
     """As advance of time_loop.py, with notes."""
@@ -82,13 +82,13 @@ def _note(
 @compiled(makes_arrays=True)
 def _advance_watched(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
-    output: Output, heat: Any, notes: Notes,
+    output: LoopOutput, heat: Any, notes: Notes,
 ) -> tuple[int, int]:  # fmt: skip
     numbers, q, a, flows = state.numbers, state.q, state.a, state.flows
     noted, status, written, now = notes.now, RUNNING, 0, np.empty_like(notes.now)
     for _ in range(budget):
         t, first = numbers[TIME], numbers[OUTPUTS] - written
-        left = Output(output.q[written:], output.v[written:], output.oil[written:], output.heat[written:])
+        left = LoopOutput(output.q[written:], output.v[written:], output.oil[written:], output.heat[written:])
         status, rows = _advance(rotor, films, tableau, control, state, space, 1, left, heat)
         step = numbers[TIME] - t
         if step > 0.0:

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import PIECE, Column, Motion, Values, course, steepest_ramp
+from frbcli.analysis.signals import PIECE, Motion, SignalColumn, Values, course, steepest_ramp
 from frbcli.analysis.spectra.smear import chirp_height
 from frbcli.analysis.spectra.windows import fast_length, hann
 from frbcli.errors import Fault, InputError
@@ -56,10 +56,10 @@ class Spectrogram:
 
 
 def waterfall(
-    time_s: Column,
-    x: Column,
-    y: Column,
-    speed_Hz: Column,
+    time_s: SignalColumn,
+    x: SignalColumn,
+    y: SignalColumn,
+    speed_Hz: SignalColumn,
     clearance: float,
     window_s: float | None = None,
     overlap: float = 0.9,
@@ -114,7 +114,7 @@ def waterfall(
     return Spectrogram(time, speed, frequency[:kept], amplitude, level, window_s, lost)
 
 
-def window_length(time_s: Column, speed_Hz: Column, apart_Hz: float | None = None) -> float:
+def window_length(time_s: SignalColumn, speed_Hz: SignalColumn, apart_Hz: float | None = None) -> float:
     """The length in s of the windows that fit a run (n,): 1 / sqrt(r) in a ramp of r Hz/s, at most LONGEST_s; longer
     where lines that are apart_Hz from each other would else not be parted; at most a quarter of the run.
 
@@ -150,7 +150,7 @@ def _lines(
         yield from lines[:, :kept]
 
 
-def _step(time_s: Column) -> float:
+def _step(time_s: SignalColumn) -> float:
     """The time between two samples in s; raises InputError if there is no such thing."""
     count = len(time_s)
     if count < 2:

@@ -34,7 +34,7 @@ SI = "Correct it; values are in SI units."
 Columns = dict[str, list[float]]
 
 
-class _Fault(Exception):
+class _Refused(Exception):
     """Problem and remedy of a file that cannot be read."""
 
 
@@ -56,7 +56,7 @@ def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str
             continue
         try:
             columns = _checked(_read(folder / name))
-        except _Fault as fault:
+        except _Refused as fault:
             found.append(Breach(key, *fault.args))
             continue
         kept = {other: value for other, value in bearing.items() if other != "file"}
@@ -78,32 +78,32 @@ def _with_units(columns: Columns) -> dict[str, list[str]]:
 def _read(path: Path) -> Columns:
     try:
         if not path.is_file():
-            raise _Fault("names no file.", "Give its path from the folder of the case.")
+            raise _Refused("names no file.", "Give its path from the folder of the case.")
         if path.stat().st_size > LARGEST_FILE:
-            raise _Fault(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", "Name a file of coefficients.")
+            raise _Refused(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", "Name a file of coefficients.")
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise _Fault(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
+        raise _Refused(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
     except ValueError:
-        raise _Fault("is no UTF-8 text.", WRITE) from None
+        raise _Refused("is no UTF-8 text.", WRITE) from None
     return _of_table(text) if path.suffix.lower() == ".csv" else _of_ross(text, path.suffix.lower() == ".json")
 
 
 def _of_table(text: str) -> Columns:
     rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
     if not rows:
-        raise _Fault("is empty.", COLUMNS)
+        raise _Refused("is empty.", COLUMNS)
     names = [cell.strip() for cell in rows[0]]
     unknown = [name for name in names if name not in (SPEED, *REQUIRED, *MASSES)]
     if unknown:
-        raise _Fault(f'has the column "{unknown[0]}", which is not known here.', COLUMNS)
+        raise _Refused(f'has the column "{unknown[0]}", which is not known here.', COLUMNS)
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise _Fault(f'has the column "{twice}" twice.', COLUMNS)
+        raise _Refused(f'has the column "{twice}" twice.', COLUMNS)
     columns: Columns = {name: [] for name in names}
     for number, row in enumerate(rows[1:], start=1):
         if len(row) != len(names):
-            raise _Fault(f"has {len(row)} values in row {number} of numbers, not {len(names)}.", "Complete the row.")
+            raise _Refused(f"has {len(row)} values in row {number} of numbers, not {len(names)}.", "Complete the row.")
         for name, cell in zip(names, row, strict=True):
             columns[name].append(_number(cell, name, number))
     return columns
@@ -114,14 +114,14 @@ def _of_ross(text: str, is_json: bool) -> Columns:
         data = json.loads(text) if is_json else parse(text)
     except TomlFault as error:
         where = "" if error.fault.line is None else f" in line {error.fault.line}"
-        raise _Fault(f"is no TOML{where}: it {error.fault.problem}", WRITE) from None
+        raise _Refused(f"is no TOML{where}: it {error.fault.problem}", WRITE) from None
     except (ValueError, RecursionError):
-        raise _Fault("is no JSON.", WRITE) from None
+        raise _Refused("is no JSON.", WRITE) from None
     items = data.items() if isinstance(data, dict) else ()
     elements = [(name, item) for name, item in items if name.startswith(BEARINGS) and isinstance(item, dict)]
     if len(elements) != 1:
         told = "no bearing" if not elements else f"{len(elements)} bearings"
-        raise _Fault(f"holds {told}, not one.", WRITE)
+        raise _Refused(f"holds {told}, not one.", WRITE)
     name, element = elements[0]
     given = element.get("frequency")
     columns: Columns = {}
@@ -131,7 +131,7 @@ def _of_ross(text: str, is_json: bool) -> Columns:
     if given is None and all(len(values) == 1 for values in columns.values()):
         columns[SPEED] = [0.0]  # constant
     elif given is None:
-        raise _Fault(f'lacks "frequency" in "{name}".', WRITE)
+        raise _Refused(f'lacks "frequency" in "{name}".', WRITE)
     else:
         columns[SPEED] = [value / (2.0 * math.pi) for value in _numbers(given, "frequency")]
     return columns
@@ -149,9 +149,9 @@ def _number(given: object, name: str, row: int) -> float:
             raise ValueError
         value = float(given)
     except (ValueError, OverflowError):
-        raise _Fault(f'has no number as {row}. value of "{name}".', SI) from None
+        raise _Refused(f'has no number as {row}. value of "{name}".', SI) from None
     if not math.isfinite(value) or abs(value) > LARGEST:
-        raise _Fault(f'has a {row}. value of "{name}" that is no finite number within {LARGEST:g}.', SI)
+        raise _Refused(f'has a {row}. value of "{name}" that is no finite number within {LARGEST:g}.', SI)
     return value
 
 
@@ -162,15 +162,15 @@ def _checked(columns: Columns) -> Columns:
     if some:
         missing += [name for name in MASSES if name not in columns]
     if missing:
-        raise _Fault(f"lacks {', '.join(missing)}.", COLUMNS)
+        raise _Refused(f"lacks {', '.join(missing)}.", COLUMNS)
     count = len(columns[SPEED])
     if not 1 <= count <= MOST_SPEEDS:
-        raise _Fault(f"has {count} speeds.", f"Give 1 to {MOST_SPEEDS}.")
+        raise _Refused(f"has {count} speeds.", f"Give 1 to {MOST_SPEEDS}.")
     for name, values in columns.items():
         if len(values) != count:
-            raise _Fault(f'has {len(values)} values of "{name}" at {count} speeds.', "Give one at each speed.")
+            raise _Refused(f'has {len(values)} values of "{name}" at {count} speeds.', "Give one at each speed.")
     if problem := over_speed_problem(columns[SPEED], [columns[name] for name in MASSES] if some else ()):
-        raise _Fault(problem, "Give each speed once, in ascending order, and a mass that is not negative.")
+        raise _Refused(problem, "Give each speed once, in ascending order, and a mass that is not negative.")
     return columns
 
 

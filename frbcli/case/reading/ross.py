@@ -38,7 +38,7 @@ REMEDY = "Correct it in ROSS; values are in SI units."
 WRITE = "Write it with Rotor.save of ROSS."
 
 
-class _Fault(Exception):
+class _Unread(Exception):
     """Problem and remedy of a file that cannot be read."""
 
 
@@ -56,7 +56,7 @@ def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any],
         return data, [Breach(KEY, "is given beside [[shaft]].", "Keep one of the two.")]
     try:
         shaft, disks = _rotor(_read(folder / name))
-    except _Fault as fault:
+    except _Unread as fault:
         return data, [Breach(KEY, *fault.args)]
     own = data.get("disk", [])
     if isinstance(own, list):
@@ -74,20 +74,20 @@ def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any],
 def _read(path: Path) -> dict[str, Any]:
     try:
         if not path.is_file():
-            raise _Fault("names no file.", "Give its path from the folder of the case.")
+            raise _Unread("names no file.", "Give its path from the folder of the case.")
         if path.stat().st_size > LARGEST_FILE:
-            raise _Fault(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", "Name a rotor file of ROSS.")
+            raise _Unread(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", "Name a rotor file of ROSS.")
         text = path.read_text(encoding="utf-8-sig")
         data = json.loads(text) if path.suffix.lower() == ".json" else parse(text)
     except OSError as error:
-        raise _Fault(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
+        raise _Unread(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
     except TomlFault as error:
         where = "" if error.fault.line is None else f" in line {error.fault.line}"
-        raise _Fault(f"is neither TOML nor JSON{where}: it {error.fault.problem}", WRITE) from None
+        raise _Unread(f"is neither TOML nor JSON{where}: it {error.fault.problem}", WRITE) from None
     except (ValueError, RecursionError):
-        raise _Fault("is neither TOML nor JSON.", "Write it with Rotor.save of ROSS, to .toml or .json.") from None
+        raise _Unread("is neither TOML nor JSON.", "Write it with Rotor.save of ROSS, to .toml or .json.") from None
     if not isinstance(data, dict):
-        raise _Fault("holds no elements.", WRITE)
+        raise _Unread("holds no elements.", WRITE)
     return data
 
 
@@ -96,14 +96,14 @@ def _rotor(data: Mapping[str, Any]) -> tuple[list[dict[str, Any]], list[dict[str
     elements = [(name, name.split("_")[0], element) for name, element in data.items() if isinstance(element, dict)]
     for name, kind, _ in elements:
         if kind in HEAVY:
-            raise _Fault(f'has the element "{name}", which frb does not model.', "Replace it by a disk in ROSS.")
+            raise _Unread(f'has the element "{name}", which frb does not model.', "Replace it by a disk in ROSS.")
     shaft = sorted((_Element(name, element) for name, kind, element in elements if kind in SHAFT), key=_node)
     if not shaft:
-        raise _Fault("has no shaft elements.", WRITE)
+        raise _Unread("has no shaft elements.", WRITE)
     for place, element in enumerate(shaft):
         if _node(element) != place:
             problem = f'has "{element.name}" where the element from node {place} belongs; layers are not modelled.'
-            raise _Fault(problem, "Number nodes from 0, with one shaft element after each.")
+            raise _Unread(problem, "Number nodes from 0, with one shaft element after each.")
     positions = list(itertools.accumulate((element.number("L") for element in shaft), initial=0.0))
     cylinders = [cylinder for element in shaft for cylinder in _cylinders(element)]
     disks = [_disk(_Element(name, element), positions) for name, kind, element in elements if kind in DISK]
@@ -126,18 +126,18 @@ class _Element:
         """A finite number, and of what a case file has a quantity for, one that it would take."""
         found = self.values.get(key, default)
         if isinstance(found, bool) or not isinstance(found, int | float):
-            raise _Fault(f'lacks a number "{key}" in "{self.name}".', WRITE)
+            raise _Unread(f'lacks a number "{key}" in "{self.name}".', WRITE)
         try:
             value = float(found)
         except OverflowError:  # a whole number of hundreds of digits
             value = math.inf
         if not math.isfinite(value):
-            raise _Fault(f'has a "{key}" in "{self.name}" that is no finite number.', REMEDY)
+            raise _Unread(f'has a "{key}" in "{self.name}" that is no finite number.', REMEDY)
         if key in QUANTITIES:
             try:
                 get_args(QUANTITIES[key])[1].read(value)
             except ValueFault as fault:
-                raise _Fault(f'has a "{key}" in "{self.name}" that {fault.problem}', REMEDY) from None
+                raise _Unread(f'has a "{key}" in "{self.name}" that {fault.problem}', REMEDY) from None
         return value
 
 
@@ -149,16 +149,16 @@ def _cylinders(element: _Element) -> Iterator[dict[str, Any]]:
     """Tables of [[shaft]] for a shaft element."""
     for key in UNMODELLED:
         if element.number(key, 0.0) != 0.0:
-            raise _Fault(f'has a {key} in "{element.name}", which frb does not model.', "Set it to 0 in ROSS.")
+            raise _Unread(f'has a {key} in "{element.name}", which frb does not model.', "Set it to 0 in ROSS.")
     outer, inner = element.number("odl"), element.number("idl")
     growth = element.number("odr", outer) - outer, element.number("idr", inner) - inner
     if inner >= outer or inner + growth[1] >= outer + growth[0]:
-        raise _Fault(f'has no thickness in "{element.name}": the inner diameter is not below the outer one.', REMEDY)
+        raise _Unread(f'has no thickness in "{element.name}": the inner diameter is not below the outer one.', REMEDY)
     material = _Element(f"{element.name}.material", table(element.values, "material"))
     modulus = material.number("E")
     poisson = modulus / (2 * material.number("G_s")) - 1
     if not 0.0 <= poisson <= MOST_POISSON:
-        raise _Fault(f'has E and G_s in "{material.name}" that make a Poisson ratio of {poisson:.3g}.', REMEDY)
+        raise _Unread(f'has E and G_s in "{material.name}" that make a Poisson ratio of {poisson:.3g}.', REMEDY)
     parts = CYLINDERS if any(growth) else 1
     for part in range(parts):
         middle = (part + 0.5) / parts
@@ -185,11 +185,11 @@ def _joined(alike: list[dict[str, Any]]) -> dict[str, Any]:
 def _disk(element: _Element, positions: list[float]) -> dict[str, Any]:
     node = element.number("n")
     if node not in range(len(positions)):
-        raise _Fault(f'has "{element.name}" beyond the shaft.', WRITE)
+        raise _Unread(f'has "{element.name}" beyond the shaft.', WRITE)
     tag = element.values.get("tag") or element.name
     polar, diametral = element.number("Ip"), element.number("Id")
     if polar > 2 * diametral * (1 + 1e-9):
-        raise _Fault(f'has an Ip in "{element.name}" of more than twice Id, which is not possible.', REMEDY)
+        raise _Unread(f'has an Ip in "{element.name}" of more than twice Id, which is not possible.', REMEDY)
     return {
         "name": re.sub(r"[^A-Za-z0-9_-]", "-", str(tag))[:40],
         "position": positions[int(node)],

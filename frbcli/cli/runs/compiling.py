@@ -43,7 +43,7 @@ def compilation_shown(
 
     from frbcli.scene.costs.preparation import compile_s
 
-    class Count(Listener):
+    class Compilations(Listener):
         """Counts the compiled functions, with those that they call."""
 
         def __init__(self) -> None:
@@ -63,5 +63,5 @@ def compilation_shown(
                 line = f"Compiling the kernels, once: {self._count} functions in {now - self._begun:.0f} s"
                 terminal.progress(f"{line} of about {self._about_s:.0f}.", show)
 
-    with install_listener("numba:compile", Count()):
+    with install_listener("numba:compile", Compilations()):
         yield

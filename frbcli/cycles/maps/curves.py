@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
-from frbcli.cycles.maps.planes import Plane
+from frbcli.cycles.maps.planes import MapPlane
 from frbcli.cycles.method.balance import Balance, left_out, unpacked
 from frbcli.cycles.method.continuation import (
     Equations,
@@ -55,7 +55,7 @@ class Curve:
     notes: tuple[str, str]
 
 
-def hopf_equations(plane: Plane, y: Array) -> Equations:
+def hopf_equations(plane: MapPlane, y: Array) -> Equations:
     """Those of a Hopf point y = (u, nu / pace, numbers), with the bordering vectors of a y near to it."""
     left, _, right = np.linalg.svd(_at_rest(plane, y))
     b, c = left[:, -1], right[-1].conj()
@@ -83,7 +83,7 @@ def _require_positive(y: Array) -> None:
         raise Unreachable
 
 
-def _at_rest(plane: Plane, y: Array) -> Complex:
+def _at_rest(plane: MapPlane, y: Array) -> Complex:
     """1 - T_1 (dg/du + i nu dg/du' + kappa) at rest."""
     machine, here = plane.machine(y), plane.cycle(y)
     nu, omega = float(here[-2] * machine.pace), float(here[-1] * machine.pace)
@@ -94,7 +94,7 @@ def _at_rest(plane: Plane, y: Array) -> Complex:
     return np.asarray(np.eye(len(inner)) - passing.values[0] @ inner)
 
 
-def fold_equations(plane: Plane, y: Array) -> Equations:
+def fold_equations(plane: MapPlane, y: Array) -> Equations:
     """Those of a fold y = (motion, nu / pace, numbers), see balance.py, with the bordering vectors and the phase of a y
     near to it."""
     reference = unpacked(y[:-3], plane.machine(y).size)
@@ -207,7 +207,7 @@ def _stepped(
         return None
 
 
-def fitted_fold(plane: Plane, place: Place) -> Place | None:
+def fitted_fold(plane: MapPlane, place: Place) -> Place | None:
     """A fold with as many harmonics as it needs, up to a largest number."""
     for _ in range(8):
         machine = plane.machine(place.y)

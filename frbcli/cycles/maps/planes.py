@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 FAMILIES = 8  # that are kept, of values of the second number
 
 
-class Plane(Protocol):
+class MapPlane(Protocol):
     """over, unit: name and unit of the first number, which times `scale` is in it; by_difference: places of the numbers
     from the end that derivatives are differences by; shaded: values of the second number at which the growth at rest
     is told."""

@@ -25,7 +25,7 @@ from frbcli.cycles.maps.curves import (
     hopf_equations,
     with_harmonics,
 )
-from frbcli.cycles.maps.planes import KeyPlane, Plane, SpeedPlane
+from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
 from frbcli.cycles.method.criticality import lyapunov_coefficient
 from frbcli.cycles.method.equilibria import hopf_at, settled
@@ -183,7 +183,7 @@ def stability_map(
     )
 
 
-def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> tuple[Plane, Family]:
+def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> tuple[MapPlane, Family]:
     """The plane, and the machines over its second number."""
     slowest, fastest = check(case)
     key = second[0]
@@ -205,7 +205,7 @@ def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> t
 class _Map:
     """high: the largest value of the second number."""
 
-    plane: Plane
+    plane: MapPlane
     high: float
 
 
@@ -217,7 +217,7 @@ class _Begun:
     folds: list[Array]
 
 
-def _row(plane: Plane, family: Family, share: float, begun: _Begun) -> MapRow:
+def _row(plane: MapPlane, family: Family, share: float, begun: _Begun) -> MapRow:
     """The special points at a share, which are added to `begun`, too."""
     value = share * family.high
     try:

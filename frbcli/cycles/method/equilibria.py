@@ -74,7 +74,7 @@ class HopfPoint:
     state: Complex
 
 
-class Course(Protocol):
+class EquilibriumCourse(Protocol):
     """What resting positions are followed over."""
 
     def machine(self, value: float) -> Machine:
@@ -175,7 +175,7 @@ def _equilibrium(machine: Machine, space: StateSpace, place: Place) -> Equilibri
     return Equilibrium(u, omega, values, omega)
 
 
-def hopf_points(course: Course, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
+def hopf_points(course: EquilibriumCourse, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
     """The Hopf points between resting positions in the order of their course."""
     found = []
     for low, high in itertools.pairwise(points):
@@ -183,7 +183,7 @@ def hopf_points(course: Course, points: Sequence[Equilibrium]) -> tuple[HopfPoin
     return tuple(found)
 
 
-def _between(course: Course, low: Equilibrium, high: Equilibrium, halvings: int) -> list[HopfPoint]:
+def _between(course: EquilibriumCourse, low: Equilibrium, high: Equilibrium, halvings: int) -> list[HopfPoint]:
     """The Hopf points between two equilibria."""
     crossing = _crossing(low, high)
     if crossing == 0 or halvings == 0:
@@ -215,7 +215,7 @@ def settled(machine: Machine, near: Array, omega: float, value: float) -> Equili
     return replace(_equilibrium(machine, state_space(machine), found), value=value)
 
 
-def _located(course: Course, low: Equilibrium, high: Equilibrium) -> HopfPoint:
+def _located(course: EquilibriumCourse, low: Equilibrium, high: Equilibrium) -> HopfPoint:
     from scipy.optimize import brentq
 
     number = max(low.unstable, high.unstable) - 1

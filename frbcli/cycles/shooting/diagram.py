@@ -26,7 +26,7 @@ from frbcli.cycles.result import (
 )
 from frbcli.cycles.shooting.branch import follow_shots
 from frbcli.cycles.shooting.period_map import SAMPLES, period_map
-from frbcli.cycles.shooting.rest import Threshold, resting, thresholds
+from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
 from frbcli.cycles.shooting.shots import PLACES, Rest, Shooting, Shot
 from frbcli.errors import NotConverged
 
@@ -86,7 +86,7 @@ def limit_cycles_with_oil(
 
 def _branch(
     shooting: Shooting,
-    begin: Threshold,
+    begin: RestThreshold,
     speeds: tuple[float, float],
     asked: Sequence[float],
     tell: Callable[[Shot], None],
@@ -110,7 +110,7 @@ def _with_cells(note: str, shots: Sequence[Shot]) -> str:
     return " ".join(told).strip()
 
 
-def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[Threshold]) -> list[str]:
+def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[RestThreshold]) -> list[str]:
     around, along = shooting.flow.films.cells.shape[2:]
     notes = [
         f"The films keep their oil, on {around} x {along} cells: cycles are found by shooting on the time loop, "
@@ -129,7 +129,7 @@ def _rest(shooting: Shooting, rest: Rest) -> RestingPoint:
     return RestingPoint(speed, speed, rest.displacement, rest.wet.v[spins] / (2.0 * math.pi), rest.rates, rest.stable)
 
 
-def _hopf(begin: Threshold, branch: int | None, first: Shot | None) -> SpecialPoint:
+def _hopf(begin: RestThreshold, branch: int | None, first: Shot | None) -> SpecialPoint:
     """criticality: by the first cycle, where its stability is clear."""
     rest = begin.rest
     criticality = None
@@ -148,12 +148,12 @@ def _hopf(begin: Threshold, branch: int | None, first: Shot | None) -> SpecialPo
     )
 
 
-def _points(shooting: Shooting, begin: Threshold, shots: Sequence[Shot]) -> tuple[CyclePoint, ...]:
+def _points(shooting: Shooting, begin: RestThreshold, shots: Sequence[Shot]) -> tuple[CyclePoint, ...]:
     """The cycles of a branch from its Hopf point on, where they have no size."""
     return (_born(shooting, begin), *(_cycle(shooting, shot) for shot in shots)) if shots else ()
 
 
-def _born(shooting: Shooting, begin: Threshold) -> CyclePoint:
+def _born(shooting: Shooting, begin: RestThreshold) -> CyclePoint:
     rest, number = begin.rest, begin.number
     speed, spins = hertz(rest.omega), list(shooting.flow.system.spins)
     nu = float(rest.rates[number].imag)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balances import FLOWS
+from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SIN, UNKNOWN, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.state import OIL, RATE, W_BEFORE, WET, W

@@ -29,7 +29,7 @@ WIDER = 2.0  # times the disturbance of the differences, once more: how much its
 
 
 @dataclass(frozen=True)
-class Threshold:
+class RestThreshold:
     """A Hopf point. rest: the resting position there; number: of the rate that crosses zero; uncertainty: of its
     speed in rad/s, NaN where it is not known."""
 
@@ -62,7 +62,7 @@ def settled(shooting: Shooting, omega: float) -> Rest | None:
         return None
 
 
-def thresholds(shooting: Shooting, rests: list[Rest]) -> list[Threshold]:
+def thresholds(shooting: Shooting, rests: list[Rest]) -> list[RestThreshold]:
     """The Hopf points between resting positions, of whirls that begin or cease to grow, others may grow beside them."""
     return [
         located(shooting, low, high, mode)
@@ -71,7 +71,7 @@ def thresholds(shooting: Shooting, rests: list[Rest]) -> list[Threshold]:
     ]
 
 
-def located(shooting: Shooting, low: Rest, high: Rest, mode: int = 0) -> Threshold:
+def located(shooting: Shooting, low: Rest, high: Rest, mode: int = 0) -> RestThreshold:
     """The Hopf point between two resting positions of the whirl that grows fastest but for `mode` others."""
     for _ in range(HALVES):
         if abs(high.omega - low.omega) < NEAR * high.omega:
@@ -96,8 +96,8 @@ def located(shooting: Shooting, low: Rest, high: Rest, mode: int = 0) -> Thresho
     return _threshold(rest, math.hypot(fit.uncertainty, bent))
 
 
-def _threshold(rest: Rest, uncertainty: float) -> Threshold:
-    return Threshold(rest, rest.nearest_to_neutral, uncertainty)
+def _threshold(rest: Rest, uncertainty: float) -> RestThreshold:
+    return RestThreshold(rest, rest.nearest_to_neutral, uncertainty)
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
-from frbcli.film.cells.axial import end_slopes
+from frbcli.film.cells.balance.ends import end_slopes
+from frbcli.film.cells.balance.plain import NO_DISTANCE
+from frbcli.film.cells.elimination.ring_solver import ring_solver
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import force_weights
-from frbcli.film.cells.plain.balance import NO_DISTANCE
-from frbcli.film.cells.ring_solver import ring_solver
+from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.film.cavitation.law import CellState, Law, Scales
-from frbcli.film.cells.grid import VolumeGrid, fitted_grid, volume_grid
+from frbcli.film.cells.balance.plain_clipped import clipped_means
+from frbcli.film.cells.mesh.grid import VolumeGrid, fitted_grid, volume_grid
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.plain.clipped import clipped_means
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
 ABOVE_KINK = 1e-300  # of an unknown: no pressure worth the name, but a full cell
+HALVINGS = 60  # of the interval in which the unknown of a cell with a given oil fraction lies
 
 __all__ = [
     "Flows",
@@ -132,3 +134,47 @@ class VolumeFilm:
         row = np.searchsorted(grid.z, self.grid.height, side="right") - 1
         near: Array = w[np.ix_(column, row)]
         return near
+
+
+def supply_share(time: float, rise_time: float) -> float:
+    """f (4.11), the share of the gauge supply pressure after a time in s, with t_1 in s; all of it where t_1 is 0."""
+    return -math.expm1(-time / rise_time) if rise_time > 0.0 else 1.0
+
+
+def supplied(film: VolumeFilm, share: float) -> VolumeFilm:
+    """A film whose grooves and holes hold a share of their gauge pressures, which the hydrostatic force follows."""
+    section, grid = film.section, film.grid
+    section = replace(
+        section,
+        far_pressure=share * section.far_pressure,
+        grooves=tuple(replace(groove, pressure=share * groove.pressure) for groove in section.grooves),
+        holes=tuple(replace(hole, pressure=share * hole.pressure) for hole in section.holes),
+    )
+    grid = replace(grid, fixed_pressure=share * grid.fixed_pressure)
+    return VolumeFilm(section, grid, film.law, film.scales.reference)
+
+
+def refilled(
+    old: VolumeFilm, new: VolumeFilm, d: tuple[float, float], oil: Array, w: Array
+) -> tuple[Array, Array]:
+    """(m, k) unknowns of the film `new`, and the oil that it is given in its own units, from the oil and unknowns of
+    the film `old`, which has another clearance. d: of the journal, over the new clearance."""
+    share, free = old.section.clearance / new.section.clearance, ~new.grid.fixed
+    pressure = old.scales.reference * old.section.pressure_scale / (new.scales.reference * new.section.pressure_scale)
+    given = share * oil
+    full = np.maximum(new.full(), pressure * w)  # cells with enough oil keep their pressure
+    gap = new.gap(d, new.grid.centre)[:, None]
+    return np.where(free, _with_fraction(new, given / gap, full), w), given
+
+
+def _with_fraction(film: VolumeFilm, fraction: Array, full: Array) -> Array:
+    """(m, k) unknowns of cells with given oil fractions, at most `full`: they grow with each other."""
+    scales = film.scales
+    least = -2.0 - (scales.cavitation + scales.ambient) / scales.reference  # neither oil nor pressure
+    low, high = np.full_like(full, least), full.copy()
+    enough = film.cells(full).fraction <= fraction
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        above = film.cells(middle).fraction > fraction
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return np.where(enough, full, 0.5 * (low + high))

@@ -9,7 +9,7 @@ import numpy as np
 
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.grid import force_weights
+from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
@@ -49,7 +49,7 @@ class Torque:
 
 
 @dataclass(frozen=True)
-class Loads:
+class FilmLoads:
     """Loads of the whole bearing. force: on the journal in N; p_max, p_min: absolute, Pa; oil_fraction: mean (4.46)."""
 
     force: tuple[float, float]
@@ -66,7 +66,7 @@ def loads(
     solution: VolumeSolution,
     slip: float | None = None,
     factor: CavitationFactor = "none",
-) -> Loads:
+) -> FilmLoads:
     """All loads of a solution.
 
     slip: omega_J - omega_S in rad/s, else that of a shell at rest; factor: how missing oil lowers the torque.
@@ -74,7 +74,7 @@ def loads(
     pressure = film.pressure(solution.state)
     ambient = film.section.ambient_pressure
     scale = film.section.pressure_scale
-    return Loads(
+    return FilmLoads(
         force=force(film, film.mean_pressure(solution.state)),
         torque=torque(film, motion, solution, motion.omega if slip is None else slip, factor),
         p_max=ambient + scale * peak(film, pressure),

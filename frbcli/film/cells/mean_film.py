@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import solve_circulant
 
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import force_weights
+from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array

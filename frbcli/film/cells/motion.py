@@ -1,8 +1,12 @@
-"""What the balances of a film are asked for: the motion of the journal, and the oil that the cells store."""
+"""The motion of the journal that drives a film, also as seen from a surface that turns, and the oil that cells store.
+
+Bores or grooves in a turning surface stand still in a frame that turns with it (section 4.1.5.3).
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -31,3 +35,26 @@ class Storage(NamedTuple):
 
     factor: Array
     past: Array
+
+
+def turned(vector: tuple[float, float], angle: float) -> tuple[float, float]:
+    """A vector (x, y) turned by an angle in rad: from the axes of a frame at this angle to those of the lab."""
+    c, s = math.cos(angle), math.sin(angle)
+    return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
+
+
+def seen_from(motion: Motion, angle: float, speed: float) -> Motion:
+    """A motion of the lab in a frame at an angle in rad that turns with a speed in rad/s.
+
+    phi = phi* + angle (4.20): displacement and velocity turn back by the angle, and the frame's own turning is taken
+    from them, as from the speeds of journal and shell. Nothing else changes, for a film has no inertia: forces on the
+    journal come back by turned(force, angle), the slip omega_J - omega_S and the torques are the same.
+    """
+    (x, y), (v_x, v_y) = motion.d, motion.v
+    relative = (v_x + speed * y, v_y - speed * x)
+    return Motion(turned(motion.d, -angle), turned(relative, -angle), motion.omega - 2.0 * speed)
+
+
+def path_seen_from(path: Callable[[float], Motion], speed: float) -> Callable[[float], Motion]:
+    """A motion over time in s, seen from a frame that turns with a speed in rad/s and is at the angle 0 at time 0."""
+    return lambda time: seen_from(path(time), speed * time, speed)

@@ -16,13 +16,9 @@ import numpy as np
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, GridMotion, balances
-from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
-from frbcli.film.cells.carried import UPWIND, before_upstream
-from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
-from frbcli.film.cells.motion import Motion, Storage
-from frbcli.film.cells.states import (
+from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, GridMotion, balances
+from frbcli.film.cells.balance.carried import UPWIND, before_upstream
+from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION,
     FRACTION_SLOPE,
@@ -32,6 +28,10 @@ from frbcli.film.cells.states import (
     STATES,
     cell_states,
 )
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
+from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
+from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.gap import gap_rate
 from frbcli.film.grid import Array
 

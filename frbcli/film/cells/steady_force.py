@@ -7,15 +7,15 @@ import math
 import numpy as np
 
 from frbcli.errors import FilmUnsolved
-from frbcli.film.cells.balances import FLOWS, SIDES, GridMotion
-from frbcli.film.cells.block_cyclic import ENTRIES
+from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion
+from frbcli.film.cells.balance.newton_step import film_newton
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES
 from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.newton_step import film_newton
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.states import BEFORE_UPSTREAM, STATES
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce
 

@@ -12,14 +12,13 @@ import numpy as np
 
 from frbcli.compiled import Indices
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.data import CENTRIFUGAL, GIVEN_PRESSURE, REMEMBERS, RESISTANCE, SHEARED, VolumeFilms
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.grid import run_grid
+from frbcli.film.cells.film import VolumeFilm, refilled
 from frbcli.film.cells.loads import CavitationFactor, force, loads
+from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.refilled import refilled
-from frbcli.film.cells.side_flow import opens_far, outflow
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array

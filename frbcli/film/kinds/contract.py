@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from frbcli.film.cells.balances import FLOWS
+from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.end_flow import EndFlow

@@ -14,9 +14,9 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.published.data import BOOKS, CAME, HELD, LEFT, ElementFilm
+from frbcli.film.published.equations.unknown import unknowns_of
 from frbcli.film.published.film import PublishedFilm, published_force
 from frbcli.film.published.moving import oil_held
-from frbcli.film.published.unknown import unknowns_of
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.state import NOW, OIL, PASSED, W_BEFORE, WET, W
 

@@ -10,10 +10,9 @@ import numpy as np
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cells.axial import axial_weights
-from frbcli.film.cells.grid import VolumeGrid, fitted_grid
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.mesh.grid import VolumeGrid, axial_weights, fitted_grid
 from frbcli.film.cells.motion import Motion, Storage
-from frbcli.film.cells.plain.balance import Balance
 from frbcli.film.gap import Section, gap_rate
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.penalty_table.rows import LIMIT, row_forces
@@ -46,7 +45,7 @@ def row_equations(section: Section, grid: VolumeGrid, eccentricity: float) -> Ro
     outflows = []
     for v in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)):
         rate = gap_rate(v, grid.centre)[:, None]
-        balance = Balance(section, grid, Motion((eccentricity, 0.0), v, 0.0))
+        balance = CellBalances(section, grid, Motion((eccentricity, 0.0), v, 0.0))
         outflow, matrix = balance.residual(state, Storage(rate, np.zeros_like(rate)))
         outflows.append(outflow)
     return RowEquations(

@@ -8,11 +8,11 @@ import numpy as np
 
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
-from frbcli.film.published.assembly import DIRECTIONS, Elements
+from frbcli.film.published.equations.assembly import DIRECTIONS, Elements
+from frbcli.film.published.equations.law import Step
+from frbcli.film.published.equations.unknown import Unknowns, make_unknowns
 from frbcli.film.published.film import PublishedFilm
-from frbcli.film.published.law import Step
 from frbcli.film.published.newton import REFERENCES
-from frbcli.film.published.unknown import Unknowns, make_unknowns
 
 PRESSURE, BY_W, RESIDUAL = range(3)
 CAME, LEFT, HELD, BOOKS = range(4)  # oil through the film in m^3, or now in m^3/s; in it at the start of a run, or now

@@ -12,12 +12,12 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section, gap_height, gap_rate
 from frbcli.film.grid import Array
-from frbcli.film.published.assembly import Gap
-from frbcli.film.published.elements import Diffusion, force_weights, lobe_slope, make_elements
-from frbcli.film.published.law import Step, make_step
-from frbcli.film.published.mesh import quadratic_mesh
+from frbcli.film.published.equations.assembly import Gap
+from frbcli.film.published.equations.law import Step, make_step
+from frbcli.film.published.mesh.elements import Diffusion, force_weights, lobe_slope, make_elements
+from frbcli.film.published.mesh.quadratic import quadratic_mesh
 from frbcli.film.published.newton import NONE, Equations, Newton, Point
-from frbcli.film.published.solution import FilmState, PublishedSolution, Response
+from frbcli.film.published.solution import ForceResponse, NodeState, PublishedSolution
 from frbcli.film.rectangles.film import FilmForce
 
 AROUND, ALONG = 20, 10  # elements of a section, figure 6.2
@@ -57,11 +57,11 @@ class PublishedFilm:
         elements = max(3, self.mesh.around // 2), max(1, self.mesh.along // 2)
         return PublishedFilm(self.section, self.law, self._diffusion, *elements)
 
-    def full(self) -> FilmState:
+    def full(self) -> NodeState:
         """A full film at the ambient pressure, or p_cav if that is higher."""
         level = np.full(self.mesh.phi.shape, max(0.0, self.cavitation))
         pressure = np.where(self.elements.fixed.reshape(level.shape), self.mesh.fixed_pressure, level)
-        return FilmState(pressure, self.fraction(pressure))
+        return NodeState(pressure, self.fraction(pressure))
 
     def fraction(self, pressure: Array) -> Array:
         """(e, 9) oil fraction at the points, from the scaled gauge pressures (2 a, 2 k + 1) of the nodes."""
@@ -84,7 +84,7 @@ class PublishedFilm:
         height, rate = gap_height(self.section, motion.d, angle), gap_rate(motion.v, angle)
         return Gap(height, slope, rate, 0.5 * motion.omega)
 
-    def steady(self, motion: Motion, start: FilmState | None = None) -> PublishedSolution:
+    def steady(self, motion: Motion, start: NodeState | None = None) -> PublishedSolution:
         """Oil fractions that do not change while the journal moves as it does, by way of less steep laws if need be.
 
         start: of a motion near to this one. Raises NotConverged.
@@ -103,7 +103,7 @@ class PublishedFilm:
         point = self._newton.approach(equations, distance, self.full().pressure.ravel())
         return self._solution(motion, equations(distance), point, cost + point.cost)
 
-    def step(self, motion: Callable[[float], Motion], state: FilmState, time: float, dt: float) -> PublishedSolution:
+    def step(self, motion: Callable[[float], Motion], state: NodeState, time: float, dt: float) -> PublishedSolution:
         """An implicit Euler step from a time over dt, in s, along a motion (time -> motion).
 
         In halves where it does not converge. Raises NotConverged.
@@ -111,7 +111,7 @@ class PublishedFilm:
         return self._halves(motion, state, time, dt, MOST_HALVINGS)
 
     def _halves(
-        self, motion: Callable[[float], Motion], state: FilmState, time: float, dt: float, left: int
+        self, motion: Callable[[float], Motion], state: NodeState, time: float, dt: float, left: int
     ) -> PublishedSolution:
         try:
             return self.keep(motion(time + dt), state.pressure, 1.0 / dt, state.fraction / dt)
@@ -145,8 +145,8 @@ class PublishedFilm:
         by = np.einsum("ijx,ijs->xs", self.weights, change)
         unsettled = float(np.hypot(*by[:, 0]) / max(np.hypot(*force), np.finfo(float).tiny))
         return PublishedSolution(
-            FilmState(pressure, self.fraction(pressure)),
-            Response(force, by[:, 1:3], by[:, 3:]),
+            NodeState(pressure, self.fraction(pressure)),
+            ForceResponse(force, by[:, 1:3], by[:, 3:]),
             motion,
             equations.rate,
             equations.past,

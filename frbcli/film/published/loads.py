@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.cells.loads import CavitationFactor, Loads, OilBalance, Torque
+from frbcli.film.cells.loads import CavitationFactor, FilmLoads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 from frbcli.film.published.film import PublishedFilm
@@ -29,7 +29,7 @@ class OilFlows:
 
 def published_loads(
     film: PublishedFilm, solution: PublishedSolution, slip: float | None = None, factor: CavitationFactor = "none"
-) -> Loads:
+) -> FilmLoads:
     """All loads of a solution.
 
     slip: omega_J - omega_S in rad/s, else that of a shell at rest; factor: how missing oil lowers the torque, see
@@ -37,7 +37,7 @@ def published_loads(
     """
     section, pressure = film.section, solution.state.pressure
     absolute = section.ambient_pressure + section.pressure_scale * pressure
-    return Loads(
+    return FilmLoads(
         force=(float(solution.response.force[0]), float(solution.response.force[1])),
         torque=torque(film, solution, solution.motion.omega if slip is None else slip, factor),
         p_max=float(absolute.max()),

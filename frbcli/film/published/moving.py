@@ -9,11 +9,18 @@ from typing import Any
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.published.assembly import EDGE_VALUES, EDGE_WEIGHTS, LARGEST_EXPONENT, Elements, Gap, assemble
 from frbcli.film.published.data import BY_W, PRESSURE, RESIDUAL, RIGHTS, ElementFilm, Room
-from frbcli.film.published.law import Step, oil_fraction
-from frbcli.film.published.ring import make_ring, solve_ring
-from frbcli.film.published.unknown import pressures_of
+from frbcli.film.published.equations.assembly import (
+    EDGE_VALUES,
+    EDGE_WEIGHTS,
+    LARGEST_EXPONENT,
+    Elements,
+    Gap,
+    assemble,
+)
+from frbcli.film.published.equations.law import Step, oil_fraction
+from frbcli.film.published.equations.ring import make_ring, solve_ring
+from frbcli.film.published.equations.unknown import pressures_of
 
 
 @compiled(inline=True)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.film.grid import Array
-from frbcli.film.published.assembly import DIRECTIONS, Elements, Gap, assemble
-from frbcli.film.published.law import Step
-from frbcli.film.published.mesh import QuadraticMesh
-from frbcli.film.published.ring import make_ring, solve_ring
-from frbcli.film.published.unknown import Unknowns, make_unknowns, pressures_of, unknowns_of
+from frbcli.film.published.equations.assembly import DIRECTIONS, Elements, Gap, assemble
+from frbcli.film.published.equations.law import Step
+from frbcli.film.published.equations.ring import make_ring, solve_ring
+from frbcli.film.published.equations.unknown import Unknowns, make_unknowns, pressures_of, unknowns_of
+from frbcli.film.published.mesh.quadratic import QuadraticMesh
 
 NONE = 1e-6  # residual over the sum of its terms that counts as none
 REFERENCES = (1.0, 0.1)  # of the unknown over p_cav, tried one after the other

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.film.grid import Array
-from frbcli.film.published.assembly import EDGE_VALUES, EDGE_WEIGHTS, GAMMA, PECLET, Elements, Gap
+from frbcli.film.published.equations.assembly import EDGE_VALUES, EDGE_WEIGHTS, GAMMA, PECLET, Elements, Gap
 
 AROUND_DIRECTION, ALONG_DIRECTION = 0, 1
 

@@ -9,7 +9,7 @@ from frbcli.film.grid import Array
 
 
 @dataclass(frozen=True)
-class FilmState:
+class NodeState:
     """What a film remembers. pressure: (2 a, 2 k + 1) scaled gauge pressure of the nodes; fraction: (e, 9) of oil at
     the points."""
 
@@ -18,7 +18,7 @@ class FilmState:
 
 
 @dataclass(frozen=True)
-class Response:
+class ForceResponse:
     """force: (2,) N on the journal by the whole bearing; by_d, by_v: (2, 2) its derivatives by displacement (N) and
     velocity (N s) over the clearance, row: direction of the force."""
 
@@ -33,8 +33,8 @@ class PublishedSolution:
     unsettled: share of the force by which another correction would change it; iterations: assemblies of the equations.
     """
 
-    state: FilmState
-    response: Response
+    state: NodeState
+    response: ForceResponse
     motion: Motion
     rate: float
     past: Array

@@ -30,7 +30,7 @@ SHAPE = np.stack(
 SLOPE = np.stack([4 * GAUSS_POINTS - 3, 4 - 8 * GAUSS_POINTS, 4 * GAUSS_POINTS - 1])
 
 
-class Ring(NamedTuple):
+class RingMatrices(NamedTuple):
     """What solve_ring works in, on m elements with r right-hand sides: middle (m, 3) row of each element over its
     diagonal; diagonal, upper, cut (m,); condensed (m, r); local (3, 3)."""
 
@@ -69,7 +69,7 @@ def _element(length: float, cube: Array, decay: float, local: Array) -> None:
 
 
 @compiled()
-def solve_ring(lengths: Array, cube: Array, decay: float, load: Array, ring: Ring, pressure: Array) -> None:
+def solve_ring(lengths: Array, cube: Array, decay: float, load: Array, ring: RingMatrices, pressure: Array) -> None:
     """Solve -d/dphi(H^3 dP/dphi) + decay H^3 P = load on the ring of m quadratic elements.
 
     lengths: (m,); cube: (m, 3) H^3 at the quadrature points; load: (r, m, 3) r right-hand sides at the element nodes
@@ -137,7 +137,7 @@ def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads:
     gap = 1.0 + eccentricity * cosine
     shares = lengths[:, None] * GAUSS_WEIGHTS
     load = -np.stack([(shares * cosine) @ SHAPE.T, (shares * sine) @ SHAPE.T])
-    ring = Ring(np.empty((m, 3)), np.empty(m), np.empty(m), np.empty(m), np.empty((m, 2)), np.empty((3, 3)))
+    ring = RingMatrices(np.empty((m, 3)), np.empty(m), np.empty(m), np.empty(m), np.empty((m, 2)), np.empty((3, 3)))
     fields = np.empty((4, len(decays), 2 * m))
     work = np.empty((2, m, 3)), np.empty((2, m, 3)), np.empty((2, 2 * m))
     _mode_fields(lengths, gap**3, 3.0 * gap**2 * cosine, decays, mode_loads, load, ring, work, fields)
@@ -146,7 +146,7 @@ def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads:
 
 @compiled()
 def _mode_fields(
-    lengths: Array, cube: Array, change: Array, decays: Array, mode_loads: Array, load: Array, ring: Ring,
+    lengths: Array, cube: Array, change: Array, decays: Array, mode_loads: Array, load: Array, ring: RingMatrices,
     work: tuple[Array, Array, Array], fields: Array,
 ) -> None:  # fmt: skip
     """fields <- those of unit_fields; change (m, 3): dH^3/deps at the quadrature points; load (2, m, 3) of a mode with

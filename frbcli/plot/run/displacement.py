@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.signals import Column, Values, joined, located, points
+from frbcli.analysis.signals import SignalColumn, Values, joined, located, points
 from frbcli.plot.curves import draw_curves
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import MICRO, cut, heading, labels, motion
@@ -21,8 +21,8 @@ from frbcli.results.store import Run
 class Distance:
     """The distance of a point from the axis, um; read in pieces like a signal."""
 
-    x: Column
-    y: Column
+    x: SignalColumn
+    y: SignalColumn
 
     def __len__(self) -> int:
         return len(self.x)

@@ -20,7 +20,7 @@ DRAWN_POINTS = 4000  # more than a picture has columns of pixels
 SHORTEST = 4  # samples of a span; with fewer, all are drawn
 
 
-class Column(Protocol):
+class EnvelopeColumn(Protocol):
     """Values (n,) of which slices (m,) can be had: a signal, or what is computed of several."""
 
     def __getitem__(self, part: slice, /) -> Values: ...
@@ -57,7 +57,7 @@ class Envelope:
         return place, values
 
 
-def curve(run: Run, column: Column, first: int = 0, last: int | None = None) -> tuple[Values, Values]:
+def curve(run: Run, column: EnvelopeColumn, first: int = 0, last: int | None = None) -> tuple[Values, Values]:
     """Times and values (k,) that draw the samples of a column from `first` to before `last`, by default all."""
     last = len(run) if last is None else last
     line = Envelope(last - first)
@@ -66,7 +66,7 @@ def curve(run: Run, column: Column, first: int = 0, last: int | None = None) -> 
     return line.points()
 
 
-def extremes(column: Column, first: int, last: int) -> tuple[float, float]:
+def extremes(column: EnvelopeColumn, first: int, last: int) -> tuple[float, float]:
     """The lowest and the highest value of some samples; what is no number does not count. (inf, -inf) without any."""
     lowest, highest = np.inf, -np.inf
     for start, stop in pieces(first, last):
@@ -76,7 +76,7 @@ def extremes(column: Column, first: int, last: int) -> tuple[float, float]:
     return lowest, highest
 
 
-def at_times(run: Run, column: Column, times: Values) -> Values:
+def at_times(run: Run, column: EnvelopeColumn, times: Values) -> Values:
     """The values (k,) of a column at ascending times (k,) in s, on the line between the samples."""
     found = np.empty(len(times))
     for start, stop in pieces(0, len(run)):

@@ -29,7 +29,7 @@ PANELS = (
 
 
 @dataclass(frozen=True)
-class _Scaled:
+class _ScaledHeat:
     """A signal in other units."""
 
     signal: Signal
@@ -54,7 +54,7 @@ def heat_figure(
         for axes, (quantity, end, words, factor, offset) in zip(panels, PANELS, strict=True):
             curves = [
                 (name[len(quantity) + 1 : -len(end)].replace("_", " ") or "film",
-                 [_Scaled(run.signal(name), factor, offset) for run in runs])
+                 [_ScaledHeat(run.signal(name), factor, offset) for run in runs])
                 for name in _told(runs[0], quantity, end)
             ]  # fmt: skip
             draw_curves(axes, runs, curves, over, (from_time, to_time))

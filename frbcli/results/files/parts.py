@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 from h5py import h5d, h5l
 
-from frbcli.results.files.stored import Place, Stored
+from frbcli.results.files.stored import RunPlace, Stored
 
 LARGEST_TEXT = 2 * 1024**2  # characters
 MOST_PARTS = 500  # of a group
@@ -43,7 +43,7 @@ def names(inside: h5py.Group, what: str) -> list[str]:
     return found
 
 
-def array(inside: h5py.Group, name: str, place: Place, dimensions: int | None = None) -> Stored:
+def array(inside: h5py.Group, name: str, place: RunPlace, dimensions: int | None = None) -> Stored:
     """Where the numbers of a part lie. dimensions: that it must have. Raises WrongPart."""
     data = _member(inside, name, h5py.Dataset)
     if data.dtype not in NUMBERS or data.shape is None or dimensions not in (None, len(data.shape)):

@@ -22,14 +22,14 @@ SIZE = 0  # its position in a stamp
 
 
 @dataclass(frozen=True)
-class Place:
+class RunPlace:
     """A file as it was when it was checked. path: absolute; stamp: its identity, against a later file there."""
 
     path: Path
     stamp: tuple[int, ...]
 
     @classmethod
-    def of(cls, path: Path, file: BinaryIO) -> Place:
+    def of(cls, path: Path, file: BinaryIO) -> RunPlace:
         """The place of an open file."""
         return cls(path.absolute(), _stamp(file))
 
@@ -56,7 +56,7 @@ class Place:
 class Stored:
     """An array in a file: where it begins there, its type and shape."""
 
-    place: Place
+    place: RunPlace
     offset: int
     dtype: np.dtype[Any]
     shape: tuple[int, ...]

@@ -13,7 +13,7 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.runs.control import control_of
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
-from frbcli.solve.contact import felt_motion
+from frbcli.solve.stage.contact import felt_motion
 from frbcli.solve.state import Array
 
 SMALL_FORCE = 0.1  # of the median one

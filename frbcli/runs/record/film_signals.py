@@ -18,7 +18,7 @@ from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
 from frbcli.scene.machine.system import System
-from frbcli.solve.contact import felt_motion, touches
+from frbcli.solve.stage.contact import felt_motion, touches
 from frbcli.solve.state import SLIP, SUM, Array, Control
 from frbcli.solve.watched import DRAG, LEAVES, NOTES
 

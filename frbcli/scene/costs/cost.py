@@ -17,7 +17,7 @@ import numpy as np
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.scene.costs.course import STAGES, Course, expected_course, runs_nearly_dry, whirl_speed
+from frbcli.scene.costs.course import STAGES, RunCourse, expected_course, runs_nearly_dry, whirl_speed
 from frbcli.scene.costs.preparation import after_s, before_s, memory_B, rotor_size
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.elements import changes_with_speed
@@ -67,7 +67,7 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     return ExpectedCost(round(steps), round(solves), loop_s, before, after, memory_B(case, plan, samples))
 
 
-def _quiet_share(case: Case, profile: SpeedProfile, course: Course) -> float:
+def _quiet_share(case: Case, profile: SpeedProfile, course: RunCourse) -> float:
     """Share of the loop before a whirl, for which a run is repeated on fewer cells."""
     if runs_nearly_dry(case):
         return GROWING

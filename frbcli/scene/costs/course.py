@@ -55,7 +55,7 @@ SLOWEST_Hz = 1e-6  # rotor speed below which revolutions are not counted
 
 
 @dataclass(frozen=True)
-class Course:
+class RunCourse:
     """times: (k,) s; steps, solves: (k,) numbers until then, of film solves those of all films."""
 
     times: Array
@@ -68,7 +68,7 @@ class Course:
         return float(np.interp(time, self.times, done) / max(done[-1], 1e-300))
 
 
-def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> Course:
+def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
     """Expected course of a run along a speed profile: a number of steps per revolution, per second at low speed, or
     that which the tolerance needs."""
     times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
@@ -86,7 +86,7 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> Course:
         iterations = np.ones_like(rate)
     films = len(film_places(case)) * (MICRO_STEPS if plan.coupling == APART else 1.0)
     solves = rate * STAGES[plan.method] * iterations * films
-    return Course(times, _summed(rate, times), _summed(solves, times))
+    return RunCourse(times, _summed(rate, times), _summed(solves, times))
 
 
 def longest_step(case: Case, plan: Plan) -> float:

@@ -55,7 +55,7 @@ def memory(number: float) -> str:
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _Limited:
     """The demand of a key. times: over that of usual cases."""
 
     times: float
@@ -64,40 +64,40 @@ class _Asked:
     remedy: str
 
 
-def _responsible(case: Case, plan: Plan) -> _Asked:
+def _responsible(case: Case, plan: Plan) -> _Limited:
     """The largest demand, compared with usual cases."""
     return max((*_by_accuracy(case, plan), *_by_machine(case), *_by_speed(case)), key=lambda asked: asked.times)
 
 
-def _by_accuracy(case: Case, plan: Plan) -> Iterator[_Asked]:
+def _by_accuracy(case: Case, plan: Plan) -> Iterator[_Limited]:
     given = case.accuracy
     coarser = altered(case, {"accuracy": altered(given, {"mesh": None})})
     usual = make_plan(coarser)
     solves = plan.form.solve_us(plan) / usual.form.solve_us(usual)
     tables = (1.0 + before_s(case, plan)) / (1.0 + before_s(coarser, usual))
-    yield _Asked(max(solves, tables), "accuracy.mesh", f"{list(given.mesh or ())}", "Take fewer elements.")
+    yield _Limited(max(solves, tables), "accuracy.mesh", f"{list(given.mesh or ())}", "Take fewer elements.")
     steps = given.steps_per_revolution
-    yield _Asked(steps / STEPS_PER_REVOLUTION, "accuracy.steps_per_revolution", f"{steps}", "Take fewer.")
+    yield _Limited(steps / STEPS_PER_REVOLUTION, "accuracy.steps_per_revolution", f"{steps}", "Take fewer.")
     if given.tolerance is None:
-        yield _Asked(1e-4 / given.target, "accuracy.target", f"{given.target:g}", "Take a larger one.")
+        yield _Limited(1e-4 / given.target, "accuracy.target", f"{given.target:g}", "Take a larger one.")
     else:
-        yield _Asked(1e-7 / given.tolerance, "accuracy.tolerance", f"{given.tolerance:g}", "Take a larger one.")
+        yield _Limited(1e-7 / given.tolerance, "accuracy.tolerance", f"{given.tolerance:g}", "Take a larger one.")
     if plan.macro_step is not None:
-        yield _Asked(MACRO_STEP / plan.macro_step, "accuracy.macro_step", f"{plan.macro_step:g} s", "Lengthen it.")
-    yield _Asked(1e-7 / case.output.step, "output.step", f"{case.output.step:g} s", "Lengthen it.")
+        yield _Limited(MACRO_STEP / plan.macro_step, "accuracy.macro_step", f"{plan.macro_step:g} s", "Lengthen it.")
+    yield _Limited(1e-7 / case.output.step, "output.step", f"{case.output.step:g} s", "Lengthen it.")
 
 
-def _by_machine(case: Case) -> Iterator[_Asked]:
+def _by_machine(case: Case) -> Iterator[_Limited]:
     freedoms, steps = rotor_size(case), len(step_times(case))
-    yield _Asked(freedoms / 30.0, "rotor", f"{freedoms} degrees of freedom", "Keep fewer modes, or a lower cut-off.")
-    yield _Asked(len(case.shaft) / 1e3, "shaft", f"{len(case.shaft)} sections", "Join neighbours that are alike.")
-    yield _Asked(len(case.disks) / 100.0, "disk", f"{len(case.disks)} disks", "Join neighbours.")
-    yield _Asked(len(case.given_bearings) / 4.0, "bearing", f"{len(case.given_bearings)} bearings", "Take fewer.")
-    yield _Asked(steps / 10.0, "bearing.clearance_steps", f"{steps} steps", "Take fewer: each has its own films.")
+    yield _Limited(freedoms / 30.0, "rotor", f"{freedoms} degrees of freedom", "Keep fewer modes, or a lower cut-off.")
+    yield _Limited(len(case.shaft) / 1e3, "shaft", f"{len(case.shaft)} sections", "Join neighbours that are alike.")
+    yield _Limited(len(case.disks) / 100.0, "disk", f"{len(case.disks)} disks", "Join neighbours.")
+    yield _Limited(len(case.given_bearings) / 4.0, "bearing", f"{len(case.given_bearings)} bearings", "Take fewer.")
+    yield _Limited(steps / 10.0, "bearing.clearance_steps", f"{steps} steps", "Take fewer: each has its own films.")
 
 
-def _by_speed(case: Case) -> Iterator[_Asked]:
+def _by_speed(case: Case) -> Iterator[_Limited]:
     speed = case.speed
-    yield _Asked(speed.duration / 100.0, "speed.duration", f"{speed.duration:g} s", "Shorten the run.")
+    yield _Limited(speed.duration / 100.0, "speed.duration", f"{speed.duration:g} s", "Shorten the run.")
     fastest = max(abs(speed.start), abs(speed.end))
-    yield _Asked(fastest / 1e4, "speed.to", f"{fastest:g} Hz", "Lower the speed, or shorten the run.")
+    yield _Limited(fastest / 1e4, "speed.to", f"{fastest:g} Hz", "Lower the speed, or shorten the run.")

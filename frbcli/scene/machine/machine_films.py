@@ -11,7 +11,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.channel_data import with_channels
+from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.gap import Section

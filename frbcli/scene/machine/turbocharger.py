@@ -8,7 +8,7 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.rotor.beam import Section
+from frbcli.rotor.beam import BeamSection
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.reduction import RIGID, FreeModes, free_modes
 from frbcli.rotor.ring import with_rings
@@ -52,7 +52,7 @@ def all_modes(case: Case) -> FreeModes:
     """The modes of the free rotor of a case, before any reduction, see free_modes. Raises InputError if its masses and
     stiffnesses differ by too many powers of ten for them."""
     sections = [
-        Section(
+        BeamSection(
             part.length,
             part.diameter,
             part.inner_diameter,

@@ -1,0 +1,382 @@
+"""The oil balances of the cells of one film with all derivatives, compiled: Balance.residual in one sweep.
+
+Beside the derivatives by w of the cells stand those by the displacement of the journal, so that rotor and film can be
+solved together.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from frbcli.compiled import Array, compiled
+from frbcli.film.cavitation.compiled import wright_omega
+from frbcli.film.cells.balance.carried import limited_at
+from frbcli.film.cells.balance.ends import BEND, PREFACTOR, STEEPNESS
+from frbcli.film.cells.balance.states import (
+    BEFORE_UPSTREAM,
+    FRACTION,
+    FRACTION_SLOPE,
+    PRESSURE,
+    PRESSURE_SLOPE,
+    SOURCE,
+    SOURCE_SLOPE,
+)
+from frbcli.film.cells.data import (
+    ALONG,
+    AMBIENT,
+    AREA,
+    AROUND,
+    ASPECT,
+    BORED,
+    CLOSED,
+    COS,
+    EDGE,
+    EDGE_COS,
+    EDGE_GAP,
+    EDGE_SIN,
+    EXCESS,
+    FACE_COS,
+    FACE_GAP,
+    FACE_SIN,
+    FAR,
+    FAR_BEND,
+    FAR_PRESSURE,
+    FAR_RISE,
+    FREE,
+    GAP,
+    LENGTH,
+    NEAR,
+    NEAR_BEND,
+    NEAR_RISE,
+    SHARE,
+    SIN,
+    UNKNOWN,
+)
+from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
+
+# Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
+# supply by given cells; what channels of a ring bring net.
+INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, FLOWS = range(6)
+BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
+
+
+class GridMotion(NamedTuple):
+    """How the journal moves against a film's grid, in the grid's directions, and how the time step takes it.
+
+    d: displacement over the clearance; omega: omega_J + omega_S relative to the grid; spin: angular speed of the grid,
+    which turns the velocity v; g: how far a velocity moves the journal within the stage, 0: not at all; rate: of what
+    is stored, 1 / g of a film that remembers its oil, else 0.
+    """
+
+    d_x: float
+    d_y: float
+    omega: float
+    v_x: float = 0.0
+    v_y: float = 0.0
+    spin: float = 0.0
+    g: float = 0.0
+    rate: float = 0.0
+
+
+@compiled(inline=True)
+def section_end(numbers: Array, k: int, far: bool) -> tuple[int, int, int, float, float]:
+    """Of the end z = 0 of a section with k cells along, or of z = 1: its kind, the last cell and the one beyond it, and
+    how the pressure falls there by those of the two, see EndSlope."""
+    if far:
+        return int(numbers[FAR]), k - 1, max(k - 2, 0), numbers[FAR_RISE], numbers[FAR_BEND]
+    return int(numbers[NEAR]), 0, min(1, k - 1), numbers[NEAR_RISE], numbers[NEAR_BEND]
+
+
+@compiled(inline=True)
+def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
+    """By how much the pressure towards an end is above that of the groove there, or of the air, by a parabola through
+    the last cell and the one beyond it; and its derivatives by the pressures of the two."""
+    rise, change = last - groove, bend * (last - beyond)
+    by_last, by_beyond = 1.0 + bend, -bend
+    if abs(change) > BEND * abs(rise):
+        side = math.copysign(BEND, change) * math.copysign(1.0, rise) if rise != 0.0 else 0.0
+        change, by_last, by_beyond = side * rise, 1.0 + side, 0.0
+    return rise + change, by_last, by_beyond
+
+
+@compiled()
+def falls_to_air(
+    numbers: Array, ring: Array, pressures: Array, d_x: float, d_y: float, far: bool, falls: Array
+) -> None:  # fmt: skip
+    """falls (m,) <- of the pressure from the last cells to a free end, times the steepness b of (4.37): Wright's omega
+    function, see ends.py. pressures: (m, k) of the cells; d: of the journal over the clearance."""
+    m, k = pressures.shape
+    steepness = STEEPNESS / numbers[AMBIENT]
+    _, j, b, rise, bend = section_end(numbers, k, far)
+    for i in range(m):
+        h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
+        felt, _, _ = felt_at_end(pressures[i, j], pressures[i, b], bend, 0.0)
+        falls[i] = math.log(PREFACTOR * steepness / (h * h * h * numbers[ASPECT] * rise)) + steepness * felt
+    for i in range(m):  # side by side
+        falls[i], _ = wright_omega(falls[i])
+
+
+@compiled(inline=True)
+def end_flow(
+    kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, steepness: float,
+    fall: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance).
+
+    fall: at a free end, see falls_to_air."""
+    felt, by_last, by_beyond = felt_at_end(last, beyond, bend, groove)
+    if kind == FREE:
+        slope = conductance * fall / (1.0 + fall)
+        by_conductance = fall * fall / (steepness * (1.0 + fall))
+        return conductance / steepness * fall, slope * by_last, slope * by_beyond, by_conductance
+    return conductance * felt, conductance * by_last, conductance * by_beyond, felt
+
+
+@compiled()
+def _flow_around(
+    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
+    right: Array, flows: Array,
+) -> None:  # fmt: skip
+    m, k = states.shape[1], states.shape[2]
+    d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
+    bored, half = numbers[BORED] != 0.0, 0.5 * omega
+    forward = omega >= 0.0
+    taken = 0.0  # by the openings in cells that are film in part
+    for i in range(m):
+        n = i + 1 if i + 1 < m else 0
+        s, c = ring[FACE_SIN, i], ring[FACE_COS, i]
+        h = ring[FACE_GAP, i] + d_x * s - d_y * c
+        cube, cube_x, cube_y = h * h * h, 3.0 * h * h * s, -3.0 * h * h * c
+        if bored:
+            h_i = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
+            h_n = ring[GAP, n] + d_x * ring[SIN, n] - d_y * ring[COS, n]
+            cube = h_i * h * h_n
+            cube_x = ring[SIN, i] * h * h_n + h_i * s * h_n + h_i * h * ring[SIN, n]
+            cube_y = -ring[COS, i] * h * h_n - h_i * c * h_n - h_i * h * ring[COS, n]
+        for j in range(k):  # through the face after the cell
+            open_, carried = cells[AROUND, i, j], half * width[0, j]
+            through, by_x, by_y = cube * open_, cube_x * open_, cube_y * open_
+            if cells[EDGE, i, j] != 0.0:
+                at_s, at_c = cells[EDGE_SIN, i, j], cells[EDGE_COS, i, j]
+                at = cells[EDGE_GAP, i, j] + d_x * at_s - d_y * at_c
+                square = at * at * cells[EDGE, i, j]
+                through, by_x, by_y = at * square, 3.0 * square * at_s, -3.0 * square * at_c
+            p, p_n = states[PRESSURE, i, j], states[PRESSURE, n, j]
+            t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
+            share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
+            over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
+            loose, loose_n = t - over, t_n - over_n
+            upstream, across = (loose, loose_n - loose) if forward else (loose_n, loose - loose_n)
+            more, by_before, by_across = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], across)
+            theta = upstream + more + 0.5 * (over + over_n)
+            by_upstream = 1.0 + by_before - by_across
+            here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
+            fall = p - p_n
+            pressed, drawn = through * fall, carried * h * theta
+            own = carried * h * (0.5 if t > 1.0 else here) * states[FRACTION_SLOPE, i, j]
+            other = carried * h * (0.5 if t_n > 1.0 else next_) * states[FRACTION_SLOPE, n, j]
+            by_own, by_next = through * states[PRESSURE_SLOPE, i, j], through * states[PRESSURE_SLOPE, n, j]
+            taken += (share - share_n) * drawn
+            right[i, j, k] -= pressed + share * drawn
+            right[n, j, k] += pressed + share_n * drawn
+            by_x, by_y = g * by_x * fall, g * by_y * fall
+            drawn_x, drawn_y = g * carried * theta * s, -g * carried * theta * c
+            right[i, j, k + 1] -= by_x + share * drawn_x
+            right[n, j, k + 1] += by_x + share_n * drawn_x
+            right[i, j, k + 2] -= by_y + share * drawn_y
+            right[n, j, k + 2] += by_y + share_n * drawn_y
+            stencil[CENTRE, i, j] += by_own + share * own
+            stencil[BEHIND, i, j] += share * other - by_next
+            stencil[CENTRE, n, j] += by_next - share_n * other
+            stencil[BEFORE, n, j] -= by_own + share_n * own
+    _take(taken, flows)
+
+
+@compiled()
+def _take(taken: float, flows: Array) -> None:
+    """Openings take oil out of cells that are film in part, or give it to them where it is less than 0."""
+    flows[SUPPLY_NET] -= taken
+    if taken > 0.0:
+        flows[OUTFLOW] += taken
+    else:
+        flows[INFLOW] -= taken
+
+
+@compiled()
+def _carry_out_of_excess(
+    ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array, flows: Array,
+) -> None:  # fmt: skip
+    """What the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
+    m, k = states.shape[1], states.shape[2]
+    d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
+    half, taken = 0.5 * omega, 0.0
+    for i in range(m):
+        b = i - 1 if i > 0 else m - 1
+        s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
+        rise = half * (ring[FACE_GAP, i] - ring[FACE_GAP, b]) + d_x * s - d_y * c
+        for j in range(k):
+            excess = cells[EXCESS, i, j]
+            if excess != 0.0:
+                oil = excess * states[FRACTION, i, j]
+                taken += oil * rise
+                right[i, j, k] -= oil * rise
+                right[i, j, k + 1] -= g * oil * s
+                right[i, j, k + 2] += g * oil * c
+                stencil[CENTRE, i, j] += excess * rise * states[FRACTION_SLOPE, i, j]
+    _take(taken, flows)
+
+
+@compiled()
+def _flow_along(
+    ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
+) -> None:  # fmt: skip
+    m, k = states.shape[1], states.shape[2]
+    d_x, d_y, g = motion.d_x, motion.d_y, motion.g
+    for i in range(m):
+        s, c = ring[SIN, i], ring[COS, i]
+        h = ring[GAP, i] + d_x * s - d_y * c
+        cube, square = h * h * h, 3.0 * h * h
+        for j in range(k - 1):  # to the cell above
+            fall = cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
+            flow, by_gap = cube * fall, g * square * fall
+            low = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j]
+            high = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j + 1]
+            right[i, j, k] -= flow
+            right[i, j + 1, k] += flow
+            right[i, j, k + 1] -= by_gap * s
+            right[i, j + 1, k + 1] += by_gap * s
+            right[i, j, k + 2] += by_gap * c
+            right[i, j + 1, k + 2] -= by_gap * c
+            stencil[CENTRE, i, j] += low
+            stencil[ABOVE, i, j] -= high
+            stencil[CENTRE, i, j + 1] += high
+            stencil[BELOW, i, j + 1] -= low
+
+
+@compiled()
+def _store(
+    ring: Array, cells: Array, states: Array, motion: GridMotion, past: Array, stencil: Array, right: Array,
+) -> None:  # fmt: skip
+    m, k = states.shape[1], states.shape[2]
+    d_x, d_y, _, v_x, v_y, spin, g, rate = motion
+    for i in range(m):
+        s, c = ring[SIN, i], ring[COS, i]
+        h = ring[GAP, i] + d_x * s - d_y * c
+        # how the gap's change depends on the velocities: those turn with the grid
+        s_v, c_v = s + g * spin * c, c - g * spin * s
+        growth = v_x * s - v_y * c
+        for j in range(k):
+            area, theta = cells[AREA, i, j], states[FRACTION, i, j]
+            stored = area * (rate * h * theta - past[i, j] - states[SOURCE, i, j])
+            kept = area * (rate * h * states[FRACTION_SLOPE, i, j] - states[SOURCE_SLOPE, i, j])
+            by_x, by_y = g * area * rate * theta * s, g * area * rate * theta * c
+            if rate == 0.0:
+                stored += area * growth * theta
+                kept += area * growth * states[FRACTION_SLOPE, i, j]
+                by_x, by_y = area * theta * s_v, area * theta * c_v
+            if cells[UNKNOWN, i, j] != 0.0:
+                right[i, j, k] -= stored
+                right[i, j, k + 1] -= by_x
+                right[i, j, k + 2] += by_y
+                stencil[CENTRE, i, j] += kept
+
+
+@compiled(makes_arrays=True)
+def _flow_through_ends(
+    numbers: Array, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
+    flows: Array,
+) -> None:  # fmt: skip
+    m, k = states.shape[1], states.shape[2]
+    d_x, d_y, g = motion.d_x, motion.d_y, motion.g
+    steepness, falls = STEEPNESS / numbers[AMBIENT], np.empty(m)
+    for far in (False, True):
+        kind, j, b, rise, bend = section_end(numbers, k, far)
+        if kind == CLOSED:
+            continue
+        groove = numbers[FAR_PRESSURE] if far else 0.0
+        if kind == FREE:
+            falls_to_air(numbers, ring, states[PRESSURE], d_x, d_y, far, falls)
+        for i in range(m):
+            if cells[UNKNOWN, i, j] == 0.0:
+                continue
+            s, c = ring[SIN, i], ring[COS, i]
+            h = ring[GAP, i] + d_x * s - d_y * c
+            cube, square = h * h * h, 3.0 * h * h
+            unit = numbers[ASPECT] * ring[LENGTH, i] * rise
+            flow, by_last, by_beyond, by_conductance = end_flow(
+                kind,
+                states[PRESSURE, i, j],
+                states[PRESSURE, i, b],
+                cube * unit,
+                bend,
+                groove,
+                steepness,
+                falls[i],
+            )
+            by_gap = g * by_conductance * square * unit
+            right[i, j, k] -= flow
+            right[i, j, k + 1] -= by_gap * s
+            right[i, j, k + 2] += by_gap * c
+            stencil[CENTRE, i, j] += by_last * states[PRESSURE_SLOPE, i, j]
+            if b > j:
+                stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
+            elif b < j:
+                stencil[BELOW, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
+            flows[ENDS_NET] += flow
+            if flow > 0.0:
+                flows[OUTFLOW] += flow
+            else:
+                flows[INFLOW] -= flow
+
+
+@compiled()
+def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> None:
+    """Cells with a given pressure keep it; what would leave them is their supply."""
+    m, k = cells.shape[1], cells.shape[2]
+    for i in range(m):
+        for j in range(k):
+            if cells[UNKNOWN, i, j] == 0.0:
+                fed = -right[i, j, k]
+                flows[SUPPLY_NET] += fed
+                if fed > 0.0:
+                    flows[INFLOW] += fed
+                else:
+                    flows[OUTFLOW] -= fed
+                for entry in range(5):
+                    stencil[entry, i, j] = 0.0
+                stencil[CENTRE, i, j] = 1.0
+                for side in range(SIDES):
+                    right[i, j, k + side] = 0.0
+
+
+@compiled()
+def balances(
+    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
+    stencil: Array, right: Array, flows: Array,
+) -> None:  # fmt: skip
+    """The balances of the cells and their derivatives.
+
+    Stored are rate H theta - past (m, k); with rate 0, for a film without memory, the gap's own change with the
+    velocity of the motion.
+    stencil (ENTRIES, m, k), right (m, k, k + SIDES), its last layers: minus the residual and minus its derivatives by
+    the journal's velocities; flows (FLOWS,).
+    """
+    m, k = past.shape
+    for i in range(m):
+        for j in range(k):
+            for entry in range(5):
+                stencil[entry, i, j] = 0.0
+            for side in range(SIDES):
+                right[i, j, k + side] = 0.0
+    for flow in range(FLOWS):
+        flows[flow] = 0.0
+    _flow_around(numbers, ring, width, cells, states, motion, stencil, right, flows)
+    if numbers[BORED] != 0.0:
+        _carry_out_of_excess(ring, cells, states, motion, stencil, right, flows)
+    _flow_along(ring, cells, states, motion, stencil, right)
+    _store(ring, cells, states, motion, past, stencil, right)
+    _flow_through_ends(numbers, ring, cells, states, motion, stencil, right, flows)
+    _hold_given(cells, stencil, right, flows)

@@ -1,0 +1,60 @@
+"""What leaves a section at its ends z = 0 and z = 1 (sections 3.2.1 and 4.2.1.2)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from frbcli.film.gap import Edge
+from frbcli.film.grid import Array
+
+BEND = 0.5  # share of the pressure of an end cell by which a parabola may change it; more than that is a front
+PREFACTOR, STEEPNESS = 0.01, 100.0  # a in 1/s and b of (4.37)
+
+
+class EndSlope(NamedTuple):
+    """Slope at an end, rise (p_0 + bend (p_0 - p_1) - p_end), by the pressures of the last two cells."""
+
+    rise: float
+    bend: float
+
+
+def end_slope(first: float, second: float) -> EndSlope:
+    """For the distances of the middles of the last two cells from the end, over the width."""
+    return EndSlope((first + second) / (first * second), first**2 / (second**2 - first**2))
+
+
+def end_slopes(z: Array) -> tuple[EndSlope, EndSlope]:
+    """At z = 0 and z = 1 for the boundaries z (k + 1,) of the cells."""
+    middle = 0.5 * (z[1:] + z[:-1])
+    if len(middle) == 1:
+        return EndSlope(float(1.0 / middle[0]), 0.0), EndSlope(float(1.0 / middle[0]), 0.0)
+    near = end_slope(float(middle[0]), float(middle[1]))
+    return near, end_slope(float(1.0 - middle[-1]), float(1.0 - middle[-2]))
+
+
+def end_outflow(
+    kind: Edge, pressure: Array, conductance: Array, length: Array, groove: float, ambient: float
+) -> tuple[Array, Array]:
+    """Outflow of the last cells (n,) through an end and its derivative by their pressure.
+
+    pressure: of the cells; conductance: from their middle to the end; length: of their share of the end, each (n,);
+    groove: pressure in a groove at this end; ambient: absolute ambient pressure. Pressures are scaled (1/s), and all
+    but the last are over the ambient pressure.
+    """
+    if kind == "symmetry":
+        return np.zeros_like(pressure), np.zeros_like(pressure)
+    if kind == "oil-bath":
+        return conductance * pressure, conductance
+    if kind == "groove":
+        return conductance * (pressure - groove), conductance
+    return _free_to_air(pressure, conductance, length, STEEPNESS / ambient)
+
+
+def _free_to_air(pressure: Array, conductance: Array, length: Array, steepness: float) -> tuple[Array, Array]:
+    """conductance (p - p_edge) = a exp(b p_edge) length, (4.36) and (4.37), solved by Wright's omega function."""
+    from scipy.special import wrightomega
+
+    omega = wrightomega(np.log(PREFACTOR * steepness * length / conductance) + steepness * pressure)
+    return conductance / steepness * omega, conductance * omega / (1.0 + omega)

@@ -1,0 +1,1 @@
+"""Channels that couple the two films of a ring hydraulically."""

@@ -1,0 +1,102 @@
+"""Channels that couple two films hydraulically, as arrays for the kernels.
+
+A feed hole lies over some cells of a film, whose oil and pressure follow the law of that film like those of all others.
+Each cell of a feed hole exchanges oil with the channel over a conductance that is large against that of the gap, so
+that they have one pressure as long as they are full; a feed hole in a cavity takes what comes at the cavity's pressure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.cells.channels.channel import Channel, FeedHole
+from frbcli.film.cells.data import (
+    CHANNEL_CENTRIFUGAL,
+    CHANNEL_NUMBERS,
+    CONDUCTANCE,
+    EXCHANGE,
+    FEED_HOLE,
+    FEED_HOLE_NUMBERS,
+    FILM,
+    FLOW_SCALE,
+    GROOVE_PRESSURE,
+    INNER,
+    OUTER,
+    PRESSURE_SCALE,
+    RESISTANCE,
+    SLOT,
+    SOLVER_AT,
+    UNKNOWN,
+    VolumeFilms,
+)
+from frbcli.film.cells.elimination.ring_solver import ring_solver
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.mesh.openings import hole_opening
+from frbcli.film.grid import Array
+
+IN_GROOVE = -1.0  # in place of a feed hole
+OPENNESS = 1e5  # of a feed hole over its gap, centred: the conductances between channel and film, and along the film
+
+
+def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequence[Channel]) -> VolumeFilms:
+    """The films with channels between them; the cells of their feed holes, given in `films`, become unknown.
+
+    A bore that is too small for the mesh has no cells: its channel is closed.
+    """
+    channels = [channel for channel in channels if _is_open(films, channel.inner) and _is_open(films, channel.outer)]
+    if not channels:
+        return data
+    cells, numbers_of_films = data.cells.copy(), data.numbers.copy()
+    numbers_of_films[:, SOLVER_AT] = ring_solver(cells.shape[-1], usual=False)
+    rows, feed_holes, places = np.zeros((len(channels), CHANNEL_NUMBERS)), [], []
+    slots = dict.fromkeys(range(len(films)), 0)
+
+    def opened(feed_hole: FeedHole) -> int:
+        film, size = films[feed_hole.film], cells[feed_hole.film]
+        inside = _cells(film, feed_hole)
+        slot = slots[feed_hole.film]
+        slots[feed_hole.film] += 1
+        size[UNKNOWN][inside], size[EXCHANGE][inside] = 1.0, _conductances(film)[inside]
+        size[FEED_HOLE][inside] = 1.0 + slot
+        numbers = np.zeros(FEED_HOLE_NUMBERS)
+        numbers[FILM], numbers[SLOT] = feed_hole.film, slot
+        section = film.section
+        numbers[FLOW_SCALE] = section.copies * section.radius * section.width * section.clearance
+        numbers[PRESSURE_SCALE], numbers[CONDUCTANCE] = section.pressure_scale, size[EXCHANGE][inside].sum()
+        feed_holes.append(numbers)
+        places.append(np.argwhere(inside))
+        return len(feed_holes) - 1
+
+    for row, channel in zip(rows, channels, strict=True):
+        row[INNER] = opened(channel.inner)
+        row[OUTER] = IN_GROOVE if channel.outer is None else opened(channel.outer)
+        row[RESISTANCE], row[GROOVE_PRESSURE] = channel.resistance, channel.groove_pressure
+        row[CHANNEL_CENTRIFUGAL] = channel.centrifugal
+    filled = np.full((len(places), max(map(len, places)), 2), -1, dtype=np.int64)
+    for place, own in zip(filled, places, strict=True):
+        place[: len(own)] = own
+    return data._replace(
+        numbers=numbers_of_films,
+        cells=cells,
+        channels=rows,
+        feed_holes=np.array(feed_holes),
+        feed_hole_cells=filled,
+    )
+
+
+def _cells(film: VolumeFilm, feed_hole: FeedHole) -> NDArray[np.bool_]:
+    """(m, k) those under a feed hole."""
+    return hole_opening(film.section, feed_hole.hole, film.grid.phi, film.grid.z).inside
+
+
+def _is_open(films: Sequence[VolumeFilm], feed_hole: FeedHole | None) -> bool:
+    return feed_hole is None or bool(_cells(films[feed_hole.film], feed_hole).any())
+
+
+def _conductances(film: VolumeFilm) -> Array:
+    """(m, k) of each cell to a channel above it."""
+    around, along = np.diff(film.grid.phi)[:, None], np.diff(film.grid.z)[None, :]
+    return np.asarray(OPENNESS * (along / around + film.section.aspect * around / along), dtype=np.float64)

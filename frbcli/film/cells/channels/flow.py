@@ -1,0 +1,154 @@
+"""What channels between two films bring to them, and what pressures they take, compiled; see channel_data.py.
+
+The flow from the outer to the inner end of a channel follows from the mean pressures of the cells at its feed holes,
+
+    Q = (p_o - p_i - Delta p) / (R + 1 / k_i + 1 / k_o),    Delta p by (4.27),
+
+with Hagen and Poiseuille's resistance R and the conductances k of the cells of a feed hole to the channel. It is taken
+from one film and given to the other one, so that no oil is lost however far the films are from balance.
+"""
+
+from __future__ import annotations
+
+from frbcli.compiled import Array, Indices, compiled
+from frbcli.film.cells.balance.balances import CHANNELS_NET, SIDES
+from frbcli.film.cells.balance.clipped import clipped_push
+from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of
+from frbcli.film.cells.data import (
+    CAVITY,
+    CHANNEL_CENTRIFUGAL,
+    CLIPS,
+    CONDUCTANCE,
+    EXCHANGE,
+    FEED_HOLE,
+    FILM,
+    FLOW_SCALE,
+    FORCE_SCALE,
+    GROOVE_PRESSURE,
+    INNER,
+    LOAD,
+    OUTER,
+    PRESSURE_SCALE,
+    PUSH_X,
+    PUSH_Y,
+    RESISTANCE,
+)
+from frbcli.film.cells.elimination.block_cyclic import CENTRE
+
+
+@compiled()
+def exchange(cells: Array, states: Array, channel: Array, stencil: Array, right: Array, flows: Array) -> None:
+    """Add to the balances of a film (see balances) what channels of the pressures channel (m, k) bring to its cells."""
+    m, k = channel.shape
+    for i in range(m):
+        for j in range(k):
+            open_ = cells[EXCHANGE, i, j]
+            if open_ != 0.0:
+                brought = open_ * (channel[i, j] - states[PRESSURE, i, j])
+                right[i, j, k] += brought
+                stencil[CENTRE, i, j] += open_ * states[PRESSURE_SLOPE, i, j]
+                flows[CHANNELS_NET] += brought
+
+
+@compiled()
+def ask_of_channels(cells: Array, right: Array) -> None:
+    """The last layers of right (m, k, k + SIDES + slots) <- derivatives of exchange by the channels' pressures."""
+    m, k, layers = right.shape
+    for i in range(m):
+        for j in range(k):
+            for layer in range(k + SIDES, layers):
+                right[i, j, layer] = 0.0
+            if cells[FEED_HOLE, i, j] != 0.0:
+                right[i, j, k + SIDES - 1 + int(cells[FEED_HOLE, i, j])] = cells[EXCHANGE, i, j]
+
+
+@compiled()
+def feed_hole_pressure(numbers: Array, cells: Array, law: Array, w: Array, feed_hole: Array, places: Indices) -> float:
+    """Mean pressure of the cells of a feed hole, by their conductances."""
+    total = 0.0
+    for n in range(places.shape[0]):
+        i, j = places[n, 0], places[n, 1]
+        if i >= 0:
+            total += cells[EXCHANGE, i, j] * pressure_of(numbers, law, w[i, j])
+    return total / float(feed_hole[CONDUCTANCE])
+
+
+@compiled()
+def _entry(feed_hole: Array) -> float:
+    """Resistance between the cells of a feed hole and the channel, Pa s / m^3."""
+    return float(feed_hole[PRESSURE_SCALE] / (feed_hole[FLOW_SCALE] * feed_hole[CONDUCTANCE]))
+
+
+@compiled()
+def channel_pressures(channels: Array, feed_holes: Array, spins: Array, means: Array) -> None:
+    """means (feed_holes,) of the pressures at the feed holes <- the pressures of the channels' ends, in the units of
+    their films. spins: (films,) speeds of their grids."""
+    for c in range(channels.shape[0]):
+        inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
+        scale, entry = feed_holes[inner, PRESSURE_SCALE], _entry(feed_holes[inner])
+        spin = spins[int(feed_holes[inner, FILM])]
+        fall = -scale * means[inner] - channels[c, CHANNEL_CENTRIFUGAL] * spin * spin
+        resistance = channels[c, RESISTANCE] + entry
+        if outer >= 0:
+            fall += feed_holes[outer, PRESSURE_SCALE] * means[outer]
+            resistance += _entry(feed_holes[outer])
+        else:
+            fall += channels[c, GROOVE_PRESSURE]
+        flow = fall / resistance
+        means[inner] += flow * entry / scale
+        if outer >= 0:
+            means[outer] -= flow * _entry(feed_holes[outer]) / feed_holes[outer, PRESSURE_SCALE]
+
+
+@compiled()
+def follow_means(channels: Array, feed_holes: Array, matrix: Array) -> None:
+    """matrix (feed_holes, n) of changes of the means at the feed holes <- those at the channels' ends, as
+    channel_pressures."""
+    for c in range(channels.shape[0]):
+        inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
+        scale, entry = feed_holes[inner, PRESSURE_SCALE], _entry(feed_holes[inner])
+        resistance = channels[c, RESISTANCE] + entry
+        if outer >= 0:
+            resistance += _entry(feed_holes[outer])
+        for n in range(matrix.shape[1]):
+            flow = -scale * matrix[inner, n] / resistance
+            if outer >= 0:
+                flow += feed_holes[outer, PRESSURE_SCALE] * matrix[outer, n] / resistance
+                matrix[outer, n] -= flow * _entry(feed_holes[outer]) / feed_holes[outer, PRESSURE_SCALE]
+            matrix[inner, n] += flow * entry / scale
+
+
+@compiled()
+def mean_changes(cells: Array, states: Array, fields: Array, feed_hole: Array, places: Indices, changes: Array) -> None:
+    """changes (SIDES + slots,) <- those of the mean pressure of a feed hole with the layers of fields, see
+    film_newton."""
+    k = fields.shape[1]
+    for layer in range(changes.shape[0]):
+        changes[layer] = 0.0
+    for n in range(places.shape[0]):
+        i, j = places[n, 0], places[n, 1]
+        if i >= 0:
+            share = cells[EXCHANGE, i, j] * states[PRESSURE_SLOPE, i, j] / feed_hole[CONDUCTANCE]
+            for layer in range(changes.shape[0]):
+                changes[layer] += share * fields[i, j, k + layer]
+
+
+@compiled()
+def push_of_channel(
+    numbers: Array, ring: Array, cells: Array, states: Array, fields: Array, slot: int,
+) -> tuple[float, float]:  # fmt: skip
+    """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
+    m, k = states.shape[1], states.shape[2]
+    if numbers[CLIPS] == 2.0:
+        _, _, x, y, _, _ = clipped_push(numbers, ring, cells, states, fields, k + SIDES + slot, k + SIDES + slot)
+        return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y
+    clips, x, y = numbers[CLIPS] != 0.0, 0.0, 0.0
+    for i in range(m):
+        p = 0.0
+        for j in range(k):
+            slope = states[PRESSURE_SLOPE, i, j]
+            if not (clips and states[PRESSURE, i, j] + slope * fields[i, j, k] < numbers[CAVITY]):
+                p += cells[LOAD, i, j] * slope * fields[i, j, k + SIDES + slot]
+        x += ring[PUSH_X, i] * p
+        y += ring[PUSH_Y, i] * p
+    return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y

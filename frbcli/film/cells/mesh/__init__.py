@@ -1,0 +1,1 @@
+"""Cells on a section: their boundaries, the openings in them, the flow around bores."""

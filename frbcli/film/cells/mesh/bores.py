@@ -1,0 +1,238 @@
+"""Cells around a bore that is no larger than a few of them, by the local solutions of Laplace's equation.
+
+A bore is smaller than two cells of a usual mesh, so that straight falls of pressure from cell to cell miss what happens
+around it. In the coordinates x = phi and y = z b / R it is a circle of radius a, and around it the pressure above its
+own is a sum of
+
+    ln(r / a),   (r^n - a^2n / r^n) cos(n t) and sin(n t),  n = 1, 2,   (a^2 - r^2) / 4,
+
+the last one with a source of 1. Cells of the size h around and along that pass on what they differ by do not have
+ln(r / a) in a distance, but h^2 / 12 times cos(4 t) / r^2 less, and in place of cos(t) / r they have h^2 / 4 times
+cos(5 t) / r^3 more: with these the solutions balance there up to the fourth order. The conductances between the cells
+around the bore are changed as little as possible so that the flows which cells pass on dissipate what they do in these
+solutions: of each two solutions P and Q,
+
+    sum over the cells of P_i (flow of Q out of cell i) = 0.
+
+The total flow for a given pressure in the distance is then that of the bore, wherever it lies among the cells, as with
+Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are those for
+which the solution with a source balances, and with the areas of the force the integrals of the solutions over the film
+are exact, less what parabolas over the width (axial.py) count at the ends for the oil that leaves there: it is right
+for oil that comes out of the whole width, but that of a bore comes out of the place where the solutions are exact.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.grid import Array
+
+Mask = NDArray[np.bool_]
+
+# Weights of what the conductances should do: all flows of the solutions together, those of each cell, stay as they are.
+TOGETHER, EACH, STAY = 100.0, 0.1, 0.01
+AREAS = 1e3  # the same of what the areas should do, against a change of a whole cell that touches the bore
+LEAST = 0.1  # of a conductance that remains: no cell is cut off
+NEAR = 0.5  # of the size of a cell squared: so near to the middle of a bore its solution in a distance is none
+LARGEST = 0.8  # change of an area over that of its cell, for bores that are small in cells of very unequal sides
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+class Patch(NamedTuple):
+    """Cells around the middle of a bore of radius a, lengths over R. x (nx + 2,), y (ny + 2,): middles of the cells
+    and of those beyond them; dx (nx,), dy (ny,): sizes; held: (nx, ny) cells that stand for the bore; open_: (nx, ny)
+    area of the film in each cell; mirrored: whether the bore lies on a plane of symmetry at the end of y."""
+
+    a: float
+    x: Array
+    y: Array
+    dx: Array
+    dy: Array
+    held: Mask
+    open_: Array
+    mirrored: bool
+
+
+class BoreFit(NamedTuple):
+    """around (nx - 1, ny), along (nx, ny - 1): conductances between the cells; source, load (nx, ny): areas by which
+    cells count in the balance and in the force, where held those in the force are what the other cells leave."""
+
+    around: Array
+    along: Array
+    source: Array
+    load: Array
+
+
+def fit(patch: Patch, around: Array, along: Array) -> BoreFit:
+    """Conductances near to around (nx - 1, ny) and along (nx, ny - 1) and areas that the local solutions ask for."""
+    values = in_balances(patch, patch.x[1:-1], patch.y[1:-1])
+    values[:, patch.held] = 0.0
+    flows, beyond = _flows(values, around, along), _beyond(patch, values)
+    flows[:, patch.held], beyond[:, patch.held] = 0.0, 0.0
+    kept = np.clip(1.0 + _changes(patch, values[:-1], flows[:-1], beyond[:-1]), LEAST, None)
+    split, chosen = around.size, _chosen(patch)
+    out = beyond[-1] + flows[-1] @ kept  # of the solution with a source
+    source = _areas(patch, values[chosen], _products(values[chosen], (out - patch.open_)[None])[:, 0])
+    kept_around, kept_along = kept[:split].reshape(around.shape), kept[split:].reshape(along.shape)
+    return BoreFit(around * kept_around, along * kept_along, source, _load(patch))
+
+
+def solutions(x: Array, y: Array, a: float, mirrored: bool) -> Array:
+    """(solutions, ...) of the pressure above that of the bore at x, y of any shape, the one with a source of 1 last;
+    those that are odd in y only without a plane of symmetry there."""
+    square = np.maximum(x**2 + y**2, 1e-300)
+    q = a**2 / square
+    odd = [] if mirrored else [y * (1.0 - q), 2.0 * x * y * (1.0 - q**2) / a]
+    even = [0.5 * a * np.log(1.0 / q), x * (1.0 - q), (x**2 - y**2) * (1.0 - q**2) / a]
+    return np.array([*even, *odd, 0.25 * (a**2 - square)])
+
+
+def _chosen(patch: Patch) -> list[int]:
+    """The solutions that areas hold to: ln r, the straight ones and that with a source."""
+    return [0, 1, -1] if patch.mirrored else [0, 1, 3, -1]
+
+
+def integrals(patch: Patch, values: Array) -> Array:
+    """(n,) of the solutions that areas hold to over the film of the patch: exact in the cells that the bore cuts, by
+    their middles in the others, as the cells' own rules have it."""
+    size = np.outer(patch.dx, patch.dy)
+    cut = patch.open_ < size * (1.0 - 1e-9)
+    total = np.asarray((values * np.where(cut, 0.0, size)).sum(axis=(1, 2)))
+    for i, j in np.argwhere(cut):
+        x, y = patch.x[1 + i], patch.y[1 + j]
+        total += _cut_cell(patch, x + 0.5 * patch.dx[i] * np.array([-1, 1]), y + 0.5 * patch.dy[j] * np.array([-1, 1]))
+    return total
+
+
+def in_balances(patch: Patch, x: Array, y: Array) -> Array:
+    """(solutions, nx, ny) at all pairs of x (nx,) and y (ny,), in a distance as the balances of the cells have them:
+    with what these add, which is 0 on the edge of the bore."""
+    place, a = x[:, None] + 1j * y, patch.a
+    values = solutions(place.real, place.imag, a, patch.mirrored)
+    square = np.maximum(np.abs(place) ** 2, 1e-300)
+    size = 0.5 * (patch.dx.mean() ** 2 + patch.dy.mean() ** 2)
+    part = size * np.maximum(1.0 - a**2 / square, 0.0) / (1.0 + (NEAR * size / square) ** 4)
+    values[0] -= a / 12.0 * part * (place**4).real / square**3
+    dipole = 0.25 * a**2 * part * place**5 / square**4
+    values[1] -= dipole.real
+    if not patch.mirrored:
+        values[3] -= dipole.imag
+    return values
+
+
+def _flows(values: Array, around: Array, along: Array) -> Array:
+    """(solutions, nx, ny, faces) flow out of each cell through each face, those around first."""
+    count, nx, ny = values.shape
+    flows = np.zeros((count, nx, ny, around.size + along.size))
+    i, j = (index.ravel() for index in np.indices(around.shape))
+    face = np.arange(around.size)
+    flow = around[i, j] * (values[:, i, j] - values[:, i + 1, j])
+    flows[:, i, j, face], flows[:, i + 1, j, face] = flow, -flow
+    i, j = (index.ravel() for index in np.indices(along.shape))
+    face = around.size + np.arange(along.size)
+    flow = along[i, j] * (values[:, i, j] - values[:, i, j + 1])
+    flows[:, i, j, face], flows[:, i, j + 1, face] = flow, -flow
+    return flows
+
+
+def _beyond(patch: Patch, values: Array) -> Array:
+    """(solutions, nx, ny) flow of the cells of the patch to those beyond it."""
+    x, y, flow = patch.x, patch.y, np.zeros_like(values)
+    for cell, other in ((0, 0), (-1, -1)):
+        outside = in_balances(patch, x[[other]], y[1:-1])[:, 0]
+        flow[:, cell] += patch.dy / abs(x[other] - x[1:-1][cell]) * (values[:, cell] - outside)
+    for cell, other in ((0, 0),) if patch.mirrored else ((0, 0), (-1, -1)):
+        outside = in_balances(patch, x[1:-1], y[[other]])[:, :, 0]
+        flow[:, :, cell] += patch.dx / abs(y[other] - y[1:-1][cell]) * (values[:, :, cell] - outside)
+    return flow
+
+
+def _products(values: Array, fields: Array) -> Array:
+    """(solutions, fields): sums over the cells of each solution times each of the fields (n, nx, ny)."""
+    return np.asarray(np.tensordot(values, fields, axes=([1, 2], [1, 2])))
+
+
+def _changes(patch: Patch, values: Array, flows: Array, beyond: Array) -> Array:
+    """(faces,) relative changes of the conductances by which the solutions without a source balance."""
+    count, faces = len(values), flows.shape[-1]
+    pairs = np.einsum("aij,bijf->abf", values, flows)
+    size = np.sqrt(np.abs(np.einsum("aaf->af", pairs)).sum(axis=1))
+    left = _products(values, beyond) + pairs.sum(axis=2)
+    rows, wanted = [STAY * np.eye(faces)], [np.zeros(faces)]
+    for p, q in itertools.combinations_with_replacement(range(count), 2):
+        weight = 0.5 * TOGETHER / (size[p] * size[q])
+        rows.append(weight * (pairs[p, q] + pairs[q, p])[None])
+        wanted.append(np.array([-weight * (left[p, q] + left[q, p])]))
+    each = EACH * beyond[0].size / np.abs(flows).sum(axis=(1, 2, 3))[:, None, None]
+    smallest = float(min(patch.dx.min(), patch.dy.min()))
+    each = each * np.minimum(values[0] / smallest, 1.0)  # what does not balance near the edge flows into the bore
+    rows.append((each[..., None] * flows).reshape(-1, faces))
+    wanted.append((-each * (beyond + flows.sum(axis=3))).ravel())
+    return np.asarray(np.linalg.lstsq(np.vstack(rows), np.concatenate(wanted), rcond=None)[0])
+
+
+def _load(patch: Patch) -> Array:
+    """(nx, ny) areas of the force. A pressure that is the same everywhere has the force that it has on all cells, also
+    on the journal's side: the first moment of the areas stays."""
+    size = np.outer(patch.dx, patch.dy)
+    x, y = patch.x[1:-1, None] + 0.0 * patch.y[1:-1], patch.y[1:-1] + 0.0 * patch.x[1:-1, None]
+    chosen = np.where(patch.held, 0.0, solutions(x, y, patch.a, patch.mirrored)[_chosen(patch)])
+    lever = np.where(patch.held, 0.0, x - x[patch.held].mean())
+    fields = np.concatenate([chosen, lever[None]])
+    have = _products(fields, patch.open_[None])[:, 0]
+    want = np.append(integrals(patch, chosen) - _by_parabolas(patch), (lever * size).sum())
+    change = np.where(patch.held, 0.0, _areas(patch, fields, want - have) - size)
+    return size + _limited(np.where(patch.held, -change.sum() / patch.held.sum(), change), size)
+
+
+def _by_parabolas(patch: Patch) -> Array:
+    """(n,) what parabolas over the width add to the integrals of the solutions that areas hold to by the flow into the
+    bore, which leaves at the ends: h^2 / 24 of it for rows of the size h. Fewer than three have none."""
+    rows = patch.held.any(axis=0)
+    flow = (math.pi if patch.mirrored else 2.0 * math.pi) * patch.a
+    flows = np.zeros(len(_chosen(patch)))
+    flows[0], flows[-1] = flow, -0.5 * patch.a * flow
+    return flows * float(np.mean(patch.dy[rows] ** 2)) / 24.0 * (len(patch.dy) >= 3)
+
+
+def _areas(patch: Patch, fields: Array, lacking: Array) -> Array:
+    """(nx, ny) areas near to those of the film, changed close to the bore so that their sums with the fields (n, nx,
+    ny) grow by what is lacking (n,); 0 where held."""
+    size = np.outer(patch.dx, patch.dy)
+    distance = np.hypot(patch.x[1:-1, None], patch.y[1:-1]) - patch.a
+    close = np.where(patch.held, 0.0, size * np.exp(-(distance**2) / size))
+    rows = (fields * close).reshape(len(fields), -1)
+    scale = AREAS / np.abs(rows).sum(axis=1)
+    matrix = np.vstack([rows * scale[:, None], np.eye(size.size)])
+    changes = np.linalg.lstsq(matrix, np.concatenate([lacking * scale, np.zeros(size.size)]), rcond=None)[0]
+    change = np.where(patch.held, 0.0, patch.open_ + close * changes.reshape(size.shape) - size)
+    return np.where(patch.held, 0.0, size + _limited(change, size))
+
+
+def _limited(change: Array, size: Array) -> Array:
+    """The changes (nx, ny) of areas, all by the same factor smaller where one is larger than LARGEST."""
+    return np.asarray(change * LARGEST / max(LARGEST, float(np.abs(change / size).max())))
+
+
+def _cut_cell(patch: Patch, x: Array, y: Array) -> Array:
+    """(solutions,) integrals over the part of a cell x (2,), y (2,) outside of the bore, by lines along y."""
+    a, total = patch.a, np.zeros(0)
+    corners = np.sqrt(np.maximum(a**2 - y**2, 0.0))
+    cuts = np.unique(np.clip(np.concatenate([x, [-a, a], corners, -corners]), *x))
+    for low, high in itertools.pairwise(cuts):
+        place, weight = 0.5 * (low + high + (high - low) * NODES), 0.5 * (high - low) * WEIGHTS
+        chord = np.sqrt(np.maximum(a**2 - place**2, 0.0))
+        for start, end in (
+            (np.full_like(place, y[0]), np.clip(np.where(chord > 0.0, -chord, y[1]), *y)),
+            (np.clip(np.where(chord > 0.0, chord, y[1]), *y), np.full_like(place, y[1])),
+        ):
+            line = 0.5 * ((start + end)[:, None] + (end - start)[:, None] * NODES)
+            found = solutions(place[:, None] + 0.0 * line, line, a, patch.mirrored)[_chosen(patch)]
+            part = np.asarray(found @ WEIGHTS) @ (0.5 * (end - start) * weight)
+            total = part if not total.size else total + part
+    return total

@@ -1,0 +1,187 @@
+"""Cells of a section, with its grooves, pockets and bores cut out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.cells.mesh.around_bores import Cells, around_bores
+from frbcli.film.cells.mesh.openings import Opening, groove_opening, hole_opening
+from frbcli.film.gap import AxialGroove, Section, graded_ring, groove_pressure
+from frbcli.film.grid import Array
+
+NEAREST = 1e-3  # of a cell: so near its middle the edge of a groove or hole may come
+CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angle, which leaves the wide gap coarse
+
+
+@dataclass(frozen=True)
+class VolumeGrid:
+    """Cells of one section. phi: (m + 1,) boundaries of a turn; z: (k + 1,) boundaries over [0, 1].
+
+    fixed: (m, k) cells where the pressure is given; fixed_pressure: (m, k) scaled gauge pressure there; around: (m, k)
+    distance in rad over which oil flows through the face after each cell, along: (m, k - 1) the same over the width,
+    from middle to middle or to the edge of a groove or hole, 0 within one; at: (m, k) angle at which the flow around
+    takes its gap, that of the face or of the middle of the way to the edge of a bore; area: (m, k) by which a cell
+    counts in the balance, over R b, that of a given one whole; load: (m, k) share of a cell's area by which its
+    pressure counts in the force; cover: (m, k) share of it that grooves and holes take.
+    """
+
+    phi: Array
+    z: Array
+    fixed: NDArray[np.bool_]
+    fixed_pressure: Array
+    around: Array
+    along: Array
+    at: Array
+    area: Array
+    load: Array
+    cover: Array
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Cells around and along."""
+        return len(self.phi) - 1, len(self.z) - 1
+
+    @property
+    def centre(self) -> Array:
+        """(m,) angles of the middles of the cells."""
+        return 0.5 * (self.phi[1:] + self.phi[:-1])
+
+    @property
+    def height(self) -> Array:
+        """(k,) axial positions of the middles of the cells in [0, 1]."""
+        return 0.5 * (self.z[1:] + self.z[:-1])
+
+    @property
+    def size(self) -> Array:
+        """(m, k) areas of the cells over R b."""
+        return np.diff(self.phi)[:, None] * np.diff(self.z)[None, :]
+
+    @property
+    def share(self) -> Array:
+        """(m, k) of each cell that is film, out of which the surfaces carry oil; 1 of a given one."""
+        return np.where(self.fixed | (self.area == self.size), 1.0, 1.0 - self.cover)
+
+    @property
+    def excess(self) -> Array:
+        """(m, k) of the area of a cell over that of its film, over its length: the surfaces carry the oil out of this,
+        too, as far as the gap changes."""
+        return np.asarray((self.area - self.share * self.size) / np.diff(self.phi)[:, None])
+
+    @property
+    def has_bores(self) -> bool:
+        """Whether round holes open to the film, around which flows take the gaps of their cells, too."""
+        return bool(np.any(self.load != 1.0))
+
+
+def fitted_grid(section: Section, d: tuple[float, float], around: int, along: int) -> VolumeGrid:
+    """About around x along cells, finer where d narrows the gap; grooves and pockets end on faces.
+
+    Equal ones along: parabolas over the width (axial.py) are exact on few of them, and need no finer ones at the ends.
+    """
+    eccentricity = math.hypot(*d)
+    narrowest = math.atan2(-d[0], d[1])  # H = 1 + d_x sin(phi) - d_y cos(phi) is smallest
+    contraction = ((1.0 - eccentricity) / (1.0 + eccentricity)) ** CONTRACTION
+    spans = [(groove.position, 0.5 * groove.opening) for groove in section.grooves]
+    spans += [(hole.position, hole.half_angle) for hole in section.holes if not hole.round]
+    edges = [middle + side * half for middle, half in spans for side in (-1.0, 1.0)]
+    if section.lobes is not None:
+        edges += [section.lobes.start + i * section.lobes.arc for i in range(section.lobes.count)]
+    ring = graded_ring(around, narrowest, contraction, np.array(edges))
+    return volume_grid(section, ring, np.linspace(0.0, 1.0, along + 1))
+
+
+def volume_grid(section: Section, phi: Array, z: Array) -> VolumeGrid:
+    """Cells with the section's grooves and holes cut out of those whose middles they hold, their edges where they are.
+
+    The flow between the middle of a cell and a groove or hole runs over the distance to its edge, wherever that lies
+    between the faces: so it changes smoothly as the edge moves across the cells. Around a bore flows and areas are
+    those of the local solutions (bores.py).
+    """
+    shape = len(phi) - 1, len(z) - 1
+    fixed, fixed_pressure, cover = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
+    around, along = _distances(phi, z)
+    height = 0.5 * (z[1:] + z[:-1])
+    holes = [hole_opening(section, hole, phi, z) for hole in section.holes]
+    openings = [(groove_opening(g, phi, z), _along_groove(section, g, height)) for g in section.grooves]
+    openings += [(o, np.full(shape[1], h.pressure)) for o, h in zip(holes, section.holes, strict=True)]
+    for opening, pressure in openings:
+        around, along = _to_edge(opening, around, along, phi, z)
+        fixed |= opening.inside
+        fixed_pressure = np.where(opening.inside, pressure / section.pressure_scale, fixed_pressure)
+        cover += opening.cover
+    around[fixed & np.roll(fixed, -1, axis=0)] = 0.0
+    along[fixed[:, :-1] & fixed[:, 1:]] = 0.0
+    cover, faces = np.minimum(cover, 1.0), np.repeat(phi[1:, None], shape[1], axis=1)
+    size = np.diff(phi)[:, None] * np.diff(z)[None, :]
+    plain = Cells(around, along, faces, size, np.ones(shape))
+    near = around_bores(section, phi, z, [opening.inside for opening in holes], cover, plain)
+    return VolumeGrid(phi, z, fixed, fixed_pressure, cover=cover, **near._asdict())
+
+
+def force_weights(section: Section, grid: VolumeGrid) -> Array:
+    """(m, k) of the pressures of a section's cells in the integral over its width."""
+    return axial_weights(grid.z, section.far == "symmetry") + (grid.load - 1.0) * np.diff(grid.z)
+
+
+def _along_groove(section: Section, groove: AxialGroove, height: Array) -> Array:
+    """(k,) gauge pressure in Pa at axial positions over the section's width."""
+    distance = height * section.width
+    if section.far != "symmetry":
+        distance = np.minimum(distance, section.bearing_width - distance)
+    return groove_pressure(groove, distance, section.bearing_width)
+
+
+def _distances(phi: Array, z: Array) -> tuple[Array, Array]:
+    """Between the middles of cells: (m, k) through the face after each, (m, k - 1) along."""
+    dphi, height = np.diff(phi), 0.5 * (z[1:] + z[:-1])
+    around = np.repeat(0.5 * (dphi + np.roll(dphi, -1))[:, None], len(height), axis=1)
+    return around, np.repeat(np.diff(height)[None, :], len(dphi), axis=0)
+
+
+def _to_edge(opening: Opening, around: Array, along: Array, phi: Array, z: Array) -> tuple[Array, Array]:
+    """The distances with those between a cell within the opening and one outside replaced by that to its edge."""
+    inside = opening.inside
+    behind = np.roll(inside, -1, axis=0)
+    beyond = np.maximum(opening.around, NEAREST * np.diff(phi)[:, None])
+    reach = np.where(inside, np.roll(beyond, -1, axis=0), beyond)
+    around = np.where(inside ^ behind, reach, around)
+    beyond = np.maximum(opening.along, NEAREST * np.diff(z))
+    reach = np.where(inside[:, :-1], beyond[:, 1:], beyond[:, :-1])
+    return around, np.where(inside[:, :-1] ^ inside[:, 1:], reach, along)
+
+
+def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:
+    """Equal cells, for the narrowest gap moves: (around, along), but for those that a groove's edges cut."""
+    around, along = cells
+    edges = [groove.position + side * 0.5 * groove.opening for groove in section.grooves for side in (-1.0, 1.0)]
+    ring = graded_ring(around, 0.0, 1.0, np.array(edges))
+    return volume_grid(section, ring, np.linspace(0.0, 1.0, along + 1))
+
+
+def axial_weights(z: Array, mirrored: bool) -> Array:
+    """(k,) weights of the integral over [0, 1] of values in the middles of cells with the boundaries z (k + 1,).
+
+    Each cell holds the parabola through its own value and its neighbours'; mirrored: a plane of symmetry at z = 1.
+    """
+    size = np.diff(z)
+    k = len(size)
+    if k < 3:
+        return size
+    middle = 0.5 * (z[1:] + z[:-1])
+    weights = size.copy()
+    for j in range(k):
+        centre = min(max(j, 1), k - 1 if mirrored else k - 2)
+        if centre == k - 1:  # the cell beyond the plane of symmetry is the last one again
+            before, behind = middle[-1] - middle[-2], 2.0 * (1.0 - middle[-1])
+            places = (k - 2, k - 1, k - 1)
+        else:
+            before, behind = middle[centre] - middle[centre - 1], middle[centre + 1] - middle[centre]
+            places = (centre - 1, centre, centre + 1)
+        curvature = 2.0 / (before + behind) * np.array([1.0 / before, -1.0 / before - 1.0 / behind, 1.0 / behind])
+        for place, value in zip(places, curvature, strict=True):
+            weights[place] += size[j] ** 3 / 24.0 * value
+    return weights

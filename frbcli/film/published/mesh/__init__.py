@@ -1,0 +1,1 @@
+"""Quadratic elements on a section."""

@@ -1,0 +1,271 @@
+"""The time loop of a co-simulation (section 5.2.1): rotor and films advanced in turn, each by its own steps. Compiled.
+
+Gauss and Seidel's sequence, the rotor being the master. In a macro step the rotor takes one step of its own with the
+films' forces extrapolated by a parabola; then the films follow with as many steps as they need (micro_step.py). Nothing
+is repeated once the films have moved: the method is explicit, and the macro step has to stay below what the stiffness
+and the damping of the films allow.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frbcli.compiled import Indices, compiled
+from frbcli.dense import solve_dense
+from frbcli.rotor.excitation import rotation
+from frbcli.solve.cosimulation.micro_step import Told, films_follow, parabola
+from frbcli.solve.films.steps import make_work, write_oil
+from frbcli.solve.ring_spin import Rings, make_rings, spin_up
+from frbcli.solve.scratch import Scratch, make_scratch
+from frbcli.solve.stage.equations import (
+    FORCE,
+    STAGE_ROWS,
+    X_0,
+    U,
+    V,
+    accelerate,
+    begin_lag,
+    limit_of,
+    norm,
+    predict,
+    start_stage,
+)
+from frbcli.solve.stage.inverse import LAG_SWEEPS, outdated, prepare
+from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, LoopOutput, RotorData, State
+from frbcli.solve.step import (
+    SMALLEST_STEP,
+    begin_stages,
+    begin_step,
+    choose_next,
+    count_step,
+    displace,
+    end_of_step,
+    local_error,
+    move_on,
+    reject,
+    write_outputs,
+)
+from frbcli.solve.tableau import Tableau
+
+GROWTH = 1.25  # of a macro step at most: it cannot be taken back
+SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
+
+
+class Exchange(NamedTuple):
+    """What rotor and films tell each other: responses (n, m + rings), see below; given (m + rings,) forces of the films
+    and torques on the rings; what the films are told; the rings; and a Scratch to ask the films for torques alone."""
+
+    responses: Array
+    given: Array
+    told: Told
+    rings: Rings
+    aside: Scratch
+
+
+def make_exchange(rotor: RotorData, scratch: Scratch) -> Exchange:
+    """For a rotor and what its stages work in."""
+    (m, n), rings = scratch.selection.shape, rotor.spins.shape[0]
+    unused = np.zeros((n, 1))
+    return Exchange(
+        _responses(rotor, scratch.selection),
+        np.zeros(m + rings),
+        Told(np.zeros(3), np.zeros((3, 2 * m + 2 * rings))),
+        make_rings(rings),
+        scratch._replace(at=np.zeros((STAGE_ROWS, n)), stage_v=unused, stage_a=unused),
+    )
+
+
+@compiled()
+def _tell(selection: Array, spins: Indices, clearances: Array, q: Array, v: Array, motion: Array) -> float:
+    """motion <- what the films are told of the rotor: journals' displacements and velocities, then angles and speeds of
+    the rings. Returns the largest eccentricity."""
+    m, rings, largest = selection.shape[0], spins.shape[0], 0.0
+    for k in range(m):
+        place, rate = 0.0, 0.0
+        for i in range(q.shape[0]):
+            place += selection[k, i] * q[i]
+            rate += selection[k, i] * v[i]
+        motion[k], motion[m + k] = place, rate
+    for r in range(rings):
+        motion[2 * m + r], motion[2 * m + rings + r] = q[spins[r]], v[spins[r]]
+    for f in range(clearances.shape[0]):
+        largest = max(largest, norm(motion[2 * f], motion[2 * f + 1]) / clearances[f])
+    return largest
+
+
+@compiled(makes_arrays=True)
+def _responses(rotor: RotorData, selection: Array) -> Array:
+    """(n, m + rings) what forces on the journals and torques on the rings do to the accelerations."""
+    m, n = selection.shape
+    inertia, responses = rotor.mass.copy(), np.zeros((n, m + rotor.spins.shape[0]))
+    for k in range(m):
+        for i in range(n):
+            responses[i, k] = selection[k, i] * rotor.multiplicity[k // 2]
+    for r in range(rotor.spins.shape[0]):
+        responses[rotor.spins[r], m + r] = 1.0
+    solve_dense(inertia, responses)
+    return responses
+
+
+@compiled()
+def _extrapolate(past: Array, t: float, lagrange: Array, given: Array, film: Array) -> None:
+    """given (m + rings,) <- forces of the films and torques on the rings at the time t by the parabola; FORCE too."""
+    parabola(past[:, 0], t, lagrange)
+    first = past.shape[1] - given.shape[0]
+    for k in range(given.shape[0]):
+        given[k] = 0.0
+        for p in range(HISTORY):
+            given[k] += lagrange[p] * past[p, first + k]
+    for k in range(film.shape[1]):
+        film[FORCE, k] = given[k]
+
+
+@compiled()
+def _recall(past: Array, told: Told) -> None:
+    """told <- the last two macro times."""
+    for p in range(2):
+        told.times[p] = past[1 + p, 0]
+        for k in range(told.motions.shape[1]):
+            told.motions[p, k] = past[1 + p, 1 + k]
+
+
+@compiled()
+def _remember(past: Array, t_new: float, motion: Array, film: Array, torque: Array, given: Array) -> None:
+    """past moves on to t_new; given <- what the extrapolated forces and torques were off by."""
+    told, m = motion.shape[0], film.shape[1]
+    for k in range(past.shape[1]):
+        past[0, k], past[1, k] = past[1, k], past[2, k]
+    past[2, 0] = t_new
+    for k in range(told):
+        past[2, 1 + k] = motion[k]
+    for k in range(given.shape[0]):
+        past[2, 1 + told + k] = film[FORCE, k] if k < m else torque[k - m]
+        given[k] = past[2, 1 + told + k] - given[k]
+
+
+@compiled()
+def _amend(responses: Array, compliance: Array, clearances: Array, given: Array, a: Array) -> float:
+    """Make the accelerations a (n,) consistent with forces that were off by `given`. Returns the largest velocity of a
+    journal, over its clearance, that they were off by in a stage."""
+    for i in range(a.shape[0]):
+        for k in range(given.shape[0]):
+            a[i] += responses[i, k] * given[k]
+    off = 0.0
+    for k in range(compliance.shape[0]):
+        rate = 0.0
+        for j in range(compliance.shape[0]):
+            rate += compliance[k, j] * given[j]
+        off = max(off, abs(rate) / clearances[k // 2])
+    return off
+
+
+@compiled()
+def _turn_rings(
+    spins: Indices, mass: Array, s: int, g: float, given: Array, at: Array, stage_v: Array, stage_a: Array
+) -> None:
+    """Accelerations and speeds of the rings in stage s from the torques on them, the last of `given`."""
+    first = given.shape[0] - spins.shape[0]
+    for r in range(spins.shape[0]):
+        i = spins[r]
+        stage_a[i, s] = given[first + r] / mass[i, i]
+        stage_v[i, s] = at[V, i] + g * stage_a[i, s]
+
+
+@compiled()
+def _ask_for_torques(
+    films: Any, work: Any, rotor: RotorData, control: Control, aside: Scratch, motion: Array, rings: Rings
+) -> None:
+    """The torques on the rings with the journals where they are now, see _tell for the motion."""
+    if rotor.spins.shape[0] > 0:
+        for k in range(aside.film.shape[1]):
+            aside.film[X_0, k], aside.film[U, k] = motion[k], 0.0
+        spin_up(films, work, rotor, 0, 0.0, control, aside, rings)
+
+
+def advance_in_turn(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: LoopOutput
+) -> tuple[int, int]:
+    """As march.advance, for rotor and films that are solved apart; the state comes from cosimulation.in_turn.
+
+    control.longest_step is the longest macro step. state.past: (3, 1 + 6 films + 3 rings) at the last macro times:
+    time; the journals' displacements and velocities; the rings' angles and speeds; the films' forces, the rings'
+    torques.
+    """
+    stages = tableau.times.shape[0]
+    scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
+    exchange = make_exchange(rotor, scratch)
+    status, rows = _advance(rotor, films, tableau, control, state, scratch, work, exchange, budget, output)
+    return int(status), int(rows)
+
+
+@compiled(makes_arrays=True)
+def _advance(
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
+    exchange: Exchange, budget: int, output: LoopOutput,
+) -> tuple[int, int]:  # fmt: skip
+    """advance_in_turn with the arrays that it works in."""
+    numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
+    spins, times, speeds, angles = rotor.spins, rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
+    clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
+    weights, moments, defect = tableau.stage, tableau.times, tableau.defect
+    tolerance, stiffness = control.tolerance, control.contact_stiffness
+    stages = moments.shape[0]
+    gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
+    selection, products, loads, spread, compliance, elimination, at, film, stage_v, stage_a = scratch
+    responses, given, told = exchange.responses, exchange.given, exchange.told
+    turning, aside = exchange.rings, exchange.aside
+    lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
+    written, done = 0, 0
+
+    while done < budget:
+        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
+        if step == 0.0:
+            return status, written
+        begin_stages(v, a, stage_v, stage_a)
+        g, speed = gamma * step, 0.0
+        for s in range(1, stages):
+            t_s = t + moments[s] * step
+            acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
+            if outdated(numbers, g, speed, gyroscopic, rotor.follows_speed):
+                prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
+            predict(weights, s, step, q, v, stage_v, stage_a, at)
+            start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, film)
+            _extrapolate(past, t_s, lagrange, given, film)
+            lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
+            for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
+                accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
+            _turn_rings(spins, rotor.mass, s, g, given, at, stage_v, stage_a)
+        error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance
+        if not error <= 1.0:  # not a number counts as too large
+            if reject(numbers, step, error, order):
+                continue
+            return STUCK, written
+
+        t_new = end_of_step(t, step, times[piece + 1])
+        displace(weights[stages - 1], stage_v, step, q, q_new)
+        _recall(past, told)
+        told.times[2] = t_new
+        largest = _tell(selection, spins, clearances, q_new, stage_v[:, stages - 1], told.motions[2])
+        if not largest < limit:  # the films cannot be asked there any more
+            return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
+        if not films_follow(films, work, rotor, tableau, control, state, piece, told, film, turning):
+            return STUCK, written
+        _ask_for_torques(films, work, rotor, control, aside, told.motions[2], turning)
+        before = written
+        written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
+        write_oil(films, work, out_oil, before, written)
+        move_on(q, v, a, q_new, stage_v, stage_a)
+        _remember(past, t_new, told.motions[2], film, turning.torque, given)
+        off = _amend(responses, compliance, clearances, given, a)
+        done += 1
+        status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)
+        if status != RUNNING:
+            return status, written
+        error += off / (abs(speed) + SLOWEST) / tolerance
+        choose_next(numbers, h, error, order, GROWTH * h)
+        if numbers[STEP] < SMALLEST_STEP:
+            return STUCK, written
+    return RUNNING, written

@@ -1,0 +1,165 @@
+"""One implicit stage of the time loop. Compiled.
+
+The rotor is linear. One inverse E = (M + g D + g^2 K)^-1 with g = gamma h turns each implicit stage into an equation
+for the velocities u of the journals alone,
+
+    u = u_0 + S F(x(u), u),      x = x_0 + g u,      S = g P E P^T,
+
+which Newton's method solves (journal_newton.py): 2 x 2 for one bearing, however large the rotor is. The products of E
+with D, K, G and the loads are made when the step changes, not in every stage (inverse.py).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from frbcli.compiled import Array, Indices, compiled
+from frbcli.solve.stage.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
+from frbcli.solve.state import INVERSE_SPEED
+
+ELASTIC_LIMIT = 1.5  # eccentricity that no journal exceeds even under elastic contact
+
+# Rows of the scratch arrays: of a stage at the rotor's n degrees of freedom, and at the journals' m = 2 films.
+# FREE is the acceleration without the films' forces; LATE the same with the gyroscopic term at the stage's own speed.
+V, Q, FREE, LATE, STAGE_ROWS = range(5)
+# u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y.
+# OMEGA is omega_J + omega_S of the journal's own film. FOLLOWS_X, FOLLOWS_Y: the change of the velocity that the film
+# feels by that of the journal, see contact.py.
+U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL_ROWS = range(11)
+
+
+class FilmMotion(NamedTuple):
+    """What a film feels of its journal: displacement d and velocity v over the clearance, omega_J + omega_S."""
+
+    d_x: float
+    d_y: float
+    v_x: float
+    v_y: float
+    omega: float
+
+
+@compiled()
+def norm(x: float, y: float) -> float:
+    """Length of a vector."""
+    return math.sqrt(x * x + y * y)
+
+
+@compiled()
+def limit_of(contact_stiffness: float) -> float:
+    """Eccentricity that is no state any more: under elastic contact the shell gives way, else it ends at the shell."""
+    return ELASTIC_LIMIT if contact_stiffness > 0.0 else 1.0
+
+
+@compiled(inline=True)
+def lagrange(a: float, b: float, c: float, t: float) -> tuple[float, float, float]:
+    """The three weights of the parabola through points at the times a, b, c, at the time t."""
+    return (
+        (t - b) * (t - c) / ((a - b) * (a - c)),
+        (t - a) * (t - c) / ((b - a) * (b - c)),
+        (t - a) * (t - b) / ((c - a) * (c - b)),
+    )
+
+
+@compiled(inline=True)
+def predict(weights: Array, s: int, step: float, q: Array, v: Array, stage_v: Array, stage_a: Array, at: Array) -> None:
+    """V, Q of `at`: the rotor at stage s by the stages before it."""
+    for i in range(q.shape[0]):
+        sum_v, sum_a = 0.0, 0.0
+        for j in range(s):
+            sum_v += weights[s, j] * stage_v[i, j]
+            sum_a += weights[s, j] * stage_a[i, j]
+        at[V, i] = v[i] + step * sum_a
+        at[Q, i] = q[i] + step * sum_v
+
+
+@compiled(inline=True)
+def start_stage(
+    acceleration: float, speed: float, angle: float, g: float, gyroscopic: bool, products: Array, loads: Array,
+    selection: Array, at: Array, film: Array,
+) -> None:  # fmt: skip
+    """Fill FREE of `at` and U_0, X_0 of `film`: what a stage knows before its films do."""
+    n = at.shape[1]
+    # The unbalance (2.3): along the angle with alpha'', outwards with alpha'^2
+    sine, cosine = math.sin(angle), math.cos(angle)
+    along = acceleration * cosine - speed * speed * sine
+    across = acceleration * sine + speed * speed * cosine
+    for i in range(n):
+        total = loads[E_STATIC, i] + along * loads[E_COS, i] + across * loads[E_SIN, i]
+        for j in range(n):
+            total -= products[E_DAMPING, i, j] * at[V, j] + products[E_STIFFNESS, i, j] * (at[Q, j] + g * at[V, j])
+        if gyroscopic:
+            for j in range(n):
+                total -= speed * products[E_GYROSCOPIC, i, j] * at[V, j]
+        at[FREE, i] = total
+    for k in range(selection.shape[0]):
+        place, rate = 0.0, 0.0
+        for i in range(n):
+            place += selection[k, i] * at[Q, i]
+            rate += selection[k, i] * (at[V, i] + g * at[FREE, i])
+        film[X_0, k], film[U_0, k] = place, rate
+
+
+@compiled(inline=True)
+def begin_lag(numbers: Array, g: float, speed: float, at: Array) -> float:
+    """The lag of `accelerate` in a stage of a gyroscopic rotor, which begins with the speed of its inverse: LATE."""
+    for i in range(at.shape[1]):
+        at[LATE, i] = at[FREE, i]
+    return g * (speed - float(numbers[INVERSE_SPEED]))
+
+
+@compiled(inline=True)
+def guess(
+    points: Array, three: Indices, s: int, selection: Array, q: Array, clearances: Array, g: float, t: float,
+    limit: float, film: Array,
+) -> None:  # fmt: skip
+    """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
+
+    points: (p, 1 + m) times and journals' velocities of this step and the one before; three: (s, 3) which of them carry
+    the parabola of stage s.
+    """
+    i_a, i_b, i_c = three[s, 0], three[s, 1], three[s, 2]
+    weight_a, weight_b, weight_c = lagrange(points[i_a, 0], points[i_b, 0], points[i_c, 0], t)
+    for i in range(selection.shape[0]):
+        film[U, i] = weight_a * points[i_a, 1 + i] + weight_b * points[i_b, 1 + i] + weight_c * points[i_c, 1 + i]
+    for f in range(clearances.shape[0]):
+        x, y = 2 * f, 2 * f + 1
+        if norm(film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]) > 0.999 * limit * clearances[f]:
+            here_x, here_y = 0.0, 0.0
+            for i in range(q.shape[0]):
+                here_x += selection[x, i] * q[i]
+                here_y += selection[y, i] * q[i]
+            film[U, x], film[U, y] = (here_x - film[X_0, x]) / g, (here_y - film[X_0, y]) / g
+
+
+@compiled(inline=True)
+def accelerate(
+    s: int, g: float, lag: float, products: Array, spread: Array, selection: Array, at: Array, film: Array,
+    stage_v: Array, stage_a: Array,
+) -> float:  # fmt: skip
+    """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
+    Returns the largest change of U_0 in m/s.
+
+    lag: g times the difference between the stage's speed and that of the inverse, for the rest of the gyroscopic term.
+    """
+    n, m, change = at.shape[1], selection.shape[0], 0.0
+    row = FREE if lag == 0.0 else LATE
+    for i in range(n):
+        total = at[row, i]
+        for j in range(m):
+            total += spread[i, j] * film[FORCE, j]
+        stage_a[i, s] = total
+        stage_v[i, s] = at[V, i] + g * total
+    if lag != 0.0:
+        for i in range(n):
+            total = at[FREE, i]
+            for j in range(n):
+                total -= lag * products[E_GYROSCOPIC, i, j] * stage_a[j, s]
+            at[LATE, i] = total
+        for k in range(m):
+            rate = 0.0
+            for i in range(n):
+                rate += selection[k, i] * (at[V, i] + g * at[LATE, i])
+            change = max(change, abs(rate - film[U_0, k]))
+            film[U_0, k] = rate
+    return change
