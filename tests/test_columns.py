@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any
 
-import column_tables
 import numpy as np
 import pandas as pd
 import pytest
+from pages import column_tables
 
 from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
 

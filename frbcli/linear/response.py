@@ -42,7 +42,7 @@ ROUND_OFF = 1e-9  # relative: what stands out by less, as where a stiff rotor tu
 # Larger semi-axis over the gap that is left at rest, above which linear coefficients are doubtful. Against the
 # nonlinear synchronous response (cycles/unbalance) of jeffcott and rigid with short films and unbalances of 10 to 200 g
 # mm, the amplitudes of journals have errors of at most 4 % up to a tenth of that gap, 15 % up to this share, 26 % up to
-# half of it, and a factor of 2 beyond, where the response jumps. tests/test_response.py holds it.
+# half of it, and a factor of 2 beyond, where the response jumps. tests/linear/test_response.py holds it.
 DOUBTFUL = 0.3
 ORBIT_PLACES = 360  # at which the eccentricity along an orbit is told
 SOUND, DOUBTFUL_MOTION, BEYOND_GAP = "linear", "doubtful", "beyond-gap"

@@ -31,9 +31,9 @@ THRESHOLDS_Hz = {"jeffcott-table-4-1": 167.4, "jeffcott": 177.2}  # by an indepe
 HEAD = """# Validation
 
 Measured and printed results. This page is written by `cd tests && python -m validation.validate`, which runs everything
-again (some minutes); `tests/test_validation.py` checks the most important rows. Films are of finite length; rows on
-half-Sommerfeld films are of the default accuracy, run-ups with the penalty and the two-phase model of a target of 3e-3.
-[cases](cases.md) lists the commands for every study of chapter 6.
+again (some minutes); `tests/docs/test_validation.py` checks the most important rows. Films are of finite length; rows
+on half-Sommerfeld films are of the default accuracy, run-ups with the penalty and the two-phase model of a target of
+3e-3. [cases](cases.md) lists the commands for every study of chapter 6.
 
 Penalty films without openings are tabulated; cells of two-phase films in plain gaps turn with half the rotor speed
 ([theory](theory.md), "A grid that turns"). An onset is that of a whirl of about half the rotor speed, below 0.65 of it.

@@ -1,0 +1,227 @@
+"""`frb waterfall`, `frb plot`, `frb export` on a run file."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from paths import ROOT
+from scipy.io import loadmat
+from synthetic_run import CLEARANCE, UNITS, Rotor, signals
+
+from frbcli.cli.main import run as frb
+from frbcli.results.store import Header, RunWriter, read_run
+
+COLUMNS = ["time_s", "speed_Hz", "eccentricity", "journal_x_m", "journal_y_m", "disk_x_m", "disk_y_m"]
+PNG = b"\x89PNG"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    path = tmp_path_factory.mktemp("made") / "run.h5"
+    columns = signals(Rotor(duration_s=1.0, step_s=1e-4, whirl_s=0.7, growth_1_s=200.0))
+    units = {name: UNITS.get(name, "m") for name in columns}
+    header = Header("Jeffcott rotor", "runup", "test", "", units, references={"clearance_m": CLEARANCE})
+    writer = RunWriter(path, header)
+    writer.append(columns)
+    writer.finish("finished", {}, {}, [])
+    return path.read_bytes()
+
+
+@pytest.fixture
+def run_file(made: bytes, tmp_path: Path) -> Path:
+    path = tmp_path / "run.h5"
+    path.write_bytes(made)
+    return path
+
+
+def test_waterfall_is_put_beside_its_run(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["waterfall", str(run_file)]) == 0
+    picture = run_file.with_name("run-waterfall.png")
+    assert picture.read_bytes().startswith(PNG)
+    said = capsys.readouterr()
+    assert said.out.startswith(f"waterfall: {picture}\nwindow ")
+    assert said.err == ""
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--signal", "disk", "--over", "speed"],
+        ["--cascade", "--window", "100 ms"],
+        ["--direction", "forward", "--log", "--window", "0.1"],
+        ["--signal", "journal", "--direction", "y"],
+    ],
+)
+def test_waterfall_takes_its_options(run_file: Path, options: list[str]) -> None:
+    picture = run_file.with_name("w.pdf")
+    assert frb(["waterfall", str(run_file), "-o", str(picture), *options]) == 0
+    assert picture.read_bytes().startswith(b"%PDF")
+
+
+def test_waterfall_tells_json_what_it_did(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["waterfall", str(run_file), "--json", "--quiet", "--window", "150 ms"]) == 0
+    said = capsys.readouterr()
+    document = json.loads(said.out)
+    assert (document["command"], document["run"], document["window_s"]) == ("waterfall", str(run_file), 0.15)
+    assert Path(document["output"]).is_file()
+    assert said.err == ""
+
+
+def test_waterfall_takes_a_window_that_fits_the_ramp_and_tells_what_a_longer_one_loses(
+    run_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """300 Hz in 1 s: 1/sqrt(300) s."""
+    picture = run_file.with_name("w.svg")
+    assert frb(["waterfall", str(run_file), "-o", str(picture), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["window_s"] == pytest.approx(300.0**-0.5, rel=1e-3)
+    assert document["synchronous_low_dB"] == pytest.approx(0.064, abs=0.002)
+    assert "dB low" not in picture.read_text()
+    assert frb(["waterfall", str(run_file), "-o", str(picture), "--json", "--window", "0.2 s"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["synchronous_low_dB"] == pytest.approx(4.9, abs=0.1)
+    assert "up to 4.9 dB low" in picture.read_text()
+    assert "up to 4.9 dB low" in said.err + said.out
+
+
+def test_waterfall_draws_amplitudes_by_order(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["waterfall", str(run_file), "--signal", "disk", "--order", "1,0.5", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["output"] == str(run_file.with_name("run-orders.png"))
+    assert Path(document["output"]).read_bytes().startswith(PNG)
+    assert (document["over"], document["direction"]) == ("speed", "x")
+    first, half = document["orders"]
+    assert list(first) == ["order", "amplitude_max_m", "t_s", "speed_Hz"]
+    assert (first["order"], half["order"]) == (1.0, 0.5)
+    assert half["amplitude_max_m"] > 10 * CLEARANCE / 35  # the whirl: 0.8 of the clearance at the journal
+    for words in (["--over", "time", "--log"], ["--direction", "forward"]):
+        assert frb(["waterfall", str(run_file), "--order", "1", "--quiet", *words]) == 0
+
+
+@pytest.mark.parametrize(
+    "words", [["--order", "1", "--window", "1 s"], ["--order", "1", "--cascade"], ["--order", "one"], ["--order", "0"]]
+)
+def test_orders_that_there_are_not_are_wrong_input(run_file: Path, words: list[str]) -> None:
+    assert frb(["waterfall", str(run_file), *words]) == 2
+    assert not run_file.with_name("run-orders.png").exists()
+
+
+@pytest.mark.parametrize("what", ["eccentricity", "orbit", "displacement", "summary"])
+def test_plot_draws_each_picture(run_file: Path, what: str) -> None:
+    assert frb(["plot", str(run_file), "--what", what]) == 0
+    assert run_file.with_name(f"run-{what}.png").read_bytes().startswith(PNG)
+
+
+def test_plot_overlays_runs_between_two_times(
+    run_file: Path, made: bytes, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = run_file.with_name("other.h5")
+    other.write_bytes(made)
+    picture = run_file.with_name("both.svg")
+    words = ["plot", str(run_file), str(other), "--from", "0.4 s", "--to", "600 ms", "-o", str(picture), "--json"]
+    assert frb(words) == 0
+    drawn = picture.read_text()
+    assert ">other<" in drawn
+    ticks = [float(text) for text in re.findall(r">(0\.\d+)<", drawn.split("time in s")[0])]
+    assert min(ticks) == 0.4
+    assert max(ticks) == 0.6
+    assert json.loads(capsys.readouterr().out)["run"] == [str(run_file), str(other)]
+
+
+def test_csv_has_the_signals_with_all_their_digits(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["export", str(run_file), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["columns"] == COLUMNS
+    assert Path(document["output"]).read_text().splitlines()[0] == ",".join(COLUMNS)
+    table = np.loadtxt(document["output"], delimiter=",", skiprows=1)
+    np.testing.assert_array_equal(table, read_run(run_file).to_pandas().to_numpy())
+
+
+def test_csv_goes_to_stdout(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["export", str(run_file), "-o", "-"]) == 0
+    said = capsys.readouterr()
+    assert said.out.splitlines()[0] == ",".join(COLUMNS)
+    assert len(said.out.splitlines()) == len(read_run(run_file)) + 1
+    assert said.err == ""
+    assert list(run_file.parent.iterdir()) == [run_file]
+
+
+def test_a_reader_that_stops_early_is_no_fault(run_file: Path) -> None:
+    words = [sys.executable, "-m", "frbcli", "export", str(run_file), "-o", "-"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline().startswith(b"time_s,")
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 141  # as a shell reports the end of other programs by SIGPIPE
+
+
+def test_mat_has_the_signals_as_columns(run_file: Path) -> None:
+    assert frb(["export", str(run_file), "--format", "mat", "--quiet"]) == 0
+    content = loadmat(run_file.with_suffix(".mat"))
+    np.testing.assert_array_equal(content["disk_x_m"][:, 0], read_run(run_file)["disk_x_m"])
+    assert content["title"][0] == "Jeffcott rotor"
+
+
+def test_parquet_needs_its_extra(
+    run_file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("frbcli.results.export.find_spec", lambda _: None)
+    assert frb(["export", str(run_file), "--format", "parquet"]) == 2
+    assert "pip install frbcli[parquet]" in capsys.readouterr().err
+    assert not run_file.with_suffix(".parquet").exists()
+
+
+@pytest.mark.skipif(find_spec("pyarrow") is None, reason="the extra parquet is not installed")
+def test_parquet_has_the_signals(run_file: Path) -> None:
+    assert frb(["export", str(run_file), "--format", "parquet"]) == 0
+    assert list(pd.read_parquet(run_file.with_suffix(".parquet")).columns) == COLUMNS
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["waterfall", "missing.h5"],
+        ["waterfall", "RUN", "--signal", "ring"],
+        ["waterfall", "RUN", "--window", "5 s"],
+        ["waterfall", "RUN", "--window", "5 kg"],
+        ["waterfall", "RUN", "--window", "nan"],
+        ["waterfall", "RUN", "--over", "frequency"],
+        ["waterfall", "RUN", "-o", "picture.bmp"],
+        ["waterfall", "RUN", "-o", "nowhere/picture.png"],
+        ["plot", "RUN", "--from", "3 s"],
+        ["plot", "RUN", "--what", "orbit", "--from", "3 s", "--to", "2 s"],
+        ["plot", "RUN", "RUN", "--what", "summary"],
+        ["plot", "RUN", "--what", "summary", "--from", "0.1 s"],
+        ["plot", "RUN", "--signal", "disk"],
+        ["plot", "RUN", "TEXT"],
+        ["plot"],
+        ["export", "TEXT"],
+        ["export", "RUN", "-o", "RUN"],
+        ["export", "RUN", "-o", "nowhere/run.csv"],
+        ["export", "RUN", "-o", "-", "--json"],
+        ["export", "RUN", "-o", "-", "--format", "mat"],
+        ["export", "RUN", "--format", "xls"],
+    ],
+    ids=" ".join,
+)
+def test_wrong_input_ends_with_two_and_one_document(
+    run_file: Path, made: bytes, words: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(run_file.parent)
+    Path("text.h5").write_text("time_s,speed_Hz\n")
+    words = [{"RUN": run_file.name, "TEXT": "text.h5"}.get(word, word) for word in words]
+    assert frb([*words, *([] if "--json" in words else ["--json"])]) == 2
+    said = capsys.readouterr()
+    assert json.loads(said.out)["status"] == "input-error"
+    assert said.err != ""
+    assert run_file.read_bytes() == made

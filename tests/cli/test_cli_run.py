@@ -1,0 +1,279 @@
+"""`frb runup` and `frb rundown`: exit codes, the JSON document, progress, Ctrl-C, SIGKILL."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import random
+import select
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from paths import ROOT
+
+from frbcli.cli.main import run as frb
+from frbcli.cli.runs.live import progress_line
+from frbcli.results.store import Run, read_run
+from frbcli.runs.march import Progress
+
+PNG = b"\x89PNG"
+QUICK = ["jeffcott", "--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
+# Some seconds of work; few samples, so that the files are small.
+LONG = ["jeffcott", "--set", "film.theory=short", "--set", "speed.to=200 Hz", "--set", "speed.duration=80 s",
+        "--set", "output.step=3 ms"]  # fmt: skip
+
+COST = {"cpu_s", "error_cpu_s", "predicted_cpu_s", "wall_s", "steps", "rejected_steps", "steps_per_revolution",
+        "film_solves", "ms_per_film_solve", "simulated_ms_per_hour"}  # fmt: skip
+ERROR = ["time_integration", "film_force_relative", "oil_balance_relative", "model_relative", "mesh_relative",
+         "coupling", "modal_reduction", "cells", "eccentricity", "displacement", "ring_speed",
+         "oil_fraction", "quiet_until_s"]  # fmt: skip
+EVENT = ["kind", "film", "t_s", "speed_Hz", "frequency_Hz", "frequency_ratio", "point"]
+
+
+@pytest.fixture(autouse=True)
+def in_a_directory_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def document(text: str) -> dict[str, Any]:
+    """The one JSON document that stdout holds, with the keys of every run."""
+    found = json.loads(text)
+    assert list(found) == ["command", "run", "status", "t_end_s", "events", "cost", "error"]
+    assert set(found["cost"]) == COST
+    assert list(found["error"]) == ERROR
+    assert all(list(event) == EVENT for event in found["events"])
+    return dict(found)
+
+
+def assert_same(run: Run, other: Run) -> None:
+    """Bit for bit, but for what the clock says."""
+    for name in run.signals:
+        np.testing.assert_array_equal(run[name], other[name], strict=True)
+    assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
+
+
+# --- what is said where ---
+
+
+def test_runup_says_one_json_document_and_leaves_a_picture(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["runup", *QUICK, "--set", "speed.to=250 Hz", "--json"]) == 0
+    said = capsys.readouterr()
+    found = document(said.out)
+    assert (found["command"], found["run"]) == ("runup", "jeffcott.h5")
+    assert (found["status"], found["t_end_s"]) == ("finished", 0.3)
+    assert found["events"] == read_run("jeffcott.h5").events
+    assert found["cost"]["steps"] == read_run("jeffcott.h5").cost["steps"]
+    assert "finished at 0.3 s" in said.err
+    assert "cost and error" in said.err
+    assert Path("jeffcott-summary.png").read_bytes().startswith(PNG)
+    assert max(map(len, said.err.splitlines())) <= 80
+
+
+def test_quiet_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["runup", *QUICK, "-o", "a.h5", "--quiet", "--no-picture"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert os.listdir() == ["a.h5"]
+
+
+def test_quiet_json_says_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["rundown", *QUICK, "--json", "--quiet", "--no-picture"]) == 0
+    said = capsys.readouterr()
+    assert document(said.out)["command"] == "rundown"
+    assert said.err == ""
+
+
+def test_contact_is_exit_3_with_its_remedy(capsys: pytest.CaptureFixture[str]) -> None:
+    touching = ["--set", "contact.eccentricity=0.6", "--set", "speed.from=5 Hz", "--set", "speed.to=50 Hz"]
+    assert frb(["runup", *QUICK, *touching, "--json", "-o", "a.h5"]) == 3
+    said = capsys.readouterr()
+    found = document(said.out)
+    assert found["status"] == "contact"
+    assert 0.0 < found["t_end_s"] < 0.3
+    assert [event["kind"] for event in found["events"]] == ["contact"]
+    assert "contact.policy=elastic" in said.err
+    assert read_run("a.h5").status == "contact"
+    assert Path("a-summary.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["runup", "no-such-case"], "no-such-case"),
+        (["runup", *QUICK, "--set", "rotor.mass=-1 kg"], "rotor.mass"),
+        (["runup", *QUICK, "-o", "nowhere/run.h5"], "does not exist"),
+        (["runup", *QUICK, "-o", "."], "not a file"),
+        (["rundown", *QUICK, "-o", "foreign.h5"], "not replaced"),
+        (["rundown", *QUICK, "-o", "foreign.h5", "--resume"], "not replaced"),
+        (["runup", *QUICK, "--set", "film.cavitation=elrod"], "not modelled in this version"),
+        (["runup"], "CASE"),
+    ],
+)
+def test_wrong_input_is_exit_2(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("foreign.h5").write_text("years of work")
+    assert frb([*words, "--json"]) == 2
+    said = capsys.readouterr()
+    assert reason in said.err
+    assert json.loads(said.out)["status"] == "input-error"
+    assert os.listdir() == ["foreign.h5"]
+    assert Path("foreign.h5").read_text() == "years of work"
+
+
+def test_no_resting_position_is_exit_3(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["runup", *QUICK, "--set", "start.position=resting", "--json"]) == 3
+    said = capsys.readouterr()
+    assert json.loads(said.out)["status"] == "not-converged"
+    assert "resting position" in said.err
+
+
+# --- progress ---
+
+number = st.floats(allow_nan=True, allow_infinity=True)
+
+
+@given(number, number, number, number, st.integers(0, 10**18), number, number, number)
+def test_progress_line_fits_any_terminal(
+    t: float, end: float, speed: float, eccentricity: float, steps: int, per_turn: float, pace: float, left: float
+) -> None:
+    line = progress_line(Progress(t, end, speed, eccentricity, steps, per_turn, pace, left))
+    assert len(line) <= 80
+    assert line.isprintable()
+
+
+def test_progress_line_says_what_matters() -> None:
+    line = progress_line(Progress(12.3456, 100.0, 123.45, 0.6789, 10**6, 41.7, 1.2e8, 3725.0))
+    assert len(line) < 80
+    for word in ("12.346/100 s", "123.5 Hz", "eps 0.679", "41.7 steps/rev", "1.2e+08 ms/h", "62:05 left"):
+        assert word in line
+
+
+def test_progress_says_that_it_is_the_error_s() -> None:
+    line = progress_line(Progress(3.12345, 4.123456, 299.0, 0.998, 123456, 82.3, 1.2e6, 100.0, for_error=True))
+    assert line.startswith("its error: 3.123/4.123 s")
+    assert line.endswith("1:40 left")
+    assert len(line) <= 80
+
+
+@pytest.mark.parametrize(
+    ("left", "words"),
+    [(0.4, "0:00"), (59.6, "1:00"), (5999.0, "99:59"), (6000.0, "1 h"), (1e6, "11 d"), (np.inf, "?"), (np.nan, "?")],
+)
+def test_time_left_is_told_in_few_columns(left: float, words: str) -> None:
+    assert progress_line(Progress(1.0, 2.0, 3.0, 0.4, 5, 41.0, 1e8, left)).endswith(f"ms/h  {words} left")
+
+
+def frb_process(*words: str, often: bool = False, **options: Any) -> subprocess.Popen[bytes]:
+    """frb in a process of its own; often: with many checkpoints."""
+    hurry = "import frbcli.runs.run as r; r.CHECKPOINT_EVERY_s, r.CHECKPOINT_SHARE = 0.05, 1.0;" if often else ""
+    code = f"import sys; {hurry} from frbcli.cli.process import main; main()"
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "100", "TERM": "xterm"}
+    return subprocess.Popen([sys.executable, "-c", code, *words], env=environment, **options)
+
+
+def test_progress_moves_on_a_terminal() -> None:
+    ours, theirs = pty.openpty()
+    try:
+        words = ("runup", *LONG, "--no-picture", "-o", "a.h5")
+        with frb_process(*words, stdout=subprocess.PIPE, stderr=theirs) as process:
+            os.close(theirs)
+            shown = b""
+            while process.poll() is None or select.select([ours], [], [], 0.1)[0]:
+                try:
+                    shown += os.read(ours, 65536)
+                except OSError:  # the other end is closed
+                    break
+            assert process.stdout is not None
+            told = process.stdout.read().decode()
+    finally:
+        os.close(ours)
+    assert process.returncode == 0
+    lines = [line for line in shown.decode().replace("\r", "\n").splitlines() if "steps/rev" in line]
+    assert len(lines) > 3
+    assert len(set(lines)) > 3
+    assert "finished at 80 s" in told
+    assert "finished" not in shown.decode()
+    assert "\x1b" not in told
+    assert max(map(len, told.splitlines())) <= 80
+
+
+def test_no_progress_where_nobody_watches(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["runup", *QUICK, "--no-picture"]) == 0
+    assert "steps/rev" not in capsys.readouterr().err
+
+
+# --- broken off ---
+
+
+def wait_for(path: Path, process: subprocess.Popen[bytes]) -> None:
+    """Until the run is under way."""
+    until = time.monotonic() + 60.0
+    while not path.exists() and time.monotonic() < until:
+        assert process.poll() is None
+        time.sleep(0.01)
+    assert path.exists()
+
+
+@pytest.fixture(scope="module")
+def whole_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    path = tmp_path_factory.mktemp("whole") / "whole.h5"
+    assert frb(["runup", *LONG, "-o", str(path), "--quiet", "--no-picture"]) == 0
+    return read_run(path)
+
+
+def test_ctrl_c_keeps_the_run_and_resume_finishes_it(whole_run: Run) -> None:
+    path = Path("a.h5")
+    words = ("runup", *LONG, "-o", str(path), "--json")
+    with frb_process(*words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        wait_for(path, process)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate()
+    assert process.returncode == 130
+    found = document(out.decode())
+    assert found["status"] == "interrupted"
+    assert 0.0 < found["t_end_s"] < 80.0
+    assert "--resume" in err.decode()
+    assert b"Traceback" not in err
+    assert read_run(path).t_end_s == found["t_end_s"]
+    assert frb(["runup", *LONG, "-o", str(path), "--resume", "--quiet", "--no-picture"]) == 0
+    assert_same(read_run(path), whole_run)
+
+
+def test_a_killed_run_opens_and_resumes_to_the_same_numbers(whole_run: Run) -> None:
+    path, chance = Path("a.h5"), random.Random(7)
+    words = ("runup", *LONG, "-o", str(path), "--resume", "--quiet", "--no-picture")
+    reached = []
+    for longest_wait in (0.3, 1.0, 1.5):
+        with frb_process(*words, often=True) as process:
+            wait_for(path, process)
+            # From the second round on the file is there at once: the kill may hit the start of the program as well.
+            time.sleep(chance.uniform(0.0, longest_wait))
+            process.kill()
+        run = read_run(path)
+        assert run.status == "interrupted"
+        reached.append(run.t_end_s)
+    assert reached == sorted(reached)
+    assert frb(list(words)) == 0
+    assert_same(read_run(path), whole_run)
+    assert os.listdir() == ["a.h5"]
+
+
+def test_without_a_terminal_a_line_now_and_then_tells_the_progress(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["runup", "jeffcott", "-o", str(tmp_path / "run.h5"), "--no-picture", "--force"]
+    assert frb(words) == 0
+    assert "steps/rev" not in capsys.readouterr().err
+    monkeypatch.setattr("frbcli.cli.runs.transient.TOLD_EVERY_s", 0.02)
+    assert frb(words) == 0
+    assert "steps/rev" in capsys.readouterr().err
+    assert frb([*words, "--quiet"]) == 0
+    assert capsys.readouterr().err == ""

@@ -1,0 +1,74 @@
+"""docs/command-line.md: its table is run, line after line, and what it says of exit codes and streams holds."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from paths import DOCS
+
+from frbcli.cli.main import COMMANDS, run
+
+PAGE = DOCS / "command-line.md"
+ROW = re.compile(r"^\| `frb (.+?)` \| (\d+) \| (.*?) \| (.*?) \|$", re.MULTILINE)
+TEXTS = ("--help", "--version", "cases jeffcott", "schema", "export run.h5 -o -")  # no results for people
+
+
+class Line(NamedTuple):
+    """A row of the table: what is called, how it ends, and words of stdout and stderr."""
+
+    words: str
+    code: int
+    out: list[str]
+    err: list[str]
+
+
+def table() -> list[Line]:
+    rows = ROW.findall(PAGE.read_text(encoding="utf-8"))
+    return [Line(words, int(code), *(re.findall(r"`([^`]+)`", cell) for cell in cells)) for words, code, *cells in rows]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of all lines."""
+    return tmp_path_factory.mktemp("lines")
+
+
+def assert_says(said: str, words: list[str]) -> None:
+    assert [word for word in words if word not in said] == []
+    assert bool(said) == bool(words)
+
+
+@pytest.mark.parametrize("line", table(), ids=lambda line: f"{line.words} ends with {line.code}")
+def test_each_line_of_the_table_is_true(
+    line: Line, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = shlex.split(line.words)
+    if line.words not in TEXTS:
+        before = shutil.copytree(folder, tmp_path / "before")
+        monkeypatch.chdir(before)
+        assert run([*words, "--json"]) == line.code
+        said = capsys.readouterr()
+        assert isinstance(json.loads(said.out), dict)
+        assert_says(said.err, line.out + line.err)
+    monkeypatch.chdir(folder)
+    assert run(words) == line.code
+    said = capsys.readouterr()
+    assert_says(said.out, line.out)
+    assert_says(said.err, line.err)
+    assert not [word for word in line.err if word in said.out]
+
+
+def test_the_table_has_every_command_and_what_makes_it_fail() -> None:
+    ends: dict[str, set[int]] = {name: set() for name in COMMANDS}
+    for line in table():
+        ends.setdefault(line.words.split()[0], set()).add(line.code)
+    assert all(0 in codes for codes in ends.values())
+    codes = re.findall(r"^\| (\d+) \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    assert codes == ["0", "1", "2", "3", "130", "141"]
+    assert {code for found in ends.values() for code in found} == {0, 2, 3}

@@ -1,0 +1,120 @@
+"""The documents cannot rot: pages that are written by a program are up to date, and what they name is there."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from pages import analysis_matrix, case_reference, column_tables, hard_cases_page
+from paths import ROOT
+
+from frbcli.case.reading.hard import hard_cases
+from frbcli.cli.main import COMMANDS
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def named(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def test_every_key_of_the_case_file_has_a_meaning() -> None:
+    empty = [line for line in case_reference.page().splitlines() if line.startswith("| `") and line.endswith("|  |")]
+    assert empty == []
+
+
+def test_case_file_page_is_what_the_schema_says() -> None:
+    assert case_reference.PAGE.read_text(encoding="utf-8") == case_reference.page(), (
+        "run `cd tests && python -m pages.case_reference`"
+    )
+
+
+def test_the_matrix_page_is_what_the_gates_say() -> None:
+    assert analysis_matrix.PAGE.read_text(encoding="utf-8") == analysis_matrix.page(), (
+        "run `cd tests && python -m pages.analysis_matrix`"
+    )
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_tables_of_columns_are_as_they_are_declared(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert text == column_tables.with_tables(page), "run `cd tests && python -m pages.column_tables`"
+
+
+def test_every_declared_table_of_columns_is_on_one_page() -> None:
+    assert sorted(name for page in PAGES for name in column_tables.marked(page)) == sorted(column_tables.TABLES)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    targets = re.findall(r"\]\(([^)#]+)", text)
+    missing = [t for t in targets if not t.startswith("http") and not (page.parent / t).exists()]
+    assert missing == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_files_and_functions_that_are_named_exist(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    files = set(re.findall(r"`((?:frbcli|tests|cases|docs)/[\w./-]*)`", text))
+    assert [name for name in files if not (ROOT / name).exists()] == []
+    for name, function in re.findall(r"`(frbcli/[\w/]+\.py)`: `(\w+)`", text):
+        assert re.search(rf"^(?:def|class) {function}\b|^{function}\b", (ROOT / name).read_text("utf-8"), re.MULTILINE)
+
+
+def test_readme_tours_every_command() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [command for command in COMMANDS if f"frb {command}" not in text] == []
+
+
+def test_readme_shows_the_shipped_case_and_its_keys_in_the_sketch() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    shown, sketch = re.findall(r"```toml\n(.*?)```.*?```\n(.*?)```", text, re.DOTALL)[0]
+    case = tomllib.loads(shown)
+    assert case == tomllib.loads((ROOT / "cases" / "jeffcott.toml").read_text(encoding="utf-8"))
+    keys = re.findall(r"\b([a-z]+)\.([a-z_]+)", sketch)
+    assert len(keys) >= 10
+    assert [f"{table}.{key}" for table, key in keys if key not in case[table]] == []
+    assert [line for line in sketch.splitlines() if len(line) > 80] == []
+
+
+def test_page_of_hard_cases_has_the_words_of_its_generator() -> None:
+    text = (ROOT / "docs" / "hard-cases.md").read_text(encoding="utf-8")
+    assert text.startswith(hard_cases_page.INTRODUCTION)
+    assert [hard.name for hard in hard_cases() if f"| `{hard.name}` | {hard.hard} | {hard.end} |" not in text] == []
+
+
+def test_page_of_accuracy_has_the_words_of_its_template() -> None:
+    template = (ROOT / "tests" / "accuracy" / "page.md").read_text(encoding="utf-8")
+    words = ".*?".join(re.escape(text) for text in re.split(r"@[A-Z]+@", template))
+    assert re.fullmatch(words, (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8"), re.DOTALL)
+
+
+def test_every_page_is_in_the_index() -> None:
+    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    pages = [page.name for page in (ROOT / "docs").glob("*.md") if page.name != "README.md"]
+    assert [name for name in pages if f"]({name})" not in index] == []
+
+
+def test_ci_finds_the_readmes_line_that_sets_up_and_tests() -> None:
+    pattern = re.search(r"grep -m 1 -E '([^']+)' README.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    assert pattern
+    lines = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+    assert len([line for line in lines if re.search(pattern[1], line)]) == 1
+
+
+def test_rows_of_the_page_of_additions_name_what_is_there() -> None:
+    """Files and folders of the second column, and names with their files in the third."""
+    text = (ROOT / "docs" / "adding-a-model.md").read_text(encoding="utf-8")
+    table = text.partition("\n## ")[0]
+    rows = [line.split("|")[1:-1] for line in table.splitlines() if line.startswith("| ")][2:]
+    assert len(rows) > 8
+    for what, place, row in rows:
+        missing = [path for path in re.findall(r"`([\w./-]+/[\w./-]*)`", place) if not (ROOT / path).exists()]
+        assert missing == [], what
+        for name, path in re.findall(r"`(\w+)` in `([\w./-]+)`", row):
+            assert re.search(rf"^(def |class )?{name}\b", (ROOT / path).read_text(encoding="utf-8"), re.MULTILINE), what
+    named = [path for path in re.findall(r"`((?:frbcli|tests)/[\w./-]+)`", text) if not (ROOT / path).exists()]
+    assert named == []

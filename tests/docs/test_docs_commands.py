@@ -1,0 +1,147 @@
+"""Every command line that the documents show is one that `frb` takes: its options, its case, its settings, its plan."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+import pytest
+from paths import ROOT
+
+import frbcli
+from frbcli.bearing_tests.plan import kinematic_plan
+from frbcli.case.schema import Case
+from frbcli.cli.main import COMMANDS, frb
+from frbcli.errors import InputError
+
+OWN_TEST = ("command-line.md",)  # its lines are run by test_command_line.py
+PLACEHOLDERS = {
+    "CASE": "my.toml",
+    "RUN.h5": "run.h5",
+    "NAME": "jeffcott",
+    "FILE": "out.txt",
+    "DIR": "study",
+}
+WRONG_ON_PURPOSE = ("bearing.clearnce",)
+NO_LINE = ("...", "KEY=")  # shows a form, not a line
+LONGEST_s = 60.0
+
+
+def lines_of(page: Path) -> Iterator[str]:
+    """The command lines in blocks of code and within sentences."""
+    text = page.read_text(encoding="utf-8")
+    for block in re.findall(r"```[a-z]*\n(.*?)```", text, flags=re.DOTALL):
+        for line in block.replace("\\\n", " ").splitlines():
+            if match := re.match(r"^(?:\$ )?(frb .*)$", line):
+                yield match[1]
+    for line in re.findall(r"`(frb [^`]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
+        if len(line.split()) > 2:  # "frb runup" alone names the command
+            yield line
+
+
+def shown() -> list[str]:
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    lines = dict.fromkeys(line for page in pages if page.name not in OWN_TEST for line in lines_of(page))
+    return [line for line in lines if not any(form in line for form in NO_LINE)]
+
+
+def words_of(line: str) -> list[str]:
+    """The arguments behind `frb`, up to a pipe, a redirection or a comment; placeholders stand for files."""
+    words = shlex.split(line, comments=True)[1:]
+    ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
+    # A run is a measurement, too: a long one, in which orders can be told.
+    measured = {"RUN.h5": "jeffcott.h5", "FILE": "jeffcott.h5"} if "--measured" in words else {}
+    return [(PLACEHOLDERS | measured).get(word, word) for word in words[: min(ends, default=len(words))]]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory with a case and with the runs that the lines name."""
+    folder = tmp_path_factory.mktemp("documents")
+    settings = ["film.theory=short", "speed.duration=50 ms"]
+    case = frbcli.load_case("jeffcott", settings)
+    (folder / "my.toml").write_text(case.source_text, encoding="utf-8")
+    page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    text = "\n".join(re.findall(r"```toml\n(.*?)```", page, re.DOTALL))
+    (folder / "turbo.toml").write_text(text, encoding="utf-8")
+    frbcli.runup(case, folder / "run.h5")
+    run = frbcli.runup(frbcli.load_case("jeffcott", [settings[0], "speed.duration=3 s"]), folder / "jeffcott.h5")
+    table = run.to_pandas()[["time_s", "speed_Hz", "journal_x_m", "journal_y_m"]]
+    table[["journal_x_m", "journal_y_m"]] *= 1e6
+    table = table.set_axis(["t", "n", "x", "y"], axis=1)
+    turns = (table.n.cumsum() * (table.t[1] - table.t[0])) % 1.0
+    more = {"t_s": table.t, "x_um": table.x, "y_um": table.y, "key": 5.0 * (turns < 0.2)}
+    table.assign(**more).to_csv(folder / "measured.csv", index=False)
+    rings = frbcli.load_case_text(text, ["speed.duration=20 ms", "speed.to=100 Hz"], name="turbo")
+    ringed = frbcli.runup(rings, folder / "turbo.h5").path
+    shutil.copy(ringed, folder / "ring.h5")
+    named = {word for line in shown() for word in words_of(line) if word.endswith(".h5")}
+    for name in named - {"run.h5", "jeffcott.h5", "turbo.h5", "ring.h5"}:
+        shutil.copy(folder / "run.h5", folder / name)
+    return folder
+
+
+def commands_of(words: list[str]) -> tuple[str, list[str]]:
+    return words[0], words[1:]
+
+
+@pytest.mark.parametrize("line", shown())
+def test_a_line_is_one_that_frb_takes(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    name, words = commands_of(words_of(line))
+    if name.startswith("-"):
+        return
+    assert name in COMMANDS
+    command = frb.get_command(click.Context(frb), name)
+    assert command is not None
+    if any(key in line for key in WRONG_ON_PURPOSE):
+        with pytest.raises(InputError):
+            command.make_context(name, words)
+        return
+    if "--help" in words:
+        return
+    given = command.make_context(name, words).params
+    case = given.get("case")
+    if name in ("runup", "rundown", "check", "accuracy", "compare") and isinstance(case, Case):
+        frbcli.make_plan(case)
+    if name in ("rotation", "squeeze", "whirl") and isinstance(case, Case):
+        kinematic_plan(case, None, name)
+
+
+@pytest.fixture(scope="module")
+def heated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run with heat: its kernels take a minute to compile, which the lines of the gate do not need."""
+    case = frbcli.load_case("floating-ring-heat", ["speed.duration=20 ms", "speed.to=100 Hz"])
+    path = frbcli.runup(case, tmp_path_factory.mktemp("heat") / "heat.h5").path
+    return Path(path)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("line", [line for line in shown() if "dask" not in line])
+def test_a_line_runs(line: str, folder: Path, heated: Path, tmp_path: Path) -> None:
+    """Each in a process; what takes longer than a minute is interrupted, and says so."""
+    place = shutil.copytree(folder, tmp_path / "here")
+    shutil.copy(heated, place / heated.name)
+    words = words_of(line)
+    if words[0] in ("runup", "rundown"):
+        words.append("--force")
+    if words[0] == "cases" and "-o" in words:  # frb does not write over a file of one's own
+        (place / words[words.index("-o") + 1]).unlink(missing_ok=True)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "frbcli", *words], cwd=place, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        _, said = process.communicate(timeout=LONGEST_s)
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=LONGEST_s)
+    assert "Traceback" not in said
+    expected = (2,) if any(key in line for key in WRONG_ON_PURPOSE) else (0, 3, 130)
+    assert process.returncode in expected, said

@@ -1,0 +1,79 @@
+"""The tutorial, its notebook and the site: what they show works."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from paths import DOCS
+
+import frbcli
+from frbcli.cli.main import COMMANDS
+
+
+def case_text() -> str:
+    page = (DOCS / "tutorial.md").read_text(encoding="utf-8")
+    return "\n".join(re.findall(r"```toml\n(.*?)```", page, re.DOTALL))
+
+
+def test_the_case_of_the_tutorial_is_whole_from_its_bearings_on() -> None:
+    """An empty file and a rotor alone are refused with what is missing; the whole text is a case."""
+    for text in ("", case_text().partition("[[bearing]]")[0]):
+        with pytest.raises(frbcli.InputError, match="bearing"):
+            frbcli.load_case_text(text, name="turbo")
+    case = frbcli.load_case_text(case_text(), name="turbo")
+    assert [bearing.name for bearing in case.bearings] == ["front", "rear"]
+    assert frbcli.make_plan(case).cells is not None
+
+
+def test_the_notebook_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cell by cell, in a folder with the page alone; what a cell ends with has something to show."""
+    (tmp_path / "tutorial.md").write_text((DOCS / "tutorial.md").read_text(encoding="utf-8"), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    notebook = json.loads((DOCS / "tutorial.ipynb").read_text(encoding="utf-8"))
+    assert notebook["nbformat"] == 4
+    names: dict[str, object] = {}
+    for cell in notebook["cells"]:
+        if cell["cell_type"] != "code":
+            continue
+        assert cell["outputs"] == []
+        lines = "".join(cell["source"]).splitlines()
+        exec("\n".join(lines[:-1]), names)
+        shown = eval(lines[-1], names)
+        assert shown is not None
+    assert (tmp_path / "turbo.html").stat().st_size > 100_000
+    assert (tmp_path / "turbo.h5").exists()
+
+
+def builder() -> object:
+    spec = importlib.util.spec_from_file_location("build_site", DOCS / "site" / "build.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_command_and_every_public_name_has_its_place() -> None:
+    module = builder()
+    assert set(module.SHOWN) == set(COMMANDS)  # type: ignore[attr-defined]
+    page = module.reference()  # type: ignore[attr-defined]
+    assert [name for name in frbcli.__all__ if name != "__version__" and f"\n## {name}\n" not in page] == []
+    named = set(re.findall(r"([\w-]+)\.md", module.configuration(Path("a"), Path("b"))))  # type: ignore[attr-defined]
+    assert {page.stem for page in DOCS.glob("*.md")} - {"README"} <= named
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(importlib.util.find_spec("material") is None, reason="needs the extra frbcli[docs]")
+def test_the_site_builds_without_warnings(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, str(DOCS / "site" / "build.py"), str(tmp_path / "site")], check=True)
+    for page in ("index.html", "gallery.html", "reference.html", "commands/waterfall.html", "search/search_index.json"):
+        assert (tmp_path / "site" / page).exists()
+    words = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
+    loaded = re.findall(r'<(?:script|img)[^>]* src="([^"]+)"|<link[^>]* rel="stylesheet"[^>]* href="([^"]+)"', words)
+    assert [link for pair in loaded for link in pair if link.startswith(("http:", "https:", "//"))] == []

@@ -1,0 +1,127 @@
+"""Resting positions with every cavitation model against an independent program, through the library.
+
+With the Reynolds condition the films here differ from that program's forces by 4e-4 at most, but rest further out than
+it says by up to 0.7 %, with 48 x 12 to 240 x 60 cells alike: its positions are the less accurate of the two.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from paths import DATA
+
+from frbcli import load_case, rotation
+from frbcli.bearing_tests import resting
+from frbcli.bearing_tests.plan import kinematic_plan
+from frbcli.bearing_tests.resting import resting_displacement
+from frbcli.bearing_tests.steady_film import film_force
+from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
+from frbcli.film.cells.motion import Motion
+
+CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}
+WEIGHT = 6.1 * 9.81 / 2  # N per bearing
+MESH = "accuracy.mesh=[24, 96]"
+ECCENTRICITY, ATTITUDE_DEG, PRESSURE = 1e-2, 0.2, 1e-2
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    lines = (DATA / name).read_text(encoding="utf-8").splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+POSITIONS = [
+    row
+    for row in rows("equilibrium-models.csv")
+    if (row["clearance_um"], row["speed_Hz"]) in {("40", "10"), ("40", "60"), ("35", "120")}
+]
+COEFFICIENTS = [
+    row for row in rows("equilibrium.csv") if row["theory"] == "finite" and row["speed_Hz"] in ("30", "120")
+]
+
+
+def model_of(row: dict[str, str]) -> tuple[str, list[str]]:
+    """Its name in a case, and the settings for its parameters."""
+    words = row["cavitation"]
+    if words.startswith("penalty"):
+        return "penalty", [f"film.penalty.pressure={'absolute' if 'p/p0' in words else 'dimensionless'}"]
+    if words.startswith("two-phase"):
+        return "two-phase", [f"film.two-phase.steepness={words.split('x1=')[1].split(',')[0]}"]
+    return words, []
+
+
+def case_of(row: dict[str, str], settings: list[str]) -> Case:
+    motion = f"motion={{load='{WEIGHT} N', speed='{row['speed_Hz']} Hz'}}"
+    name = CASES[row["clearance_um"], row["viscosity_mPas"]]
+    return load_case(name, [motion, f"bearing.ends={row['ends']}", MESH, *settings])
+
+
+def name_of(row: dict[str, str]) -> str:
+    return " ".join((row["clearance_um"], row["cavitation"], row["ends"], row["speed_Hz"]))
+
+
+@pytest.mark.parametrize("row", POSITIONS, ids=name_of)
+def test_journal_rests_where_an_independent_program_says(row: dict[str, str]) -> None:
+    model, settings = model_of(row)
+    found = rotation(case_of(row, settings), [model]).results[0]
+    assert found.loads is not None
+    assert found.loads.force == pytest.approx((0.0, WEIGHT), abs=1e-3 * WEIGHT)
+    x, y = found.displacement
+    assert math.hypot(x, y) == pytest.approx(float(row["eccentricity"]), rel=ECCENTRICITY)
+    assert math.degrees(math.atan2(x, -y)) == pytest.approx(float(row["attitude_deg"]), abs=ATTITUDE_DEG)
+    assert found.loads.p_max == pytest.approx(1e5 * float(row["pmax_bar"]), rel=PRESSURE)
+
+
+@pytest.mark.parametrize("row", COEFFICIENTS, ids=name_of)
+def test_coefficients_are_differences_of_the_steady_film(row: dict[str, str]) -> None:
+    """Of half-Sommerfeld films, the only ones that the reference has coefficients of."""
+    case = case_of(row, [])
+    plan = kinematic_plan(case, "half-sommerfeld")
+    omega, clearance = 2.0 * math.pi * float(row["speed_Hz"]), plan.section.clearance
+    rest = resting_displacement(case, plan, WEIGHT, omega)
+    assert math.hypot(*rest) == pytest.approx(float(row["eccentricity"]), rel=2e-3)
+
+    def slope(displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """-dF along a change of displacement over the clearance and of its rate, by a central difference."""
+        ends = (Motion(tuple(rest + sign * displacement), tuple(sign * velocity), omega) for sign in (1.0, -1.0))
+        ahead, behind = (film_force(case, plan, motion, plan.cells) for motion in ends)
+        return (behind - ahead) / (2.0 * clearance)
+
+    none, step = np.zeros(2), 1e-4
+    stiffness = np.column_stack([slope(step * unit, none) for unit in np.eye(2)]) / step
+    damping = np.column_stack([slope(none, step * omega * unit) for unit in np.eye(2)]) / (step * omega)
+    for found, name, unit in ((stiffness, "K", "N_m"), (damping, "D", "Ns_m")):
+        expected = np.array([[float(row[f"{name}{a}{b}_{unit}"]) for b in "xy"] for a in "xy"])
+        np.testing.assert_allclose(found, expected, rtol=3e-3, atol=1.5e-3 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("ends", ["free-to-air", "oil-bath"])
+def test_elrods_film_without_supply_carries_nothing_and_says_so(ends: str) -> None:
+    case = load_case("bearing", [f"bearing.ends={ends}"])
+    with pytest.raises(NotConverged, match="carries 0 N, at any eccentricity"):
+        resting_displacement(case, kinematic_plan(case, "elrod"), 29.9, 40.0 * math.pi)
+
+
+def test_elrods_load_falls_with_the_supply_pressure_to_nothing() -> None:
+    """Flow through the edges is what feeds the film, and it goes with the excess of the supply over p_cav: a tenth of
+    it leaves about a tenth of the load, once the film is mostly empty."""
+    sizes = []
+    for supply in ("1.001 bar", "1.0001 bar"):
+        settings = ["bearing.ends=oil-bath", f"bearing.supply.pressure={supply}"]
+        case = load_case("bearing", settings)
+        plan = kinematic_plan(case, "elrod")
+        force = film_force(case, plan, Motion((0.2, -0.56), (0.0, 0.0), 40.0 * math.pi), (64, 16))
+        sizes.append(float(np.linalg.norm(force)))
+    assert sizes[0] < 2.0  # N; 60 N if it is full
+    assert sizes[1] == pytest.approx(0.1 * sizes[0], rel=0.3)
+
+
+def test_load_beyond_all_that_the_film_carries_names_the_largest(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(resting, "COARSE_CELLS", (24, 8))
+    monkeypatch.setattr(resting, "STARTS", (0.6, 0.95))
+    case = load_case("bearing-axial-groove", ["accuracy.mesh=[8, 24]"])
+    with pytest.raises(NotConverged, match=r"largest film force found is .* N, at an eccentricity of 0\.95"):
+        resting_displacement(case, kinematic_plan(case, "reynolds"), 1e9, 40.0 * math.pi)

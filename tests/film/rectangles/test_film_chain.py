@@ -1,0 +1,190 @@
+"""Films between axial grooves: against the plain solve, the independent program, and what symmetry says."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from paths import DATA
+
+from frbcli.case.reading.load import load_case
+from frbcli.film.gap import AxialGroove
+from frbcli.film.grid import Mesh, axial_modes, axial_vertices
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.chain import chain_grid, element_matrices, mode_fields
+from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
+from frbcli.film.rectangles.film_force import FilmData
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+
+Array = NDArray[np.float64]
+
+CLEARANCE = 40e-6
+MESH = Mesh(6, 48)
+AXIS = np.eye(2)
+
+
+def grooved(pressure: float, count: int = 1, position: float = 0.0) -> RectangularBearing:
+    """The bearing of table 4.1 with grooves of 15 degrees; pressure in the grooves, absolute."""
+    turn = 2 * math.pi / count
+    grooves = tuple(AxialGroove(position + turn * i, math.radians(15), pressure - 1e5) for i in range(count))
+    return RectangularBearing(0.02, 0.025, CLEARANCE, 0.01, 1, 1e5, 1e5, grooves=grooves)
+
+
+FILMS = {pressure: make_film(grooved(pressure), "finite", "half-sommerfeld", MESH) for pressure in (1e5, 2e5)}
+
+
+def rows() -> list[dict[str, str]]:
+    path = DATA / "film-forces-all.csv"
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    return [
+        row
+        for row in csv.DictReader(lines)
+        if row["supply"] == "axial-groove" and row["cavitation"] == "half-sommerfeld"
+    ]
+
+
+def at(film: FilmData, row: dict[str, str], turned: float = 0.0) -> FilmForce:
+    """The film's force at the position and motion of a row, all turned by an angle."""
+    eccentricity, angle = float(row["eccentricity"]), math.radians(float(row["attitude_deg"])) + turned
+    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+    rate, whirl = float(row["eccentricity_rate_1_s"]), float(row["whirl_speed_rad_s"])
+    velocity = CLEARANCE * (rate * along + eccentricity * whirl * across)
+    omega = 2 * math.pi * float(row["speed_Hz"])
+    return evaluate(film, CLEARANCE, CLEARANCE * eccentricity * along, velocity, omega)
+
+
+def row_id(row: dict[str, str]) -> str:
+    names = ("supply_pressure_bar", "speed_Hz", "eccentricity_rate_1_s", "whirl_speed_rad_s", "eccentricity")
+    return "-".join(row[name] for name in names)
+
+
+@pytest.mark.parametrize("row", rows(), ids=row_id)
+def test_force_of_the_independent_program(row: dict[str, str]) -> None:
+    expected = np.array([float(row["Fx_N"]), float(row["Fy_N"])])
+    force = at(FILMS[1e5 * float(row["supply_pressure_bar"])], row).force
+    assert np.hypot(*(force - expected)) < 1e-3 * np.hypot(*expected) + float(row["force_error_N"])
+
+
+def test_fast_and_plain_solve_of_the_same_elements_agree() -> None:
+    """Two pieces between two grooves under pressure, against scikit-fem's assembly and a sparse solve of each."""
+    from scipy.sparse.linalg import spsolve
+    from skfem import Basis, BilinearForm, ElementQuad2, LinearForm, MeshQuad, asm
+
+    d, w, aspect = (0.5, -0.4), (0.7, -0.3), 1.3
+    modes = axial_modes(axial_vertices(4))
+    edges = np.array([[0.2, 3.0], [3.3, 6.2]])
+    grid = chain_grid(edges, 14)
+    profile = np.sin(math.pi * modes.nodes)
+    along, across = np.empty((grid.shape[1], 3, 6)), np.empty((grid.shape[1], 3, 6))
+    element_matrices(grid, *d, along, across)
+    scratch = (np.empty((grid.shape[1], 6)), np.empty(grid.shape[1] + 1), np.empty(grid.shape[1] + 1))
+    total = np.zeros((2 * grid.shape[1] + 1, len(modes.nodes)))
+    for k, (value, load, groove) in enumerate(
+        zip(modes.eigenvalues, modes.loads, modes.project(profile), strict=True)
+    ):
+        fields = np.empty((5, 2 * grid.shape[1] + 1))
+        mode_fields(grid, along, across, *w, aspect * value, load, groove, scratch, fields)
+        total += fields[0][:, None] * modes.shapes[k]
+
+    @BilinearForm
+    def diffusion(p, q, s):  # type: ignore[no-untyped-def]
+        gap = 1 + d[0] * np.sin(s.x[0]) - d[1] * np.cos(s.x[0])
+        return gap**3 * (p.grad[0] * q.grad[0] + aspect * p.grad[1] * q.grad[1])
+
+    @LinearForm
+    def motion(q, s):  # type: ignore[no-untyped-def]
+        return -(w[0] * np.sin(s.x[0]) - w[1] * np.cos(s.x[0])) * q
+
+    first = 0
+    for start, end in edges:
+        inside = (grid[0] >= start - 1e-9) & (grid[0] < end - 1e-9)
+        ring = np.append(grid[0][inside], end)
+        basis = Basis(MeshQuad.init_tensor(ring, axial_vertices(4)), ElementQuad2(), intorder=5)
+        matrix, load = asm(diffusion, basis).tocsr(), asm(motion, basis)
+        phi, z = basis.doflocs
+        pressure = np.where((np.abs(phi - start) < 1e-9) | (np.abs(phi - end) < 1e-9), np.sin(math.pi * z), 0.0)
+        free = (phi > start + 1e-9) & (phi < end - 1e-9) & (z > 1e-9) & (z < 1 - 1e-9)
+        pressure[free] = spsolve(matrix[free][:, free].tocsc(), (load - matrix @ (pressure * ~free))[free])
+        count = int(inside.sum())
+        angles = np.interp(np.arange(2 * count + 1) / 2, np.arange(count + 1), ring)
+        for angle, height, value in zip(phi, z, pressure, strict=True):
+            i = 2 * first + int(np.argmin(np.abs(angles - angle)))
+            j = int(np.argmin(np.abs(modes.nodes - height)))
+            assert total[i, j] == pytest.approx(value, abs=1e-12 * np.abs(pressure).max())
+        first += count
+
+
+@pytest.mark.parametrize("cavitation", ["sommerfeld", "half-sommerfeld"])
+@pytest.mark.parametrize("pressure", [1e5, 3e5])
+def test_derivatives_are_those_of_the_force(cavitation: str, pressure: float) -> None:
+    film = make_film(grooved(pressure, count=2, position=0.4), "finite", cavitation, MESH)
+    place, velocity, omega = CLEARANCE * np.array([0.4, -0.5]), CLEARANCE * np.array([30.0, -80.0]), 400.0
+    exact = evaluate(film, CLEARANCE, place, velocity, omega)
+    step = 1e-5 * CLEARANCE
+
+    def differences(of_place: float, of_velocity: float) -> Array:
+        columns = []
+        for unit in AXIS:
+            ahead = evaluate(film, CLEARANCE, place + of_place * unit, velocity + of_velocity * unit, omega).force
+            behind = evaluate(film, CLEARANCE, place - of_place * unit, velocity - of_velocity * unit, omega).force
+            columns.append((ahead - behind) / (2 * (of_place + of_velocity)))
+        return np.stack(columns, axis=1)
+
+    for measured, stated in (
+        (differences(step, 0.0), exact.by_displacement),
+        (differences(0.0, 400 * step), exact.by_velocity),
+    ):
+        assert measured == pytest.approx(stated, abs=1e-6 * float(np.abs(stated).max()))
+
+
+def test_turning_bearing_and_motion_turns_the_force() -> None:
+    turn = 1.1
+    row = rows()[10]
+    here = at(FILMS[1e5 * float(row["supply_pressure_bar"])], row).force
+    pressure = 1e5 * float(row["supply_pressure_bar"])
+    turned = make_film(grooved(pressure, position=turn), "finite", "half-sommerfeld", MESH)
+    there = at(turned, row, turn).force
+    rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    assert there == pytest.approx(rotation @ here, rel=1e-10)
+
+
+def test_supply_pressure_of_one_groove_pushes_the_resting_journal_down() -> None:
+    """Without motion only the hydrostatic pressure is left: from the top, and by symmetry without a side force."""
+    force = evaluate(FILMS[2e5], CLEARANCE, np.zeros(2), np.zeros(2), 0.0).force
+    assert force[1] < 0.0
+    assert abs(force[0]) < 1e-9 * abs(force[1])
+    three = make_film(grooved(2e5, count=3), "finite", "half-sommerfeld", MESH)
+    balanced = evaluate(three, CLEARANCE, np.zeros(2), np.zeros(2), 0.0).force
+    assert np.abs(balanced).max() < 1e-9 * abs(force[1])
+
+
+def test_a_narrow_groove_leaves_the_plain_film() -> None:
+    """At the widest gap Sommerfeld's pressure is ambient by symmetry: a groove at ambient pressure there changes
+    little, and less the narrower it is."""
+    plain = RectangularBearing(0.02, 0.025, CLEARANCE, 0.01, 1, 1e5, 1e5)
+    place, omega = CLEARANCE * np.array([0.3, -0.5]), 200.0
+    film = make_film(plain, "finite", "half-sommerfeld", Mesh(6, 96))
+    expected = evaluate(film, CLEARANCE, place, np.zeros(2), omega)
+    widest = math.atan2(place[1], place[0]) + 0.5 * math.pi
+    errors = []
+    for opening in (15.0, 0.5):
+        groove = AxialGroove(widest, math.radians(opening), 0.0)
+        bearing = RectangularBearing(0.02, 0.025, CLEARANCE, 0.01, 1, 1e5, 1e5, grooves=(groove,))
+        force = evaluate(make_film(bearing, "finite", "half-sommerfeld", MESH), CLEARANCE, place, np.zeros(2), omega)
+        errors.append(float(np.hypot(*(force.force - expected.force)) / np.hypot(*expected.force)))
+    assert errors[1] < min(1e-3, 0.2 * errors[0])
+    assert errors[0] < 0.1
+
+
+def test_the_plan_and_the_system_know_axial_grooves() -> None:
+    supply = 'bearing.supply={kind="axial-grooves",count=2,position="10 deg",opening_angle="15 deg",pressure="2 bar"}'
+    case = load_case("jeffcott", [supply])
+    plan = make_plan(case)
+    assert any(decision.value == "2 rectangles" for decision in plan.decisions)
+    bearing = make_system(case, plan).films.bearings[0]
+    assert [round(math.degrees(groove.position)) for groove in bearing.grooves] == [10, 190]
+    assert bearing.grooves[0].pressure == pytest.approx(1e5)

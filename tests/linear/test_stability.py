@@ -1,0 +1,368 @@
+"""`stability` against an independent program, closed forms and limits."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from films import system_of
+from paths import DATA
+
+import frbcli
+from frbcli.case.reading.load import load_case
+from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.static_machine import MachineAtRest
+from frbcli.errors import InputError, NotConverged
+from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.film import evaluate, make_film
+from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.linear.stability import Stability, StabilityPoint, eigenvalues, stability
+from frbcli.rotor.linear import LinearRotor
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+
+EQUILIBRIUM = DATA / "equilibrium.csv"
+CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}
+
+
+def reference() -> list[dict[str, str]]:
+    lines = [line for line in EQUILIBRIUM.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+def name_of(row: dict[str, str]) -> str:
+    return f"{row['clearance_um']}um-{row['theory']}-{row['speed_Hz']}Hz"
+
+
+def matrix(row: dict[str, str], name: str, unit: str) -> np.ndarray:
+    return np.array([[float(row[f"{name}{a}{b}_{unit}"]) for b in "xy"] for a in "xy"])
+
+
+@pytest.mark.parametrize("row", reference(), ids=name_of)
+def test_rests_where_an_independent_program_does(row: dict[str, str]) -> None:
+    case = load_case(CASES[row["clearance_um"], row["viscosity_mPas"]], [f"film.theory={row['theory']}"])
+    (point,) = stability(case, [float(row["speed_Hz"])]).points
+    (film,) = point.films
+    assert film.eccentricity == pytest.approx(float(row["eccentricity"]), rel=3e-3)
+    assert film.attitude_deg == pytest.approx(float(row["attitude_deg"]), abs=0.3)
+    # The reference differentiates its forces numerically. Its short bearing, where D is symmetric exactly, differs from
+    # that by 1e-3; small entries are differences of large ones and are compared on the scale of their matrix.
+    for found, expected in (
+        (film.stiffness, matrix(row, "K", "N_m")),
+        (film.damping, matrix(row, "D", "Ns_m")),
+    ):
+        np.testing.assert_allclose(found, expected, rtol=3e-3, atol=1e-3 * np.abs(expected).max())
+    assert point.growth == pytest.approx(float(row["eigenvalue_real_1_s"]), rel=5e-3)
+    assert point.critical.imag / (2 * math.pi) == pytest.approx(float(row["eigenvalue_Hz"]), rel=1e-3)
+
+
+@pytest.mark.parametrize(("name", "speed_Hz"), [("jeffcott-table-4-1", 167.4), ("jeffcott", 177.2)])
+def test_threshold_is_that_of_an_independent_program(name: str, speed_Hz: float) -> None:
+    threshold = stability(load_case(name)).threshold
+    assert threshold is not None
+    assert threshold.speed_Hz == pytest.approx(speed_Hz, rel=5e-3)
+    assert threshold.whirl_ratio == pytest.approx(0.51, abs=0.01)
+    assert threshold.frequency_Hz == pytest.approx(threshold.whirl_ratio * threshold.speed_Hz)
+
+
+def test_growth_is_zero_at_the_threshold_and_changes_sign_there() -> None:
+    case = load_case("jeffcott", ["film.theory=short"])
+    threshold = stability(case).threshold
+    assert threshold is not None
+    speeds = [threshold.speed_Hz * factor for factor in (1 - 1e-4, 1.0, 1 + 1e-4)]
+    below, at, above = (point.growth for point in stability(case, speeds).points)
+    assert below < 0.0 < above
+    assert abs(at) < 1e-5 * (above - below) / 2e-4  # within 1e-5 of the speed
+
+
+def test_threshold_does_not_depend_on_the_speeds_asked_for() -> None:
+    case = load_case("jeffcott", ["film.theory=short"])
+    asked = stability(case, [250.0, 25.0])
+    assert [point.speed_Hz for point in asked.points] == [250.0, 25.0]
+    whole = stability(case).threshold
+    assert asked.threshold is not None
+    assert whole is not None
+    assert asked.threshold.speed_Hz == pytest.approx(whole.speed_Hz, rel=1e-8)
+
+
+def test_supply_pressure_and_soft_shaft_lower_the_threshold() -> None:
+    thresholds = []
+    for pressure in (1, 2, 3):
+        found = stability(load_case("jeffcott", [f"bearing.supply.pressure={pressure} bar"])).threshold
+        assert found is not None
+        thresholds.append(found.speed_Hz)
+    assert thresholds == sorted(thresholds, reverse=True)
+    rigid, stiff, soft = (stability(load_case(name)).threshold for name in ("rigid", "jeffcott", "soft-shaft"))
+    assert rigid is not None
+    assert stiff is not None
+    assert soft is not None
+    assert rigid.speed_Hz > stiff.speed_Hz > soft.speed_Hz
+
+
+def test_stiff_bearings_leave_the_frequency_of_the_shaft() -> None:
+    """Rigid bearings: sqrt(c/m)/2 pi = 145.3 Hz (section 6.1). Film damping d goes with 1/C^3, and what is left of its
+    give with 1/d^2: with half the clearance the frequencies come closer by 2^6, or nearly so."""
+    shaft = math.sqrt(5e6 / 6.0) / (2 * math.pi)
+    errors = []
+    for clearance in (24, 12, 6):
+        case = load_case("jeffcott", ["film.theory=short", f"bearing.clearance={clearance} um"])
+        (point,) = stability(case, [150.0]).points
+        bending = point.oscillating[-2:].imag / (2 * math.pi)
+        errors.append(np.abs(bending / shaft - 1.0).max())
+    assert errors[0] > 20 * errors[1] > 400 * errors[2]
+    assert errors[2] < 2e-5
+
+
+@pytest.mark.parametrize("cavitation", ["sommerfeld", "half-sommerfeld"])
+def test_weightless_rigid_rotor_whirls_with_half_its_speed(cavitation: str) -> None:
+    """Concentric short bearing: with z = x + iy the film pulls with -b (z' - i omega/2 z), so that
+    m s^2 + 2 b (s - i omega/2) = 0. A section of width B has b = pi eta R B^3 / C^3 (a squeeze film damper), half of
+    it where half of the ring is clipped; a bearing has two sections."""
+    settings = ["rotor.gravity=0 m/s^2", "film.theory=short", f"film.cavitation={cavitation}"]
+    found = stability(load_case("rigid", settings), [2.0, 200.0])
+    section, radius, clearance, viscosity, mass = 10e-3, 12.5e-3, 35e-6, 12e-3, 6.1
+    b = 2 * math.pi * viscosity * section**3 * radius / clearance**3 * (0.5 if "half" in cavitation else 1.0)
+    for point in found.points:
+        omega = 2 * math.pi * point.speed_Hz
+        assert point.films[0].eccentricity == 0.0
+        assert math.isnan(point.films[0].attitude_deg)
+        roots = np.roots([mass, 2 * b, -1j * b * omega])
+        forward = roots[np.argmax(roots.real)]
+        assert point.critical == pytest.approx(forward, rel=1e-6)
+    slow = found.points[0]
+    assert slow.critical.imag / (2 * math.pi * slow.speed_Hz) == pytest.approx(0.5, rel=1e-4)
+    assert found.threshold is None
+    assert "Unstable from the lowest speed" in found.note
+
+
+@pytest.mark.parametrize("theory", ["short", "finite"])
+def test_coefficients_are_the_derivatives_of_the_force(theory: str) -> None:
+    case = load_case("jeffcott", [f"film.theory={theory}"])
+    plan = make_plan(case)
+    system = make_system(case, plan)
+    bearing, film, clearance = system.films.bearings[0], system.films.loop[0], system.clearances[0]
+
+    def force(displacement: np.ndarray, velocity: np.ndarray, omega: float) -> np.ndarray:
+        if theory == "finite":  # without the table that the coefficients come from
+            return direct_force(bearing, "half-sommerfeld", plan.mesh, displacement, velocity, omega)
+        return evaluate(film, clearance, displacement, velocity, omega).force
+
+    for point in stability(case, [12.0, 60.0, 240.0]).points:
+        omega, (at,) = 2 * math.pi * point.speed_Hz, point.films
+        place, rest = at.displacement * clearance, np.zeros(2)
+        small = 1e-4 * clearance
+        steps = small * np.eye(2)
+        k = -np.stack([force(place + s, rest, omega) - force(place - s, rest, omega) for s in steps], axis=1)
+        d = -np.stack([force(place, omega * s, omega) - force(place, -omega * s, omega) for s in steps], axis=1)
+        k, d = k / (2 * small), d / (2 * small * omega)
+        np.testing.assert_allclose(at.stiffness, k, atol=1e-3 * np.abs(k).max())
+        np.testing.assert_allclose(at.damping, d, atol=1e-3 * np.abs(d).max())
+
+
+def rigid_on_two_bearings(offset: float) -> LinearRotor:
+    """A rigid rotor of 6.1 kg in bearings at +-50 mm, centre of mass `offset` (m) from the middle; q = [x, y, tilt x,
+    tilt y] of the middle, the journals move with x +- 50 mm tilt."""
+    mass, inertia, polar, arm = 6.1, 8e-3, 5e-3, 50e-3
+    plane = np.array([[mass, mass * offset], [mass * offset, inertia + mass * offset**2]])
+    both = np.array([[1.0, arm], [1.0, -arm]])
+    journals = np.array([[[p[0], 0, p[1], 0], [0, p[0], 0, p[1]]] for p in both])
+    turn = np.zeros((4, 4))
+    turn[2, 3], turn[3, 2] = polar, -polar
+    weight = -9.81 * np.array([0.0, mass, 0.0, mass * offset])
+    none = np.zeros((4, 4))
+    points = (("a", journals[0]), ("b", journals[1]))
+    return LinearRotor(
+        np.kron(plane, np.eye(2)), none, turn, none, weight, np.zeros(4), np.zeros(4), journals, np.ones(2), points
+    )
+
+
+def test_two_equal_bearings_rest_and_swing_as_one_that_counts_twice() -> None:
+    case = load_case("rigid", ["film.theory=short", "rotor.gravity=9.81 m/s^2"])
+    one = make_system(case, make_plan(case))
+    two = system_of(rigid_on_two_bearings(0.0), one.films.bearings * 2, one.films.loop * 2)
+    omega = 2 * math.pi * 100.0
+    single, both = resting_position(one, omega), resting_position(two, omega)
+    np.testing.assert_allclose(two.rotor.journals @ both, [single, single], rtol=1e-9)
+    force = evaluate(one.films.loop[0], one.clearances[0], single, np.zeros(2), omega)
+    k, d = -force.by_displacement, -force.by_velocity
+    cylindrical = eigenvalues(one.rotor, omega, k[None], d[None])
+    found = eigenvalues(two.rotor, omega, np.stack([k, k]), np.stack([d, d]))
+    assert len(found) == 8
+    for value in cylindrical:
+        assert np.abs(found - value).min() < 1e-6 * abs(value)
+
+
+def test_unequal_loads_are_shared_by_the_levers() -> None:
+    """Centre of mass 10 mm from the middle of bearings at +-50 mm: they carry 60 and 40 per cent."""
+    case = load_case("rigid", ["film.theory=short"])
+    one = make_system(case, make_plan(case))
+    rotor = rigid_on_two_bearings(0.01)
+    omega = 2 * math.pi * 60.0
+    journals = rotor.journals @ resting_position(system_of(rotor, one.films.bearings * 2, one.films.loop * 2), omega)
+    for journal, share in zip(journals, (0.6, 0.4), strict=True):
+        carried = evaluate(one.films.loop[0], one.clearances[0], journal, np.zeros(2), omega).force
+        np.testing.assert_allclose(carried, [0.0, share * 6.1 * 9.81], atol=1e-7)
+
+
+def test_elastic_rotor_on_three_bearings_is_in_equilibrium() -> None:
+    """Statically indeterminate: the shaft's stiffness decides what each film carries."""
+    rng = np.random.default_rng(5)
+    case = load_case("rigid", ["film.theory=short"])
+    one = make_system(case, make_plan(case))
+    root = rng.normal(size=(9, 9))
+    journals = rng.normal(size=(3, 2, 9))
+    eye, none = np.eye(9), np.zeros((9, 9))
+    load = 30.0 * rng.normal(size=9)
+    rotor = LinearRotor(eye, none, none, 1e6 * root @ root.T, load, np.zeros(9), np.zeros(9), journals, np.ones(3), ())
+    omega = 2 * math.pi * 40.0
+    q = resting_position(system_of(rotor, one.films.bearings * 3, one.films.loop * 3), omega)
+    forces = [
+        selection.T @ evaluate(one.films.loop[0], one.clearances[0], selection @ q, np.zeros(2), omega).force
+        for selection in journals
+    ]
+    np.testing.assert_allclose(rotor.stiffness @ q, load + sum(forces), atol=1e-6)
+    assert np.linalg.norm(journals @ q, axis=1).max() < one.clearances[0]
+
+
+def test_gyroscopic_moments_split_the_tilting_modes() -> None:
+    """Rigid rotor in isotropic springs k at +-a: with inertia I, polar J, the tilting motion has the frequencies
+    (J Omega +- sqrt((J Omega)^2 + 8 I k a^2)) / (2 I)."""
+    k, arm, inertia, polar, omega = 4e6, 50e-3, 8e-3, 5e-3, 2000.0
+    springs = k * np.stack([np.eye(2)] * 2)
+    found = eigenvalues(rigid_on_two_bearings(0.0), omega, springs, np.zeros((2, 2, 2)))
+    root = math.sqrt((polar * omega) ** 2 + 8 * inertia * k * arm**2)
+    tilting = [(root - polar * omega) / (2 * inertia), (root + polar * omega) / (2 * inertia)]
+    bouncing = [math.sqrt(2 * k / 6.1)] * 2
+    expected = np.repeat(sorted(tilting + bouncing), 2)
+    np.testing.assert_allclose(np.abs(found.imag), expected, rtol=1e-6)
+    assert np.abs(found.real).max() < 1e-3
+
+
+def test_eigenvalues_come_in_the_stated_order() -> None:
+    (point,) = stability(load_case("jeffcott", ["film.theory=short"]), [150.0]).points
+    values = point.eigenvalues
+    keys = [(abs(value.imag), value.real, -value.imag) for value in values]
+    assert keys == sorted(keys)
+    assert len(values) == 8
+    assert values.sum().imag == pytest.approx(0.0, abs=1e-9 * np.abs(values).max())
+
+
+def test_modes_begin_with_those_that_grow_whether_they_oscillate_or_not() -> None:
+    pairs = np.array([-8 + 10j, 5 + 400j, -1 + 9000j, 70 + 90j])
+    point = StabilityPoint(100.0, (), np.concatenate([[-900.0, 30.0], pairs, pairs.conj()]))
+    assert point.modes.tolist() == [70 + 90j, 30, 5 + 400j, -1 + 9000j, -8 + 10j]
+    assert point.growing.tolist() == [70 + 90j, 30, 5 + 400j]
+    assert len(StabilityPoint(100.0, (), np.zeros(0, dtype=complex)).modes) == 0
+
+
+def test_film_that_keeps_oil_is_refused_under_the_key_that_says_so() -> None:
+    with pytest.raises(InputError) as refused:
+        stability(load_case("floating-ring", ["bearing.inner.cavitation=elrod"]), [100.0])
+    assert [fault.key for fault in refused.value.faults] == ["bearing.inner.cavitation"]
+    with pytest.raises(InputError) as refused:
+        stability(load_case("jeffcott-two-phase"), [100.0])
+    assert [fault.key for fault in refused.value.faults] == ["film.cavitation"]
+
+
+def test_one_speed_has_no_threshold_and_says_whether_it_is_stable() -> None:
+    for speed, found in ((100, "every motion decays"), (250, "a motion grows")):
+        settings = ["film.theory=short", f"speed.from={speed} Hz", f"speed.to={speed} Hz"]
+        result = stability(load_case("jeffcott", settings))
+        assert result.threshold is None
+        assert f"one speed only, {speed} Hz, where {found}" in result.note
+        assert "speed.to" in result.note
+
+
+def test_rotor_that_becomes_stable_again_is_told_beside_its_threshold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Growth of a made-up rotor: negative, positive from 177 Hz on, and negative again beyond 250 Hz."""
+    import frbcli.linear.stability as module
+
+    real = module._at_rest
+
+    def calms_down(machine: MachineAtRest, speed: float) -> StabilityPoint:
+        point = real(machine, speed)
+        return point if speed < 250.0 else replace(point, eigenvalues=-np.abs(point.eigenvalues.real) + 1j)
+
+    monkeypatch.setattr(module, "_at_rest", calms_down)
+    found = stability(load_case("jeffcott", ["film.theory=short"]))
+    assert found.threshold is not None
+    assert "No motion grows at 11 higher speeds, from 250 to 300 Hz." in found.note
+    late = stability(load_case("jeffcott", ["film.theory=short", "speed.from=200 Hz"]))
+    assert late.threshold is None
+    assert "Unstable from the lowest speed" in late.note
+    assert "No motion grows" in late.note
+
+
+def test_speed_without_resting_position_is_reported_and_the_rest_computed() -> None:
+    found = stability(load_case("jeffcott"), [1e-4, 50.0])
+    slow, fast = found.points
+    assert (slow.status, fast.status) == ("not-converged", "resting")
+    assert slow.films == ()
+    assert len(slow.eigenvalues) == 0
+    assert math.isnan(slow.growth)
+    assert "0.0001 Hz" in slow.problem
+    assert found.threshold is not None
+
+
+def test_no_resting_position_names_speed_residual_and_remedy() -> None:
+    case = load_case("jeffcott")
+    system = make_system(case, make_plan(case))
+    with pytest.raises(NotConverged, match=r"0\.0001 Hz.* N of 59\.8 N\. Ask for a higher speed"):
+        resting_position(system, 2 * math.pi * 1e-4)
+
+
+def test_threshold_outside_of_the_range_is_said() -> None:
+    low = stability(load_case("jeffcott", ["film.theory=short", "speed.to=100 Hz"]))
+    assert low.threshold is None
+    assert "above 100 Hz" in low.note
+    high = stability(load_case("jeffcott", ["film.theory=short", "speed.from=250 Hz"]))
+    assert high.threshold is None
+    assert "below 250 Hz" in high.note
+
+
+@pytest.mark.parametrize("speed", [0.0, -5.0, math.nan, math.inf])
+def test_speeds_that_are_none_are_refused(speed: float) -> None:
+    with pytest.raises(InputError, match="speed"):
+        stability(load_case("jeffcott", ["film.theory=short"]), [10.0, speed])
+
+
+def test_rotor_that_never_turns_is_told_so() -> None:
+    with pytest.raises(InputError, match="no speed above zero"):
+        stability(load_case("jeffcott", ["film.theory=short", "speed.to=0 Hz"]))
+
+
+def test_finer_mesh_moves_the_resting_position_little() -> None:
+    case = load_case("jeffcott")
+    system = make_system(case, make_plan(case))
+    finer = make_film(system.films.bearings[0], "finite", "half-sommerfeld", Mesh(10, 192))
+    films = replace(system.films, data=(finer,))
+    fine = replace(system, films=films)
+    for speed in (10.0, 100.0):
+        coarse, better = (resting_position(s, 2 * math.pi * speed)[[0, 2]] for s in (system, fine))
+        np.testing.assert_allclose(coarse, better, atol=2e-4 * system.clearances[0])
+
+
+def test_table_of_a_result_has_a_row_per_point() -> None:
+    found: Stability = frbcli.stability(load_case("jeffcott", ["film.theory=short"]), [30.0, 1e-6, 60.0])
+    table = found.to_pandas()
+    assert table["speed_Hz"].tolist() == [30.0, 1e-6, 60.0]
+    assert table["status"].tolist() == [point.status for point in found.points]
+    first = found.points[0].films[0]
+    assert table["eccentricity"][0] == first.eccentricity
+    assert table["stiffness_xy_N_m"][0] == first.stiffness[0, 1]
+    assert table["damping_yx_N_s_m"][0] == first.damping[1, 0]
+    assert table["growth_1_s"][2] == found.points[2].growth
+
+
+def test_table_of_several_films_names_them() -> None:
+    one_speed = ["film.cavitation=half-sommerfeld", "speed.from=600 Hz", "speed.to=600 Hz"]
+    found = frbcli.stability(load_case("floating-ring", one_speed))
+    table = found.to_pandas()
+    inner, outer = found.points[0].films
+    assert (inner.name, outer.name) == ("inner", "outer")
+    assert table["eccentricity_inner"][0] == inner.eccentricity
+    assert table["stiffness_xy_N_m_outer"][0] == outer.stiffness[0, 1]
+    assert "eccentricity" not in table

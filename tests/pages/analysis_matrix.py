@@ -1,0 +1,161 @@
+"""Writes docs/matrix.md, every analysis against every film and feature: `cd tests && python -m pages.analysis_matrix`.
+
+Each cell asks the gate that the analysis itself passes, with a case that has the film or feature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from paths import DOCS
+
+import frbcli
+from frbcli.bearing_tests.plan import kinematic_plan
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cycles.faults import check
+from frbcli.errors import Fault, InputError
+from frbcli.film.bearing_model.model import BearingModel
+from frbcli.linear.bearing_sheet import check_sheet
+from frbcli.linear.stability import check_machine
+
+PAGE = DOCS / "matrix.md"
+MODEL = "own"
+MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'
+TWO_PHASE = "film.cavitation=two-phase"
+GROOVES = 'bearing.supply={kind="axial-grooves", opening_angle="15 deg", pressure="2 bar"}'
+HOLES = 'bearing.supply={{kind="bores", count=6, diameter="2 mm", pressure="2 bar", on="{}"}}'
+POCKET = 'bearing.supply={kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'
+SLOTS = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", length="8 mm", pressure="2 bar"}'
+HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
+OIL = "oil.viscosity={grade='SAE 10W-40'}"
+STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
+SPRING = '{kind="coefficients", name="seal", stiffness="1e5 N/m"}'
+
+# Row of the table: a shipped case, and what is set in it.
+FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "half-Sommerfeld, tabulated": ("jeffcott", ()),
+    "half-Sommerfeld between axial grooves": ("jeffcott", (GROOVES,)),
+    "short bearing": ("jeffcott", ("film.theory=short",)),
+    "Sommerfeld": ("jeffcott", ("film.cavitation=sommerfeld",)),
+    "Reynolds": ("jeffcott", ("film.cavitation=reynolds",)),
+    "penalty": ("jeffcott", ("film.cavitation=penalty",)),
+    "Peeken": ("jeffcott", ("film.cavitation=peeken",)),
+    "Elrod": ("jeffcott", ("film.cavitation=elrod",)),
+    "two-phase": ("jeffcott", (TWO_PHASE,)),
+    "two-phase, published form": ("jeffcott", (TWO_PHASE, "film.two-phase.form=published")),
+    "a bearing model of one's own": ("jeffcott", (f"film.theory={MODEL}",)),
+    "floating ring": ("floating-ring", ("film.cavitation=half-sommerfeld",)),
+    "floating ring, two-phase": ("floating-ring", (TWO_PHASE,)),
+    "floating ring that does not turn": ("floating-ring", ("bearing.ring.spin=blocked",)),
+    "feed holes in the shell": ("jeffcott", (HOLES.format("shell"),)),
+    "feed holes in the journal": ("jeffcott", (HOLES.format("journal"),)),
+    "pocket": ("jeffcott", (POCKET,)),
+    "axial slots": ("jeffcott", (SLOTS,)),
+    "lobes": ("jeffcott", ("bearing.lobes={count=3, preload=0.5}",)),
+    "heat": ("jeffcott", (OIL, HEAT)),
+    "clearance steps": ("jeffcott", (STEP,)),
+    "elastic contact": ("jeffcott", ("contact={policy='elastic', stiffness='1e8 N/m'}",)),
+    "co-simulation": ("jeffcott", ("film.coupling=co-simulation",)),
+    "turbocharger on two bearings": ("turbocharger-heavy", ()),
+    "coefficients alone": ("seal", ()),
+}
+
+# Pairs of features that a run may have together.
+MODEL_THEORY = f"film.theory={MODEL}"
+PUBLISHED = (TWO_PHASE, "film.two-phase.form=published")
+APART = "film.coupling=co-simulation"
+PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "heat and clearance steps": ("jeffcott", (OIL, HEAT, STEP)),
+    "heat and the published form": ("jeffcott", (OIL, HEAT, *PUBLISHED)),
+    "heat and a bearing model of one's own": ("jeffcott", (OIL, HEAT, MODEL_THEORY)),
+    "heat and co-simulation": ("jeffcott", (OIL, HEAT, APART)),
+    "heat and floating rings": ("floating-ring-heat", ()),
+    "clearance steps and the published form": ("jeffcott", (STEP, *PUBLISHED)),
+    "clearance steps and a bearing model of one's own": ("jeffcott", (STEP, MODEL_THEORY)),
+    "clearance steps and co-simulation": ("jeffcott", (STEP, APART)),
+    "clearance steps and rings that turn": (
+        "floating-ring", ('bearing.outer.clearance_steps=[{time="0.1 s", clearance="75 um"}]',)
+    ),
+    "rings that turn and the published form": ("floating-ring", PUBLISHED),
+    "rings that turn and a bearing model of one's own": (
+        "floating-ring", (MODEL_THEORY, "film.cavitation=half-sommerfeld")
+    ),
+    "co-simulation and the published form": ("jeffcott", (*PUBLISHED, APART)),
+    "co-simulation and a bearing model of one's own": ("jeffcott", (APART, MODEL_THEORY)),
+    "co-simulation and rings that turn": ("floating-ring", (APART,)),
+    "co-simulation and several bearings": ("turbocharger-heavy", (APART,)),
+}  # fmt: skip
+
+
+def _kinematic(test: str) -> Callable[[Case], object]:
+    return lambda case: kinematic_plan(case, None, test)
+
+
+ANALYSES: dict[str, Callable[[Case], object]] = {
+    "run": frbcli.make_plan,
+    "rotation": _kinematic("rotation"),
+    "squeeze": _kinematic("squeeze"),
+    "whirl": _kinematic("whirl"),
+    "bearing": check_sheet,
+    "stability, response": lambda case: check_machine(case, [50.0]),
+    "limit cycles": lambda case: check(case, with_oil=True),
+}
+HEAD = """# What goes with what
+
+Every analysis against every film and feature. The table is made by the program: each cell asks the gate that the
+analysis itself passes, with a case that has the film or feature. `cd tests && python -m pages.analysis_matrix` writes
+this page, and a test checks that it is up to date. "run" stands for run-up, run-down, sweep, fit and compare.
+"""
+
+
+def page() -> str:
+    """The page in Markdown."""
+    frbcli.add_bearing(BearingModel(MODEL, "one's own", _force))
+    try:
+        reasons: list[str] = []
+        names = list(ANALYSES)
+        rows = ["| | " + " | ".join(names) + " |", "|" + " --- |" * (len(names) + 1)]
+        for name, (case, settings) in FILMS.items():
+            asked = ((case, [*settings, *_motion(analysis)], gate) for analysis, gate in ANALYSES.items())
+            rows.append(f"| {name} | " + " | ".join(_cell(reasons, refused(*each)) for each in asked) + " |")
+        rows += ["", "Two features together in a run:", "", "| | run |", "| --- | --- |"]
+        for name, (case, settings) in PAIRS.items():
+            rows.append(f"| {name} | {_cell(reasons, refused(case, settings, frbcli.make_plan))} |")
+    finally:
+        frbcli.remove_bearing(MODEL)
+    notes = [f"{number}. {told}" for number, told in enumerate(reasons, start=1)]
+    return "\n".join([HEAD, *rows, "", "Why not:", "", *notes, ""])
+
+
+def _cell(reasons: list[str], faults: Sequence[Fault]) -> str:
+    """Yes, or no with the numbers of the reasons, which are added to them."""
+    told = list(dict.fromkeys(reason(fault) for fault in faults))
+    reasons += [each for each in told if each not in reasons]
+    return f"no ({', '.join(str(reasons.index(each) + 1) for each in told)})" if told else "yes"
+
+
+def refused(name: str, settings: Sequence[str], gate: Callable[[Case], object]) -> tuple[Fault, ...]:
+    """The faults of a case in an analysis; empty if it can be computed."""
+    try:
+        gate(load_case(name, settings))
+    except InputError as error:
+        return error.faults
+    return ()
+
+
+def reason(fault: Fault) -> str:
+    """Why, with the value of the key."""
+    return f"`{fault.key} = {fault.value}` {fault.problem}"
+
+
+def _motion(analysis: str) -> tuple[str, ...]:
+    return (MOTION,) if analysis in ("rotation", "squeeze", "whirl") else ()
+
+
+def _force(dx, dy, vx, vy, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
+    return -1e6 * dx - 1e3 * vx, -1e6 * dy - 1e3 * vy
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

@@ -1,0 +1,411 @@
+"""Where results are written: they replace nothing but earlier results of their kind, and either whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from output_options import CALLS, CASE, RUN, SHORT, TABLE, Option, other_paths, output_options
+from paths import ROOT
+from synthetic_run import Rotor, signals
+
+from frbcli.case.reading.load import load_case
+from frbcli.case.reading.shipped import find_shipped
+from frbcli.cli.files import here
+from frbcli.cli.main import COMMANDS
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError
+from frbcli.plot.run.animation import animate_orbits
+from frbcli.results.files.kinds import PAGE, TABLES
+from frbcli.results.files.lock import locked
+from frbcli.results.files.tables import harmless_text, write_table
+from frbcli.results.files.write import write, written
+from frbcli.results.store import Header, Run, RunWriter, read_run
+from frbcli.runs.march import March
+from frbcli.runs.run import rundown, runup
+
+SETTINGS = ("film.theory=short", "speed.duration=0.1 s")
+OPTIONS = output_options()
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory with a case, a run of it, a measurement and a list of points."""
+    folder = tmp_path_factory.mktemp("files")
+    (folder / CASE).write_text(find_shipped("jeffcott"))
+    (folder / "bearing.toml").write_text(find_shipped("bearing"))
+    (folder / TABLE).write_text("t,x\n0,1\n1,2\n")
+    (folder / "points.csv").write_text("rotor.unbalance\n1 g*mm\n2 g*mm\n")
+    runup(load_case(folder / CASE, SETTINGS), folder / RUN)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def _inside(files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The working directory is a copy of these files."""
+    shutil.copytree(files, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To compute anything is a failure."""
+
+    def fail(*_: object, **__: object) -> None:
+        raise AssertionError("computed")
+
+    monkeypatch.setattr(March, "__init__", fail)
+    for place in ("linear.stability.stability", "linear.bearing_sheet.bearing_sheet", "linear.response.response",
+                  "cycles.limit_cycles.limit_cycles", "studies.fit.fit", "studies.accuracy.accuracy",
+                  "studies.sweep.sweep.sweep", "bearing_tests.kinematic._test"):  # fmt: skip
+        monkeypatch.setattr(f"frbcli.{place}", fail)
+
+
+# --- what is replaced ---
+
+
+def test_every_path_of_a_command_is_read_or_written() -> None:
+    assert other_paths() == []
+    assert {option.command for option in OPTIONS} == set(CALLS)
+    assert set(COMMANDS) - set(CALLS) == {"check", "schema"}  # write nothing
+    assert len(OPTIONS) >= 24
+
+
+@pytest.mark.usefixtures("nothing_runs")
+@pytest.mark.parametrize("option", [o for o in OPTIONS if not o.folder], ids=lambda o: f"{o.command} {o.name}")
+def test_no_result_replaces_a_case_a_run_or_a_measurement(
+    option: Option, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {name: Path(name).read_bytes() for name in (CASE, RUN, TABLE)}
+    suffix = {"--csv": ".csv", "--save": ".toml", "--ross": ".toml"}.get(option.name, ".png")
+    Path(f"run{suffix}").symlink_to(RUN)
+    os.link(CASE, f"case{suffix}")
+    for target in (CASE, TABLE, f"run{suffix}", f"case{suffix}"):
+        if option.command in ("runup", "rundown") and target.startswith("run"):
+            continue  # replaces runs, see below
+        assert frb([*CALLS[option.command], option.name, target]) == 2
+        assert re.search("is not|is read by", capsys.readouterr().err)
+        assert {name: Path(name).read_bytes() for name in before} == before
+    assert Path(f"run{suffix}").is_symlink()
+
+
+def test_a_directory_of_results_is_made_of_no_file() -> None:
+    for option in OPTIONS:
+        if option.folder:
+            for target in (CASE, RUN, "points.csv"):
+                before = Path(target).read_bytes()
+                assert frb([*CALLS[option.command], option.name, target]) == 2
+                assert Path(target).read_bytes() == before
+
+
+def test_a_list_in_place_of_the_table_of_its_sweep_is_kept(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("study").mkdir()
+    text = "point,rotor.unbalance,status\n,1 g*mm,\n"
+    Path("study/sweep.csv").write_text(text)
+    assert frb(["sweep", CASE, "--list", "study/sweep.csv", "--stability", "-o", "study"]) == 2
+    assert "is read by this command" in capsys.readouterr().err
+    assert Path("study/sweep.csv").read_text() == text
+
+
+def test_two_results_have_two_places(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.png").symlink_to("b.csv")
+    assert frb([*CALLS["bearing"], "--csv", "b.csv", "-o", "a.png"]) == 2
+    assert "two results" in capsys.readouterr().err
+
+
+def test_a_report_and_a_table_replace_their_like_and_nothing_else() -> None:
+    for words, name, other in ((["report", RUN], "a.html", "notes"), (["export", RUN], "a.csv", "t;x\n1;2\n")):
+        for _ in range(2):
+            assert frb([*words, "-o", name, "--quiet"]) == 0
+        assert not Path(name).read_bytes().startswith(other.encode())
+        Path(name).write_text("")
+        assert frb([*words, "-o", name, "--quiet"]) == 0
+        Path(name).write_text(other)
+        assert frb([*words, "-o", name, "--quiet"]) == 2
+        assert Path(name).read_text() == other
+
+
+def test_a_link_stays_one_and_what_it_names_is_replaced() -> None:
+    Path("there").mkdir()
+    Path("a.csv").symlink_to("there/b.csv")
+    Path("there/b.csv").write_text("")
+    Path("there/b.csv").chmod(0o640)
+    assert frb(["export", RUN, "-o", "a.csv", "--quiet"]) == 0
+    assert Path("a.csv").is_symlink()
+    assert Path("there/b.csv").read_text().startswith("time_s")
+    assert Path("there/b.csv").stat().st_mode & 0o777 == 0o640
+    assert os.listdir("there") == ["b.csv"]
+
+
+def test_a_pipe_takes_a_table_if_somebody_reads_it(capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo("pipe")
+    assert frb(["export", RUN, "-o", "pipe"]) == 2
+    assert "nobody reads this pipe" in capsys.readouterr().err
+    assert frb(["export", RUN, "-o", "a.csv"]) == 0
+    with Path("read").open("wb") as out, subprocess.Popen(["cat", "pipe"], stdout=out) as reader:
+        while frb(["export", RUN, "-o", "pipe"]) == 2:  # until it has opened it
+            pass
+        reader.wait(timeout=60.0)
+    assert Path("read").read_bytes() == Path("a.csv").read_bytes()
+    assert Path("pipe").is_fifo()
+
+
+# --- runs ---
+
+
+def test_a_run_is_replaced_by_force_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    before = Path(RUN).read_bytes()
+    other = load_case(CASE, (*SETTINGS, "oil.viscosity=13 mPa*s"))
+    same = load_case(CASE, SETTINGS)
+    for again, case in ((runup, other), (rundown, same)):
+        with pytest.raises(InputError, match=r"another case.*--force"):
+            again(case, RUN)
+    with pytest.raises(InputError, match="another case"):
+        frb_compare(other)
+    assert frb(["runup", CASE, *SHORT, "-o", RUN, "--no-picture"]) == 0
+    assert "holds this run already" in capsys.readouterr().err
+    assert Path(RUN).read_bytes() == before
+    assert runup(other, RUN, force=True).status == "finished"
+    assert Path(RUN).read_bytes() != before
+    Path(RUN).write_bytes(before[:-1])
+    with pytest.raises(InputError, match=r"cut short.*--force"):
+        runup(other, RUN)
+    assert Path(RUN).read_bytes() == before[:-1]
+
+
+def frb_compare(case: object) -> None:
+    """A comparison that keeps its runs where another one did."""
+    from frbcli.studies.compare import compare
+
+    Path("kept").mkdir()
+    shutil.copy(RUN, "kept/half-sommerfeld-short.h5")
+    compare(case, ["half-sommerfeld", "sommerfeld"], keep="kept")  # type: ignore[arg-type]
+
+
+HOLDS = "import sys, time; from pathlib import Path; from frbcli.results.files.lock import locked\n" + (
+    "with locked(Path(sys.argv[1])):\n    print('held', flush=True); time.sleep(60.0)"
+)
+
+
+@contextmanager
+def held(path: str) -> Iterator[subprocess.Popen[str]]:
+    """A process that writes at a path."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    words = [sys.executable, "-c", HOLDS, path]
+    with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, text=True) as it:
+        assert it.stdout is not None
+        assert it.stdout.readline() == "held\n"
+        yield it
+        it.kill()
+
+
+@pytest.mark.parametrize("link", [False, True])
+def test_a_second_run_is_refused_at_its_start(link: bool, capsys: pytest.CaptureFixture[str]) -> None:
+    if link:
+        Path("link.h5").symlink_to(Path.cwd() / "a.h5")
+    words = ["runup", CASE, *SHORT, "-o", "link.h5" if link else "a.h5", "--no-picture"]
+    with held("a.h5") as first:
+        assert frb(words) == 2
+        assert f"is being written by process {first.pid}." in capsys.readouterr().err
+        assert frb([*words, "--force"]) == 2
+        assert not Path("a.h5").exists()
+        Path("a.h5.0123abcd.part").write_text("of the other one")
+    Path("b.h5.0123abcd.part").write_text("of nobody")
+    assert Path("a.h5.lock").exists()  # it was killed
+    assert frb(words) == 0
+    assert sorted(path.name for path in Path().glob("?.h5*")) == ["a.h5", "b.h5.0123abcd.part"]
+
+
+def test_a_run_within_itself_is_refused() -> None:
+    case, said = load_case(CASE, SETTINGS), list[str]()
+
+    def again(_: object) -> None:
+        with pytest.raises(InputError) as caught:
+            runup(case, "a.h5", force=True)
+        said.append(str(caught.value))
+
+    assert runup(case, "a.h5", observe=again).status == "finished"
+    assert f"process {os.getpid()}" in said[0]
+    assert not Path("a.h5.lock").exists()
+
+
+def test_a_run_on_a_full_disk_leaves_no_lock(capsys: pytest.CaptureFixture[str]) -> None:
+    there = sorted(os.listdir())
+    with full_at(0):
+        assert frb(["runup", CASE, *SHORT, "-o", "a.h5", "--no-picture"]) == 2
+    assert "a.h5\n  output: cannot be written: File too large." in capsys.readouterr().err
+    assert sorted(os.listdir()) == there
+
+
+def test_a_second_sweep_is_refused_at_its_start(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("study").mkdir()
+    with held("study/sweep.jsonl") as first:
+        assert frb([*CALLS["sweep"], "-o", "study"]) == 2
+        assert f"is being written by process {first.pid}." in capsys.readouterr().err
+
+
+def test_two_writers_leave_a_whole_file() -> None:
+    Path("there").mkdir()
+    path = Path("there/a.csv")
+    with written(path, TABLES["csv"]) as first, written(path, TABLES["csv"]) as second:
+        assert first != second
+        first.write_text("film,1\n" * 1000)
+        second.write_text("film,2\n")
+    assert path.read_text() == "film,1\n" * 1000
+    assert os.listdir("there") == ["a.csv"]
+
+
+# --- whole or not at all ---
+
+
+@contextmanager
+def full_at(size: int) -> Iterator[None]:
+    """As a disk that becomes full: no file of the process may have more bytes."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+WRITING = {
+    "export": ["export", RUN, "-o", "a.csv"],
+    "mat": ["export", RUN, "-o", "a.mat", "--format", "mat"],
+    "report": ["report", RUN, "-o", "a.html"],
+    "plot": ["plot", RUN, "-o", "a.png"],
+    "bearing": [*CALLS["bearing"], "--no-picture", "--csv", "a.csv"],
+    "ross": [*CALLS["bearing"], "--no-picture", "--ross", "a.toml"],
+    "response": [*CALLS["response"][:-2], "--no-picture", "--csv", "a.csv"],
+    "cases": ["cases", "jeffcott", "-o", "a.toml"],
+}
+
+
+@pytest.mark.parametrize("way", WRITING)
+def test_a_full_disk_leaves_what_was_there(way: str, capsys: pytest.CaptureFixture[str]) -> None:
+    words = [*WRITING[way], "--quiet"]
+    target = next(word for word in words if word.startswith("a."))
+    if way != "cases":
+        assert frb(words) == 0
+    before = Path(target).read_bytes() if Path(target).exists() else None
+    there = sorted(os.listdir())
+    with full_at(100):
+        assert frb(words) == 2
+    assert f"file {target}\n  output: cannot be written: File too large." in capsys.readouterr().err
+    assert (Path(target).read_bytes() if Path(target).exists() else None) == before
+    assert sorted(os.listdir()) == there
+
+
+def test_an_animation_on_a_full_disk_leaves_nothing() -> None:
+    run, there = read_run(RUN), sorted(os.listdir())
+    animate_orbits(run, "a.gif", frames=2)
+    before = Path("a.gif").read_bytes()
+    with full_at(100), pytest.raises(InputError, match="File too large"):
+        animate_orbits(run, "a.gif", frames=2)
+    assert Path("a.gif").read_bytes() == before
+    assert sorted(os.listdir()) == sorted(["a.gif", *there])
+
+
+def test_an_interrupted_export_leaves_the_whole_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert frb(["export", RUN, "-o", "a.csv"]) == 0
+    before, there, rows = Path("a.csv").read_bytes(), sorted(os.listdir()), [0]
+    to_csv = pd.DataFrame.to_csv
+
+    def ending(table: pd.DataFrame, *arguments: object, **options: object) -> object:
+        rows[0] += 1
+        if rows[0] > 2:
+            raise KeyboardInterrupt
+        return to_csv(table, *arguments, **options)
+
+    monkeypatch.setattr("frbcli.results.export.LINES", 300)
+    monkeypatch.setattr(pd.DataFrame, "to_csv", ending)
+    assert frb(["export", RUN, "-o", "a.csv"]) == 130
+    assert (Path("a.csv").read_bytes(), sorted(os.listdir())) == (before, there)
+
+
+# --- names and texts of others ---
+
+
+@pytest.mark.parametrize("name", ["../../x", "-x", ".x", "/x", "..", "", "x y"])
+def test_the_name_of_a_case_makes_no_hidden_file_and_no_option(name: str) -> None:
+    path = here(name, ".h5")
+    assert path.parent == Path()
+    assert path.name[0] not in ".-"
+
+
+def test_a_case_with_the_name_of_another_directory_writes_here() -> None:
+    assert frb(["plot", "jeffcott", "--what", "law", "--set", "name=../../x", "--quiet"]) == 0
+    assert Path("x-law.png").is_file()
+
+
+HARMFUL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+cmd|x", "-2+3", " =1", "=1"]
+HARMLESS = ["1 g*mm", "-5 N", "+1.5e3 N*s/m", "-3.5 um", "--", "a=b", "", "-1", "[1, 2]"]
+
+
+def test_a_table_is_not_computed_by_a_spreadsheet_nor_obeyed_by_a_terminal(tmp_path: Path) -> None:
+    assert [harmless_text(text) for text in HARMFUL] == [f"'{text}" for text in HARMFUL]
+    assert [harmless_text(text) for text in HARMLESS if text != "--"] == [text for text in HARMLESS if text != "--"]
+    assert harmless_text("\x1b[2Jx\x07") == "?[2Jx?"
+    table = pd.DataFrame({"=film": [1.5, -2.0], "film": ["=1", "\x1b]0;x\x07"], "none": [None, np.nan]})
+    table = table[["film", "=film", "none"]]
+    write_table(table, tmp_path / "a.csv")
+    assert (tmp_path / "a.csv").read_text() == "film,'=film,none\n'=1,1.5,\n?]0;x?,-2.0,\n"
+
+
+def test_the_table_of_a_sweep_has_no_formula_of_its_list() -> None:
+    Path("points.csv").write_text("title\n\"=cmd|' /C calc'!A0\"\n\x1b[31mred\n")
+    words = ["sweep", CASE, *SHORT, "--list", "points.csv", "--stability", "--jobs", "1", "-o", "study", "--quiet"]
+    assert frb(words) in (0, 3)
+    table = Path("study/sweep.csv").read_text()
+    rows = list(csv.DictReader(table.splitlines()))
+    assert [row["title"][:2] for row in rows] == ["'=", "?["]
+    assert table.isprintable() or "\x1b" not in table
+
+
+def test_a_process_for_each_of_a_million_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["sweep", "jeffcott", "--set", "rotor.unbalance=1 g*mm,2 g*mm", "-o", str(tmp_path / "s")]
+    assert frb([*words, "--jobs", "1000000"]) == 2
+    assert "--jobs = 1000000: are more processes than this machine can run" in capsys.readouterr().err
+    assert not (tmp_path / "s").exists()
+
+
+@pytest.mark.parametrize(("end", "status"), [(1e-9, 0), (1e-30, 2), (1e-200, 2), (1e-300, 2)])
+def test_a_run_of_no_time_at_all_has_a_page_or_is_refused(
+    end: float, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = signals(Rotor(duration_s=0.2))
+    made["time_s"] = np.linspace(0.0, end, len(made["time_s"]))
+    units = {name: "s" if name == "time_s" else "Hz" if name.endswith("_Hz") else "m" if name.endswith("_m") else ""
+             for name in made}  # fmt: skip
+    writer = RunWriter(tmp_path / "run.h5", Header("t", "runup", "c", "", units, references={"clearance_m": 35e-6}))
+    writer.append(made)
+    run: Run = writer.finish("finished", {}, {}, [])
+    assert frb(["report", str(run.path)]) == status
+    if status:  # steps below 1e-15 s are those of no machine
+        assert "time_s has a wrong form" in capsys.readouterr().err
+        return
+    assert len(read_run(run.path)) == len(made["time_s"])
+    assert capsys.readouterr().err == ""
+    assert PAGE.holds(tmp_path / "run-report.html")
+
+
+def test_locks_of_a_file_system_without_them_stop_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("there").mkdir()
+    def unknown(_: int) -> None:
+        raise OSError(95, "Operation not supported")
+
+    monkeypatch.setattr("frbcli.results.files.lock._lock", unknown)
+    with locked(Path("there/a.h5")):
+        write(Path("there/a.html"), PAGE, "<!doctype html>")
+    assert os.listdir("there") == ["a.html"]

@@ -1,0 +1,633 @@
+"""Nothing computed is lost: runs that were interrupted, rows that are finished, files that cannot be written."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from paths import ROOT
+
+from frbcli.bearing_tests import kinematic
+from frbcli.case.reading.load import load_case
+from frbcli.cli.main import run as frb
+from frbcli.errors import InputError, NotConverged
+from frbcli.results.files.lock import locked
+from frbcli.results.store import Run, read_run
+from frbcli.runs.march import March
+from frbcli.runs.record.interrupt import deaf
+from frbcli.runs.run import rundown, runup
+from frbcli.studies import accuracy as ladder
+from frbcli.studies.compare import compare
+from frbcli.studies.sweep.sweep import Workers, sweep
+from frbcli.studies.verify import verify
+
+SETTINGS = ("film.theory=short", "speed.duration=0.1 s")
+QUICK = ["jeffcott", *(word for setting in SETTINGS for word in ("--set", setting))]
+MODELS = ["--cavitation", "half-sommerfeld,sommerfeld"]
+
+
+@pytest.fixture(autouse=True)
+def in_a_directory_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def ask_to_end(*_: object) -> None:
+    signal.raise_signal(signal.SIGINT)
+
+
+@pytest.fixture
+def interrupted(tmp_path: Path) -> Path:
+    """The file of a run of QUICK that was interrupted on its way."""
+    path = tmp_path / "run.h5"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("frbcli.runs.march.BUDGET", 100)
+        run = runup(load_case("jeffcott", SETTINGS), path, observe=ask_to_end)
+    assert (run.status, len(run) > 0) == ("interrupted", True)
+    return path
+
+
+# --- run files ---
+
+
+@pytest.mark.parametrize("again", [runup, rundown])
+def test_an_interrupted_run_is_not_replaced_unasked(again: Any, interrupted: Path) -> None:
+    before = interrupted.read_bytes()
+    with pytest.raises(InputError, match=r"--resume.*--force"):
+        again(load_case("jeffcott", SETTINGS), interrupted)
+    assert interrupted.read_bytes() == before
+    assert again(load_case("jeffcott", SETTINGS), interrupted, force=True).status == "finished"
+
+
+def test_command_names_the_ways_out_of_an_interrupted_run(
+    interrupted: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = interrupted.read_bytes()
+    assert frb(["runup", *QUICK, "-o", "run.h5"]) == 2
+    assert "--resume" in capsys.readouterr().err
+    assert interrupted.read_bytes() == before
+    assert frb(["runup", *QUICK, "-o", "run.h5", "--resume", "--force"]) == 2
+    assert interrupted.read_bytes() == before
+    assert frb(["runup", *QUICK, "-o", "run.h5", "--resume", "--no-picture"]) == 0
+    interrupted.write_bytes(before)
+    assert frb(["runup", *QUICK, "-o", "run.h5", "--force", "--no-picture"]) == 0
+
+
+def test_a_run_that_has_ended_is_replaced_as_the_readme_s_first_line_needs() -> None:
+    for _ in range(2):
+        assert frb(["runup", *QUICK, "-o", "run.h5", "--quiet"]) == 0
+        assert frb(["waterfall", "run.h5", "-o", "waterfall.png", "--window", "10 ms", "--quiet"]) == 0
+
+
+def test_an_interrupted_run_without_samples_is_worth_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr(March, "compile", ask_to_end)
+        assert frb(["runup", *QUICK, "-o", "run.h5"]) == 130
+    assert read_run("run.h5").status == "interrupted"
+    assert frb(["runup", *QUICK, "-o", "run.h5", "--no-picture"]) == 0
+
+
+# --- rows ---
+
+
+def after_calls(monkeypatch: pytest.MonkeyPatch, owner: Any, name: str, calls: int, error: BaseException) -> None:
+    """Have a function work for some calls and then raise."""
+    done, original = [0], getattr(owner, name)
+
+    def limited(*arguments: Any, **options: Any) -> Any:
+        done[0] += 1
+        if done[0] > calls:
+            raise error
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(owner, name, limited)
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "status"),
+    [(KeyboardInterrupt(), 130, "interrupted"), (NotConverged("no way\nto begin"), 3, "not-converged")],
+)
+def test_finished_rows_of_a_comparison_are_printed(
+    error: BaseException,
+    code: int,
+    status: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    after_calls(monkeypatch, March, "compile", 1, error)
+    assert frb(["compare", *QUICK, *MODELS, "--json"]) == code
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert found["status"] == status
+    (row,) = found["results"]
+    assert (row["cavitation"], row["status"]) == ("half-sommerfeld", "finished")
+    assert "half-sommerfeld short" in said.err
+    assert f"Not all models were run: {' '.join(str(error).split()) or status}" in said.err
+
+
+def test_a_comparison_without_a_row_ends_as_its_first_run() -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(March, "compile", ask_to_end)
+        assert frb(["compare", *QUICK, *MODELS]) == 130
+    with pytest.MonkeyPatch.context() as patch:
+        after_calls(patch, March, "compile", 0, NotConverged("no"))
+        assert frb(["compare", *QUICK, *MODELS]) == 3
+    assert os.listdir() == []
+
+
+def test_a_comparison_goes_on_with_the_interrupted_runs_that_it_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, models, folder = load_case("jeffcott", SETTINGS), ["half-sommerfeld", "sommerfeld"], Path("kept")
+    with monkeypatch.context() as patch:
+        patch.setattr("frbcli.runs.march.BUDGET", 100)
+        compare(case, models, keep=folder, observe=ask_to_end)
+    (begun,) = folder.iterdir()
+    first = begun.read_bytes()
+    with pytest.raises(InputError, match="another case"):
+        compare(load_case("jeffcott", (*SETTINGS, "speed.to=100 Hz")), models, keep=folder)
+    assert begun.read_bytes() == first
+    taken_up: list[str] = []
+    restore = March.restore
+    monkeypatch.setattr(March, "restore", lambda march, state: (taken_up.append("yes"), restore(march, state))[1])
+    assert [result.run.status for result in compare(case, models, keep=folder).results] == ["finished"] * 2
+    assert taken_up == ["yes"]
+
+
+def test_rungs_of_a_ladder_stay_when_it_is_interrupted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    after_calls(monkeypatch, ladder, "runup", 4, KeyboardInterrupt())
+    words = ["accuracy", "jeffcott", "--theory", "short", "--until", "10 ms", "--no-picture"]
+    assert frb([*words, "--json"]) == 130
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert (found["status"], len(found["ladder"])) == ("interrupted", 2)
+    assert "2 rungs are done" in said.err
+
+
+def test_a_ladder_without_its_reference_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    original = ladder.runup
+    monkeypatch.setattr(ladder, "runup", lambda *a, **o: replace(original(*a, **o), status="interrupted"))
+    with pytest.raises(KeyboardInterrupt):
+        ladder.accuracy(load_case("jeffcott"), 0.01, ["short"])
+
+
+def test_models_of_a_test_that_are_done_are_printed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    after_calls(monkeypatch, kinematic, "film_moment", 1, KeyboardInterrupt())
+    words = ["rotation", "bearing-axial-groove", "--set", "accuracy.mesh=[4, 16]", "--no-picture", "--json"]
+    assert frb([*words, "--cavitation", "half-sommerfeld,reynolds"]) == 130
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert (found["status"], [result["cavitation"] for result in found["results"]]) == (
+        "interrupted",
+        ["half-sommerfeld"],
+    )
+    assert "Interrupted" in said.err
+
+
+def test_an_interrupted_point_ends_a_sweep_in_this_process(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("frbcli.studies.sweep.sweep._compile", lambda _: None)
+    chunk = March.chunk
+    monkeypatch.setattr(March, "chunk", lambda march: (ask_to_end(), chunk(march))[1])
+    found = sweep(load_case("jeffcott", SETTINGS), {"rotor.unbalance": ["1 g*mm", "2 g*mm", "3 g*mm"]}, tmp_path / "s",
+                  workers=Workers(jobs=1))  # fmt: skip
+    assert [point.status for point in found.points] == ["interrupted"] * 3
+    assert len(list((tmp_path / "s" / "runs").iterdir())) == 1
+
+
+def test_an_interrupted_verification_is_no_second_run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = load_case("jeffcott", SETTINGS)
+    run = runup(case, "run.h5")
+    seen: list[float] = []
+
+    def observe(progress: Any) -> None:
+        seen.append(progress.t_s)
+        ask_to_end()
+
+    monkeypatch.setattr("frbcli.runs.march.BUDGET", 100)
+    assert verify(case, run, observe).status == "interrupted"
+    assert len(seen) == 1
+    monkeypatch.undo()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("frbcli.studies.verify.verify", ask_to_end)
+        assert frb(["runup", *QUICK, "-o", "again.h5", "--no-picture", "--verify", "--json"]) == 130
+    found = json.loads(capsys.readouterr().out)
+    assert (found["status"], found["error"]["verified"]) == ("finished", {"status": "interrupted"})
+
+
+# --- from outside ---
+
+
+def process(code: str, *words: str, **options: Any) -> subprocess.Popen[str]:
+    """frb in a process of its own, in which some code is run first."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)} | options.pop("variables", {})
+    whole = [sys.executable, "-c", f"{code}\nfrom frbcli.cli.process import main; main()", *words]
+    return subprocess.Popen(
+        whole, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
+    )
+
+
+def test_sigterm_leaves_the_finished_rows() -> None:
+    slow = """
+import time
+from frbcli.runs.march import March
+compile, runs = March.compile, []
+def second_is_slow(march):
+    runs.append(march)
+    if len(runs) == 2:
+        print("compiling", flush=True)
+        time.sleep(60.0)
+    compile(march)
+March.compile = second_is_slow
+"""
+    with process(slow, "compare", *QUICK, *MODELS, "--no-picture") as one:
+        assert one.stdout is not None
+        assert one.stdout.readline() == "compiling\n"
+        one.send_signal(signal.SIGTERM)
+        out, err = one.communicate(timeout=120.0)
+    assert one.returncode == 130
+    assert "half-sommerfeld short" in out
+    assert "Not all models were run: interrupted" in out
+    assert err == ""
+
+
+def test_ctrl_c_leaves_the_hard_cases_that_are_done() -> None:
+    words = ("cases", "--run-hard", "no-supply", "endless-whirl", "--json")
+    with process("", *words, start_new_session=True) as one:
+        assert one.stderr is not None
+        assert one.stderr.readline().startswith("1/2  ")
+        os.killpg(one.pid, signal.SIGINT)  # as a terminal does: the process beside it hears it, too
+        out, err = one.communicate(timeout=120.0)
+    assert one.returncode == 130
+    found = json.loads(out)
+    assert (found["status"], len(found["hard"])) == ("interrupted", 1)
+    assert "Interrupted: the other cases were not run." in err
+    assert "Traceback" not in err
+
+
+COMPILING = """
+import time, numba
+from frbcli.runs.march import March
+def compile(march):
+    print("compiling", flush=True)
+    while True:
+        numba.njit(lambda x: x * x + 1.0)(1.0)
+March.compile = compile
+"""
+
+
+@pytest.mark.parametrize(("number", "after_s"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 0.3), (signal.SIGHUP, 0.7)])
+def test_an_interruption_while_kernels_compile_is_quiet(number: signal.Signals, after_s: float) -> None:
+    with process(COMPILING, "runup", *QUICK, "-o", "run.h5") as one:
+        assert one.stdout is not None
+        assert one.stdout.readline() == "compiling\n"
+        time.sleep(after_s)
+        one.send_signal(number)
+        out, err = one.communicate(timeout=120.0)
+    lines = [line for line in err.splitlines() if line and not line.startswith("Compiling the kernels, once: ")]
+    assert (one.returncode, out, lines) == (130, "", ["interrupted"])
+
+
+@pytest.mark.parametrize("after_s", [0.0, 0.15, 0.4])
+def test_an_interruption_while_modules_are_imported_is_quiet(after_s: float) -> None:
+    begun = "import builtins; from frbcli.cli import process; print('begun', flush=True)\n"
+    listening = "listen = process.Interruption.listen\n" + (
+        "def first(self):\n    listen(self); print('listening', flush=True)\nprocess.Interruption.listen = first"
+    )
+    with process(begun + listening, "runup", *QUICK, "-o", "run.h5", "--set", "speed.duration=100 s") as one:
+        assert one.stdout is not None
+        assert [one.stdout.readline() for _ in range(2)] == ["begun\n", "listening\n"]
+        time.sleep(after_s)
+        one.send_signal(signal.SIGINT)
+        _, err = one.communicate(timeout=120.0)
+    assert one.returncode == 130
+    assert "Traceback" not in err
+    assert "Exception" not in err
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_that_a_library_drops_comes_again(number: signal.Signals) -> None:
+    dropping = """
+import time
+from frbcli.runs.march import March
+class Half:
+    def __del__(self):
+        raise AttributeError("was made in half")
+class Dropping:
+    def __del__(self):
+        print("dropping", flush=True)
+        time.sleep(60.0)
+def compile(march):
+    half, dropping = Half(), Dropping()
+    del dropping
+    until = time.monotonic() + 60.0
+    while time.monotonic() < until:
+        pass
+March.compile = compile
+"""
+    with process(dropping, "runup", *QUICK, "-o", "run.h5") as one:
+        assert one.stdout is not None
+        assert one.stdout.readline() == "dropping\n"
+        one.send_signal(number)
+        out, err = one.communicate(timeout=30.0)
+    assert (one.returncode, out, err.strip()) == (130, "", "interrupted")
+
+
+def full_at(size: int) -> Callable[[], None]:
+    """As a disk that becomes full: no file of the process may have more bytes."""
+    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+
+def test_a_disk_that_becomes_full_leaves_the_last_checkpoint() -> None:
+    hurry = "import frbcli.runs.run as r; r.CHECKPOINT_EVERY_s, r.CHECKPOINT_SHARE = 0.0, 1.0"
+    hurry += "; import frbcli.runs.march as u; u.BUDGET = 100"
+    runup(load_case("jeffcott", SETTINGS), "run.h5")  # has its kernels compiled, whose files may not be written then
+    size = Path("run.h5").stat().st_size
+    with process(hurry, "runup", *QUICK, "-o", "run.h5", "--force", preexec_fn=full_at(int(0.9 * size))) as one:
+        out, err = one.communicate(timeout=120.0)
+    assert (one.returncode, out) == (2, "")
+    assert "cannot be written: File too large. Free some space and continue" in err
+    assert "Traceback" not in err
+    assert os.listdir() == ["run.h5"]
+    kept = read_run("run.h5")
+    assert (kept.status, kept.t_end_s > 0.0) == ("interrupted", True)
+    assert runup(load_case("jeffcott", SETTINGS), "run.h5", resume=True).status == "finished"
+
+
+def test_a_full_disk_is_one_line_wherever_it_is_met(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/cache/of/kernels")
+    after_calls(monkeypatch, March, "compile", 0, full)  # numba does not expect it
+    assert frb(["runup", *QUICK, "-o", "run.h5", "--json"]) == 1
+    said = capsys.readouterr()
+    assert json.loads(said.out)["message"] == "No space left on device: /cache/of/kernels"
+    assert said.err == "frb: No space left on device: /cache/of/kernels\n"
+    monkeypatch.undo()
+    after_calls(monkeypatch, March, "compile", 0, OSError(errno.EIO, "a bug"))
+    with pytest.raises(OSError, match="a bug"):
+        frb(["runup", *QUICK, "-o", "run.h5"])
+
+
+def test_a_table_on_a_full_disk_is_not_left_in_part() -> None:
+    runup(load_case("jeffcott", SETTINGS), "run.h5")
+    for words in (["export", "run.h5"], ["export", "run.h5", "--format", "mat"]):
+        with process("", *words, preexec_fn=full_at(20_000)) as one:
+            out, err = one.communicate(timeout=120.0)
+        assert (one.returncode, out) == (2, "")
+        assert "cannot be written" in err
+        assert os.listdir() == ["run.h5"]
+
+
+@pytest.mark.parametrize("backend", ["nonsense", "gtk4agg"])
+def test_a_window_system_is_nobody_s_business(backend: str) -> None:
+    with process("", "runup", *QUICK, "-o", "run.h5", variables={"MPLBACKEND": backend}) as one:
+        _, err = one.communicate(timeout=120.0)
+    assert (one.returncode, err) == (0, "")
+    assert Path("run-summary.png").is_file()
+
+
+# --- places ---
+
+
+WAYS = {
+    "runup": (["runup", *QUICK], "run.h5", "run-summary.png"),
+    "rundown": (["rundown", *QUICK], "run.h5", "run-summary.png"),
+    "compare": (["compare", *QUICK, *MODELS], "a.png", "a.png"),
+    "stability": (["stability", *QUICK], "a.png", "a.png"),
+    "accuracy": (["accuracy", "jeffcott", "--until", "10 ms"], "a.png", "a.png"),
+    "rotation": (["rotation", "bearing-axial-groove"], "a.png", "a.png"),
+    "law": (["plot", "jeffcott", "--what", "law"], "a.png", "a.png"),
+    "waterfall": (["waterfall", "whole.h5"], "a.png", "a.png"),
+    "plot": (["plot", "whole.h5"], "a.png", "a.png"),
+    "export": (["export", "whole.h5"], "a.csv", "a.csv"),
+    "sweep": (["sweep", *QUICK, "--set", "rotor.unbalance=1 g*mm,2 g*mm"], "study", "study/sweep.png"),
+    "table": (["sweep", *QUICK, "--set", "rotor.unbalance=1 g*mm,2 g*mm"], "study", "study/sweep.csv"),
+}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A run file."""
+    return runup(load_case("jeffcott", SETTINGS), tmp_path_factory.mktemp("whole") / "run.h5").path.read_bytes()
+
+
+@pytest.fixture
+def nothing_runs(whole: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To compute anything from now on is a failure; there is a run in whole.h5."""
+    Path("whole.h5").write_bytes(whole)
+
+    def fail(*_: object) -> None:
+        raise AssertionError("computed")
+
+    monkeypatch.setattr(March, "__init__", fail)
+    monkeypatch.setattr("frbcli.linear.stability.stability", fail)
+    monkeypatch.setattr("frbcli.bearing_tests.kinematic._test", fail)
+
+
+@pytest.mark.usefixtures("nothing_runs")
+@pytest.mark.parametrize("way", WAYS)
+def test_a_place_that_is_a_directory_is_refused_before_the_work(
+    way: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words, output, place = WAYS[way]
+    Path(place).mkdir(parents=True)
+    assert frb([*words, "-o", output]) == 2
+    assert "is not a file" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("nothing_runs")
+@pytest.mark.parametrize("way", [way for way in WAYS if "sweep" not in WAYS[way][0]])
+def test_a_name_that_is_too_long_is_refused_before_the_work(way: str, capsys: pytest.CaptureFixture[str]) -> None:
+    words, output, _ = WAYS[way]
+    assert frb([*words, "-o", f"{'n' * 252}{Path(output).suffix}"]) == 2
+    assert "File name too long" in capsys.readouterr().err
+    assert os.listdir() == ["whole.h5"]
+
+
+@pytest.mark.usefixtures("nothing_runs")
+@pytest.mark.parametrize("length", [251, 247])  # with .part, with -summary.png in place of .h5
+def test_what_is_put_behind_the_name_of_a_run_counts(length: int, capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["runup", *QUICK, "-o", f"{'n' * (length - 3)}.h5"]) == 2
+    assert "File name too long" in capsys.readouterr().err
+    assert os.listdir() == ["whole.h5"]
+
+
+@pytest.mark.usefixtures("nothing_runs")
+@pytest.mark.parametrize("content", [None, "of the user"])
+def test_what_is_in_place_of_the_lock_of_a_run_is_named(
+    content: str | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lock = Path("run.h5.lock")
+    lock.mkdir() if content is None else lock.write_text(content)
+    for words in (["runup", *QUICK, "-o", "run.h5"], ["rundown", *QUICK, "-o", "run.h5", "--no-picture"]):
+        assert frb(words) == 2
+        assert "run.h5.lock" in capsys.readouterr().err
+    assert lock.is_dir() if content is None else lock.read_text() == content
+
+
+# --- pictures ---
+
+
+FULL = Path("/dev/full")
+
+
+@pytest.mark.parametrize("way", ["runup", "compare", "stability", "accuracy", "rotation", "sweep"])
+def test_a_picture_that_the_disk_does_not_take_is_a_remark(way: str, capsys: pytest.CaptureFixture[str]) -> None:
+    words, output, place = WAYS[way]
+    Path(place).parent.mkdir(exist_ok=True)
+    Path(place).symlink_to(FULL)
+    options = {"sweep": ["--stability", "--jobs", "1"], "stability": ["--speed", "30 Hz"],
+               "accuracy": ["--theory", "short"],
+               "rotation": ["--set", "accuracy.mesh=[4, 16]", "--cavitation", "half-sommerfeld"]}  # fmt: skip
+    assert frb([*words, "-o", output, *options.get(way, [])]) == 0
+    said = capsys.readouterr()
+    remarks = [line for line in said.err.splitlines() if not line.startswith(("1/2", "2/2"))]
+    assert remarks == [
+        f"No picture {place}: cannot be written: No space left on device. Choose another place with -o."
+    ]
+    assert said.out != ""
+
+
+@pytest.mark.parametrize(
+    "words", [["waterfall", "run.h5", "--window", "10 ms"], ["plot", "run.h5"], ["export", "run.h5"]], ids=" ".join
+)
+def test_a_file_that_a_command_is_for_is_an_error(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    runup(load_case("jeffcott", SETTINGS), "run.h5")
+    Path("a.png").symlink_to(FULL)
+    assert frb([*words, "-o", "a.png"]) == 2
+    assert "No space left on device" in capsys.readouterr().err
+    assert Path("a.png").is_symlink()
+
+
+def test_a_picture_that_cannot_be_drawn_leaves_run_document_and_code(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(_: Run) -> None:
+        raise RuntimeError("no font\nat all")
+
+    monkeypatch.setattr("frbcli.plot.run.summary.summary_figure", broken)
+    assert frb(["runup", *QUICK, "-o", "run.h5", "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["status"] == "finished"
+    assert said.err.endswith("No picture run-summary.png: RuntimeError: no font at all\n")
+    assert read_run("run.h5").status == "finished"
+
+
+def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    from matplotlib.figure import Figure
+
+    runup(load_case("jeffcott", SETTINGS), "run.h5")
+    Path("run-summary.png").write_text("older")
+
+    def broken(*_: object, **__: object) -> None:
+        raise ValueError("no")
+
+    monkeypatch.setattr(Figure, "savefig", broken)
+    assert frb(["plot", "run.h5", "--what", "summary"]) == 2
+    assert Path("run-summary.png").read_text() == "older"
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+def test_letters_that_a_font_lacks_are_one_remark(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["stability", *QUICK, "--speed", "30 Hz", "--set", "title=漢字 漢", "-o", f"a{suffix}"]
+    assert frb(words) == 0
+    said = capsys.readouterr()
+    assert f"Campbell diagram: a{suffix}" in said.out
+    expected = "" if suffix == ".svg" else f"a{suffix}: the font has no 漢, 字; boxes are drawn instead.\n"
+    assert said.err in (expected, f"a{suffix}: the font has no 漢, 字; boxes are drawn instead.\n")
+
+
+def test_a_dollar_in_a_title_is_one(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["stability", *QUICK, "--speed", "30 Hz", "--set", r"title=$\nonsense$ for 5 $", "-o", "a.svg"]
+    assert frb(words) == 0
+    assert capsys.readouterr().err == ""
+    assert r"$\nonsense$ for 5 $" in Path("a.svg").read_text()
+
+
+# --- signals ---
+
+SWALLOWING = """
+import sys, types, time, signal
+from pathlib import Path
+Path("swallowing.py").write_text('''
+import signal, time
+try:
+    signal.raise_signal(signal.SIGTERM)
+    time.sleep(0.05)
+except BaseException:
+    print("dropped", flush=True)
+''')
+sys.path.insert(0, "")
+import frbcli.case.reading.shipped as shipped
+def slow():
+    import swallowing
+    time.sleep(60.0)
+    return {}
+shipped.shipped_cases = slow
+"""
+
+
+def test_a_library_that_is_imported_drops_no_signal() -> None:
+    with process(SWALLOWING, "cases") as one:
+        out, err = one.communicate(timeout=30.0)
+    assert (one.returncode, out, err.strip()) == (130, "", "interrupted")
+
+
+def test_a_run_hears_an_interruption_that_was_dropped_before_it() -> None:
+    class Asked:
+        asked = signal.SIGTERM
+
+        def __call__(self, *_: object) -> None:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, Asked())
+    try:
+        assert runup(load_case("jeffcott", SETTINGS), "run.h5").status == "interrupted"
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def test_processes_of_a_sweep_ignore_what_is_sent_to_all() -> None:
+    numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
+    words = "import signal, sys; print([signal.getsignal(int(n)) == signal.SIG_IGN for n in sys.argv[1:]])"
+    with deaf():
+        done = subprocess.run([sys.executable, "-c", words, *(str(int(n)) for n in numbers)],
+                              capture_output=True, text=True, check=True)  # fmt: skip
+    assert done.stdout == "[True, True, True]\n"
+    assert [signal.getsignal(n) for n in numbers] != [signal.SIG_IGN] * 3
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_sweep_that_all_its_processes_are_to_end_is_quiet_and_resumes(number: signal.Signals) -> None:
+    words = ["sweep", *QUICK[:3], "--set", "speed.duration=200 s", "--set", "rotor.unbalance=1 g*mm,2 g*mm"]
+    with process("", *words, "--jobs", "2", "-o", "study", start_new_session=True) as one:
+        until = time.monotonic() + 60.0
+        while not list(Path("study").glob("runs/*.h5")) and time.monotonic() < until:
+            time.sleep(0.05)
+        time.sleep(0.3)
+        os.killpg(one.pid, number)
+        _, err = one.communicate(timeout=60.0)
+    assert one.returncode == 130
+    lines = [line for line in err.splitlines() if not line.startswith("Compiling")]
+    assert lines == [
+        "Interrupted; the same command resumes the sweep.",
+        "No picture: it needs one or two keys with several values, and a point with a whirl.",
+    ]
+    for run in Path("study/runs").glob("*.h5"):
+        with locked(run):  # nobody writes it any more
+            assert read_run(run).status == "interrupted"

@@ -1,0 +1,461 @@
+"""Steady heat: the balance of films, rings and walls, its limits, and machines that are warm."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from paths import DATA
+
+from frbcli.bearing_tests.kinematic import rotation, squeeze
+from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.errors import InputError, NotConverged
+from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.loads import loads
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow
+from frbcli.film.rectangles.film import make_film
+from frbcli.linear.stability import stability
+from frbcli.materials.oils import OILS
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.machine.warm import warm_case, warm_system
+from frbcli.scene.planning.plan import make_plan
+
+ZERO = 273.15
+RING = """
+title = "concentric floating ring"
+[rotor]
+kind = "rigid"
+mass = "6 kg"
+gravity = "0 m/s^2"
+[bearing]
+kind = "floating-ring"
+ring = { mass = "75 g", inertia = "20 kg*mm^2", conductivity = "60 W/(m*K)" }
+[bearing.inner]
+width = "20 mm"
+diameter = "25 mm"
+clearance = "40 um"
+supply = { kind = "circumferential-groove", pressure = "2 bar" }
+side_flow_factor = 0.6
+[bearing.outer]
+width = "16 mm"
+diameter = "40 mm"
+clearance = "50 um"
+supply = { kind = "circumferential-groove", pressure = "2 bar" }
+[oil]
+viscosity = { grade = "SAE 10W-40" }
+density = "830 kg/m^3"
+heat_capacity = "2100 J/(kg*K)"
+conductivity = "0.14 W/(m*K)"
+[thermal]
+model = "lumped"
+supply_temperature = "70 degC"
+[speed]
+from = "0 Hz"
+to = "900 Hz"
+duration = "3 s"
+"""
+CONCENTRIC = "thermal.side_flow=concentric"
+
+
+def ring_case(*settings: str) -> Case:
+    return load_case_text(RING, settings, name="ring")
+
+
+def printed() -> list[dict[str, float]]:
+    lines = (DATA / "thermal-concentric.csv").read_text(encoding="utf-8").splitlines()
+    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
+    return [{key: float(value) for key, value in row.items()} for row in rows]
+
+
+# --- the concentric limit --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("row", printed(), ids=lambda row: f"{row['speed_Hz']:.0f}")
+def test_concentric_ring_has_the_temperatures_of_an_independent_balance(row: dict[str, float]) -> None:
+    warm = warm_machine(ring_case(CONCENTRIC), row["speed_Hz"])
+    inner, outer = warm.films
+    (ring,) = warm.rings
+    found = (inner.temperature, outer.temperature, ring.inner, ring.outer)
+    expected = [row[f"T_{name}_degC"] + ZERO for name in ("inner", "outer", "ring_inner", "ring_outer")]
+    assert found == pytest.approx(expected, abs=0.1)
+    assert ring.speed_ratio == pytest.approx(row["ring_speed_ratio"], abs=1e-4)
+    for film, name in ((inner, "inner"), (outer, "outer")):
+        assert 1e3 * film.viscosity == pytest.approx(row[f"eta_{name}_mPas"], rel=2e-3)
+        assert film.power == pytest.approx(row[f"P_{name}_W"], rel=2e-3)
+        assert 1e6 * film.flow == pytest.approx(row[f"Q_{name}_ml_s"], rel=2e-3)
+    assert warm.balance < 1e-6
+
+
+def independent_balance(
+    speed: float, supply: float, mixing: float, nusselt: float, gauge: float, walls: tuple[float | None, float | None]
+) -> tuple[np.ndarray, float]:
+    """(inner, outer film, ring inside, outside) in K and the ring speed ratio of RING by a root finder of its own;
+    walls: temperatures of shaft and housing in K, None: adiabatic."""
+    from scipy.optimize import root
+
+    law, omega = OILS["SAE 10W-40"].law, 2.0 * math.pi * speed
+    radius, width, clearance = np.array([12.5e-3, 20e-3]), np.array([20e-3, 16e-3]), np.array([40e-6, 50e-6])
+    transfer = nusselt * 0.14 / clearance * 2.0 * math.pi * radius * width
+    conduction = 2.0 * math.pi * 60.0 * 20e-3 / math.log(40.0 / 25.0)
+
+    def state(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        eta = np.array([law.at(float(x)) for x in t[:2]])
+        k = 2.0 * math.pi * eta * radius**3 * width / clearance
+        ratio = k[0] / k.sum()
+        flow = 2.0 * 2.0 * math.pi * radius * clearance**3 * gauge / (12.0 * eta * 0.5 * width)
+        return k * np.array([1.0 - ratio, ratio]) ** 2 * omega**2, flow, float(ratio)
+
+    def left(t: np.ndarray) -> list[float]:
+        power, flow, _ = state(t)
+        oil = 830.0 * 2100.0 * flow * (t[:2] - supply) / mixing
+        to_ring = transfer * (t[:2] - t[2:])
+        to_walls = [0.0 if wall is None else h * (x - wall) for wall, h, x in zip(walls, transfer, t, strict=False)]
+        through = conduction * (t[2] - t[3])
+        films = power - oil - to_ring - np.array(to_walls)
+        return [*films, to_ring[0] - through, to_ring[1] + through]
+
+    best = min(
+        (root(left, np.full(4, supply + more), method="hybr") for more in (5.0, 20.0, 50.0, 90.0)),
+        key=lambda found: float(np.abs(found.fun).max()),
+    )
+    assert np.abs(best.fun).max() < 1e-6
+    return best.x, state(best.x)[2]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_other_rings_have_the_temperatures_of_an_independent_balance(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    speed, supply, nusselt = rng.uniform(50.0, 1500.0), rng.uniform(20.0, 110.0), rng.uniform(2.0, 8.0)
+    mixing, gauge = (0.5, 1.0)[seed % 2], rng.uniform(0.3, 4.0)
+    walls = [None if rng.random() < 0.4 else float(rng.uniform(40.0, 160.0)) for _ in range(2)]
+    told = [f"thermal.{name}={wall} degC" for name, wall in zip(("shaft", "housing"), walls, strict=True)
+            if wall is not None]  # fmt: skip
+    pressures = [f"bearing.{side}.supply.pressure={1.0 + gauge} bar" for side in ("inner", "outer")]
+    case = ring_case(f"thermal.supply_temperature={supply} degC", f"thermal.mixing={mixing}",
+                     f"thermal.nusselt={nusselt}", *pressures, *told)  # fmt: skip
+    warm = warm_machine(case, speed)
+    kelvin = tuple(None if wall is None else wall + ZERO for wall in walls)
+    expected, ratio = independent_balance(speed, supply + ZERO, mixing, nusselt, 1e5 * gauge, kelvin)  # type: ignore[arg-type]
+    found = [film.temperature for film in warm.films] + [warm.rings[0].inner, warm.rings[0].outer]
+    assert found == pytest.approx(expected.tolist(), abs=0.02)
+    assert warm.rings[0].speed_ratio == pytest.approx(ratio, abs=2e-5)
+
+
+def test_flow_of_a_concentric_film_is_the_formula_with_a_groove() -> None:
+    solved = warm_machine(ring_case("bearing.inner.side_flow_factor=1"), 300.0)
+    formula = warm_machine(ring_case("bearing.inner.side_flow_factor=1", CONCENTRIC), 300.0)
+    for one, other in zip(solved.films, formula.films, strict=True):
+        assert one.temperature == pytest.approx(other.temperature, abs=1e-3)
+        assert one.flow == pytest.approx(other.flow, rel=1e-4)
+
+
+def test_check_and_stability_tell_the_same_heat(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "ring.toml"
+    file.write_text(RING)
+    assert frb(["check", str(file), "--set", CONCENTRIC, "--json"]) == 0
+    checked = json.loads(capsys.readouterr().out)["thermal"]
+    arguments = ["stability", str(file), "--set", CONCENTRIC, "--no-picture", "--json"]
+    assert frb([*arguments, "--speed", "900 Hz", "--speed", "300 Hz"]) == 0
+    fast, slow = (point["thermal"] for point in json.loads(capsys.readouterr().out)["points"])
+    assert checked["films"][0]["temperature_K"] == pytest.approx(153.8 + ZERO, abs=0.1)
+    assert slow["films"][0]["temperature_K"] == pytest.approx(103.2 + ZERO, abs=0.1)
+    assert fast["rings"][0]["speed_ratio"] == pytest.approx(checked["rings"][0]["speed_ratio"], abs=1e-6)
+    assert set(checked["films"][0]) >= {"film", "temperature_K", "viscosity_Pa_s", "power_W", "flow_m3_s"}
+    assert set(checked["rings"][0]) == {"ring", "inner_K", "outer_K", "speed_ratio"}
+    assert checked["balance_relative"] < 1e-6
+
+
+def test_heat_is_told_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "ring.toml"
+    file.write_text(RING)
+    assert frb(["check", str(file)]) == 0
+    told = capsys.readouterr().out
+    assert "heat at the top speed" in told
+    assert "W with the oil" in told
+
+
+# --- closed forms ----------------------------------------------------------------------------------------------------
+
+SINGLE = ["thermal.supply_temperature=50 degC", "oil.viscosity={ grade = 'SAE 10W-40' }", "rotor.gravity=0",
+          "oil.density=830 kg/m^3", "oil.heat_capacity=2100 J/(kg*K)", "oil.conductivity=0.14 W/(m*K)",
+          "bearing.supply.pressure=2 bar", "film.theory=short"]  # fmt: skip
+
+
+def single(*settings: str) -> Case:
+    return load_case("jeffcott", [*SINGLE, *settings])
+
+
+@pytest.mark.parametrize("mixing", [0.5, 1.0])
+def test_adiabatic_film_warms_by_its_power_over_its_flow(mixing: float) -> None:
+    (film,) = warm_machine(single(f"thermal.mixing={mixing}"), 200.0).films
+    rise = film.temperature - 50.0 - ZERO
+    assert rise == pytest.approx(mixing * film.power / (830.0 * 2100.0 * film.flow), rel=1e-6)
+    radius, width, clearance, omega = 12.5e-3, 20e-3, 35e-6, 2.0 * math.pi * 200.0
+    petrov = 2.0 * math.pi * film.viscosity * omega**2 * radius**3 * width / clearance
+    assert film.power == pytest.approx(petrov, rel=1e-6)
+    flow = 2.0 * math.pi * 2.0 * radius * clearance**3 * 1e5 / (12.0 * film.viscosity * 0.5 * width)
+    assert film.flow == pytest.approx(flow, rel=1e-4)
+
+
+def test_walls_of_given_temperature_and_nodes_take_heat() -> None:
+    transfer = 3.77 * 0.14 / 35e-6 * 2.0 * math.pi * 12.5e-3 * 20e-3
+    given = warm_machine(single("thermal.housing=60 degC"), 200.0)
+    (film,) = given.films
+    assert given.steady.given == pytest.approx(transfer * (film.temperature - 60.0 - ZERO), rel=1e-6)
+    node = "thermal.housing={ capacity = '100 J/K', conductance = '5 W/K', temperature = '60 degC' }"
+    through = warm_machine(single(node), 200.0)
+    (film,) = through.films
+    series = 1.0 / (1.0 / transfer + 1.0 / 5.0)
+    assert through.steady.given == pytest.approx(series * (film.temperature - 60.0 - ZERO), rel=1e-6)
+    assert through.balance < 1e-6
+
+
+ROTATION = [
+    "bearing.supply={ kind = 'circumferential-groove', pressure = '2 bar' }", "oil.heat_capacity=2100 J/(kg*K)",
+    'oil.viscosity={ grade = "SAE 10W-40" }', "motion={eccentricity=0.6, angle='-60 deg', speed='50 Hz'}",
+]  # fmt: skip
+WARM_ROTATION = [*ROTATION, "thermal.model=lumped", "thermal.supply_temperature=50 degC"]
+
+
+@pytest.mark.parametrize("cavitation", ["half-sommerfeld", "two-phase"])
+def test_rotation_has_the_film_whose_heat_balances(cavitation: str) -> None:
+    """Without walls the film warms by half of its power over its flow, and its forces are those of that temperature."""
+    case = load_case("bearing", WARM_ROTATION)
+    (result,) = rotation(case, [cavitation]).results
+    assert result.heat is not None
+    assert result.loads is not None
+    (temperature,), (power,), (flow,) = result.heat.temperatures, result.heat.films.power, result.heat.films.flow
+    assert temperature - 50.0 - ZERO == pytest.approx(0.5 * power / (case.oil.density * 2100.0 * flow), rel=1e-4)
+    assert power == pytest.approx(-result.loads.torque.journal * 100.0 * math.pi, rel=1e-6)
+    assert result.heat.balance < 1e-5
+    alike = load_case("bearing", [*ROTATION, f"oil.temperature={temperature} K"])
+    (same,) = rotation(alike, [cavitation]).results
+    assert same.loads is not None
+    assert result.loads.force == pytest.approx(same.loads.force, rel=1e-5)
+
+
+def test_rotation_under_a_load_with_heat_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """More load makes the film thinner and its oil hotter; a squeeze has no steady heat."""
+    found = []
+    for load in (100, 400):
+        motion = f"motion={{load='{load} N', speed='50 Hz'}}"
+        sets = [word for setting in [*WARM_ROTATION[:3], *WARM_ROTATION[4:], motion] for word in ("--set", setting)]
+        assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture", "--json"]) == 0
+        (result,) = json.loads(capsys.readouterr().out)["results"]
+        assert result["force_N"] == pytest.approx([0.0, load], abs=1e-3 * load)
+        (film,) = result["thermal"]["films"]
+        found.append((film["power_W"], film["flow_m3_s"], film["temperature_K"]))
+    assert found[1][0] > found[0][0] * 0.9
+    assert found[1][1] > found[0][1]  # an eccentric film loses more oil
+    assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture"]) == 0
+    assert "the film when it is warm" in capsys.readouterr().out
+    with pytest.raises(InputError, match="no steady temperature"):
+        squeeze(load_case("squeeze", WARM_ROTATION[1:3] + WARM_ROTATION[4:]))
+
+
+def test_a_bearing_may_have_walls_and_supply_of_its_own() -> None:
+    own = single("thermal.housing=60 degC", "bearing.housing=adiabatic", "bearing.supply_temperature=40 degC")
+    other = single("thermal.supply_temperature=40 degC")
+    one, two = (warm_machine(case, 200.0).films[0] for case in (own, other))
+    assert one.temperature == pytest.approx(two.temperature)
+
+
+def test_clearances_follow_shaft_and_housing() -> None:
+    """(4.24): with both parts of steel at given temperatures."""
+    walls = ["thermal.shaft=120 degC", "thermal.housing=70 degC", "thermal.clearance=follows"]
+    (film,) = warm_machine(single(*walls), 200.0).films
+    assert film.clearance == pytest.approx(35e-6 + 12.5e-3 * 1.18e-5 * (70.0 - 120.0), rel=1e-9)
+    cold = ("bearing.clearance={ cold = '30 um', shell_temperature = '90 degC', journal_temperature = '90 degC', "
+            "shell_expansion = '2e-5 1/K', journal_expansion = '1e-5 1/K' }")  # fmt: skip
+    (film,) = warm_machine(single(*walls, cold), 200.0).films
+    assert film.clearance == pytest.approx(30e-6 + 12.5e-3 * (2e-5 * 50.0 - 1e-5 * 100.0), rel=1e-9)
+    (film,) = warm_machine(single("thermal.centrifugal_growth=follows"), 900.0).films
+    growth = 0.25 * 7870.0 * (2.0 * math.pi * 900.0 * 12.5e-3) ** 2 * 0.73 / 210e9 * 12.5e-3
+    assert film.clearance == pytest.approx(35e-6 - growth, rel=1e-9)
+
+
+# --- trends ----------------------------------------------------------------------------------------------------------
+
+
+def test_ring_speed_ratio_falls_with_heat_where_it_stands_without() -> None:
+    ratios = [warm_machine(ring_case(CONCENTRIC), speed).rings[0].speed_ratio for speed in (100.0, 400.0, 900.0)]
+    assert ratios[0] > ratios[1] > ratios[2]
+    isothermal = 12.5**3 * 20 / 40 / (12.5**3 * 20 / 40 + 20.0**3 * 16 / 50)
+    assert isothermal == pytest.approx(0.2761, abs=1e-3)
+    assert ratios[2] < 0.6 * isothermal
+
+
+def test_hotter_supply_thins_the_film_and_lowers_its_loss() -> None:
+    cold, hot = (warm_machine(ring_case(f"thermal.supply_temperature={t} degC"), 600.0) for t in (40, 100))
+    for one, other in zip(cold.films, hot.films, strict=True):
+        assert other.temperature > one.temperature
+        assert other.power < one.power
+        assert other.flow > one.flow
+
+
+def test_threshold_is_that_of_the_warm_machine() -> None:
+    """The case at the viscosity that the film has at the threshold has the same threshold."""
+    loaded = ["rotor.gravity=9.81", "thermal.supply_temperature=90 degC"]
+    found = stability(single(*loaded), [150.0]).threshold
+    assert found is not None
+    film = warm_machine(single(*loaded), found.speed_Hz).films[0]
+    viscosity = f"oil.viscosity={film.viscosity}"
+    isothermal = load_case("jeffcott", [*SINGLE[6:], "oil.density=830 kg/m^3", "rotor.gravity=9.81", viscosity])
+    again = stability(isothermal, [150.0]).threshold
+    assert again is not None
+    assert again.speed_Hz == pytest.approx(found.speed_Hz, rel=1e-4)
+
+
+# --- a warm machine without new tables -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        [],
+        ["bearing.supply.pressure=1 bar"],
+        ["film.theory=short"],
+        ["film.theory=short", "bearing.supply.pressure=1 bar"],
+        ["film.cavitation=sommerfeld"],
+        ["film.cavitation=reynolds"],
+        ["film.cavitation=two-phase"],
+    ],
+    ids=str,
+)
+def test_scaled_film_is_the_film_of_that_viscosity_and_clearance(settings: list[str]) -> None:
+    case = load_case("jeffcott", ["bearing.supply.pressure=2 bar", *settings])
+    plan = make_plan(case)
+    system = make_system(case, plan)
+    warm, clearance = np.array([7e-3]), np.array([31e-6])
+    scaled = warm_system(case, plan, system, warm, clearance)
+    again = make_system(warm_case(case, warm, clearance), plan)
+    assert scaled.drags == pytest.approx(again.drags)
+    place, velocity = np.array([12e-6, -9e-6]), np.array([1e-4, 2e-4])
+    one, other = (machine.films.force(0, place, velocity, 900.0) for machine in (scaled, again))
+    for name in ("force", "by_displacement", "by_velocity"):
+        expected = getattr(other, name)
+        assert np.allclose(getattr(one, name), expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+# --- what leaves a film ----------------------------------------------------------------------------------------------
+
+
+def rectangle(**changes: object) -> RectangularBearing:
+    values = {"width": 20e-3, "diameter": 25e-3, "clearance": 35e-6, "viscosity": 12e-3, "sections": 1,
+              "ambient_pressure": 1e5, "cavitation_pressure": 1e5}  # fmt: skip
+    return RectangularBearing(**(values | changes))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.2, 0.5, 0.8, 0.95])
+@pytest.mark.parametrize("pressure", [1e5, 3e5])
+def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) -> None:
+    """The same linear film on finite volumes, its outflow where the pressure falls towards the end."""
+    cells = ["film.solution=cells", "accuracy.mesh=[40, 240]", "film.cavitation=sommerfeld", "bearing.ends=oil-bath"]
+    case = load_case("jeffcott", [f"bearing.supply.pressure={pressure}", *cells])
+    (film,) = make_system(case, make_plan(case)).films.volumes
+    omega, d = 900.0, np.array([0.6, -0.8]) * eccentricity
+    motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
+    solution = FilmSolver(film).steady(motion)
+    bearing = rectangle(sections=2, grooved=True, groove_pressure=pressure - 1e5)
+    flow = make_end_flow(bearing, make_film(bearing, "finite", "half-sommerfeld", make_plan(case).mesh))
+    assert isinstance(flow, TableEndFlow)
+    w = 0.5 * omega * np.array([d[1], -d[0]])
+    found = bearing.clearance * end_flow(flow, *d, *w, 1.0)
+    assert found == pytest.approx(outflow(film, motion.d, solution.state.pressure), rel=5e-3, abs=1e-12)
+
+
+def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
+    """Half-Sommerfeld, without a supply: eps omega R C B, the oil that the wedge draws in."""
+    bearing = rectangle()
+    flow = make_end_flow(bearing, make_film(bearing, "short", "half-sommerfeld", None))  # type: ignore[arg-type]
+    assert isinstance(flow, TableEndFlow)
+    found = bearing.clearance * end_flow(flow, 0.4, 0.0, 0.0, -0.5 * 0.4 * 900.0, 1.0)
+    assert found == pytest.approx(0.4 * 900.0 * 12.5e-3 * 35e-6 * 20e-3, rel=1e-3)
+
+
+def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
+    settings = ["film.cavitation=sommerfeld", "bearing.ends=oil-bath", "film.solution=cells", "accuracy.mesh=[40, 240]"]
+    case = load_case("axial-groove", settings)
+    (film,) = make_system(case, make_plan(case)).films.volumes
+    plain = load_case("axial-groove")
+    system = make_system(plain, make_plan(plain))
+    flow = make_end_flow(system.films.bearings[0], system.films.loop[0])
+    d, omega = np.array([0.3, -0.4]), 900.0
+    motion = Motion((0.3, -0.4), (0.0, 0.0), omega)
+    w = 0.5 * omega * np.array([d[1], -d[0]])
+    found = system.clearances[0] * end_flow(flow, *d, *w, 1.0)
+    assert found == pytest.approx(outflow(film, motion.d, FilmSolver(film).steady(motion).state.pressure), rel=0.02)
+
+
+@pytest.mark.parametrize("cavitation", ["reynolds", "two-phase"])
+def test_side_flow_of_cells_balances_what_the_groove_feeds(cavitation: str) -> None:
+    case = load_case("jeffcott", [f"film.cavitation={cavitation}", "bearing.supply.pressure=3 bar"])
+    (film,) = make_system(case, make_plan(case)).films.volumes
+    motion = Motion((0.3, -0.4), (0.0, 0.0), 900.0)
+    solution = FilmSolver(film).steady(motion)
+    balance = loads(film, motion, solution).oil
+    near = outflow(film, motion.d, film.pressure(solution.state))
+    assert 0.0 < near <= balance.out_m3_s * (1.0 + 1e-9)
+
+
+# --- bad input -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "key", "words"),
+    [
+        (["oil.viscosity=12 mPa*s"], "oil.viscosity", "constant"),
+        (["bearing.inner.viscosity=12 mPa*s"], "bearing.inner.viscosity", "constant"),
+        (["bearing.inner.temperature=80 degC"], "bearing.inner.temperature", "no effect"),
+        (["thermal.supply_temperature=-170 degC"], "thermal.supply_temperature", "viscosity"),
+        (["thermal.supply_temperature=400 degC"], "thermal.supply_temperature", "hottest_film"),
+        (["thermal.shaft=adiabatisch"], "thermal.shaft", "100 degC"),
+        (["thermal.shaft={ capacity = 1 }"], "thermal.shaft.conductance", "missing"),
+        (["thermal.modell=lumped"], "thermal.modell", "model"),
+        (["thermal.model=lumpd"], "thermal.model", "lumped"),
+        (["thermal.mixing=0.2"], "thermal.mixing", "at least"),
+        (["bearing.ring.material=steal"], "bearing.ring.material", "steel"),
+        (["bearing.housing=500 degC"], "bearing.housing", "hottest_film"),
+    ],
+)
+def test_faults_of_heat(settings: list[str], key: str, words: str) -> None:
+    with pytest.raises(InputError) as raised:
+        ring_case(*settings)
+    faults = {fault.key: f"{fault.problem} {fault.remedy}" for fault in raised.value.faults}
+    assert key in faults
+    assert words in faults[key]
+
+
+def test_walls_without_heat_are_refused() -> None:
+    with pytest.raises(InputError, match="no effect without heat"):
+        load_case("jeffcott", ["bearing.housing=60 degC"])
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        (["bearing.inner.supply.pressure=1 bar", "bearing.outer.supply.pressure=1 bar"], "no way out"),
+        (["thermal.hottest_film=120 degC"], "film inner becomes hotter"),
+        (["thermal.clearance=follows", "thermal.shaft=280 degC", "thermal.shaft_material=aluminium",
+          "bearing.inner.clearance=20 um"], "closes the gap of the film inner"),
+    ],
+)  # fmt: skip
+def test_heat_that_does_not_balance_is_told(settings: list[str], words: str) -> None:
+    with pytest.raises(NotConverged, match=words):
+        warm_machine(ring_case(*settings), 900.0)
+
+
+def test_heat_is_refused_where_it_is_not_modelled() -> None:
+    for settings in (["film.coupling=co-simulation"], ["film.cavitation=two-phase", "film.two-phase.form=published"]):
+        with pytest.raises(InputError, match=r"\[thermal\]"):
+            make_plan(single(*settings))
