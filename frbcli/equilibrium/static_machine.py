@@ -23,7 +23,9 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class MachineAtRest:
     """A machine at omega rad/s. static: its films at their viscosities; resting: (n,) displacements in m; films:
-    coefficients and their error; at_rest: the films as they are solved; warm: the heat of the machine, None without."""
+    coefficients and their error; at_rest: the films as they are solved; warm: the heat of the machine, None without;
+    others: the same on other meshes, each with the share of the difference that is the error, see MeshFilms; none
+    without errors."""
 
     static: StaticFilms
     omega: float
@@ -31,6 +33,7 @@ class MachineAtRest:
     films: tuple[RestingFilm, ...]
     at_rest: FilmsAtRest
     warm: WarmMachine | None = None
+    others: tuple[tuple[FilmsAtRest, float], ...] = ()
 
     @property
     def system(self) -> System:
@@ -89,7 +92,7 @@ class StaticMachines:
             )
             for i, (name, force) in enumerate(zip(static.system.names, found.forces, strict=True))
         )
-        return MachineAtRest(static, omega, resting, films, found, warm)
+        return MachineAtRest(static, omega, resting, films, found, warm, tuple(others) if with_error else ())
 
 
 def _on_others(

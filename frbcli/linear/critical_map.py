@@ -23,7 +23,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.modes import film_springs
-from frbcli.linear.stability import StabilityPoint
+from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.rigid import rigid_rotor

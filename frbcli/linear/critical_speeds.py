@@ -19,7 +19,7 @@ from frbcli.case.schema import Case, FilmModel
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import FrbError, NotConverged
-from frbcli.linear.stability import eigenvalues
+from frbcli.linear.stability_point import eigenvalues
 from frbcli.scene.films import rings
 
 Array = NDArray[np.float64]

@@ -16,7 +16,8 @@ from frbcli.equilibrium.linearised import state_matrix
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
-from frbcli.linear.stability import OSCILLATING, stability_points
+from frbcli.linear.stability import stability_points
+from frbcli.linear.stability_point import OSCILLATING
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.rotor.ring import without_spins

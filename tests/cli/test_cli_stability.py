@@ -23,7 +23,9 @@ def test_command_emits_the_points_asked_for(
     assert said.err == ""
     document = json.loads(said.out)
     assert document["command"] == "stability"
-    assert set(document["threshold"]) == {"speed_Hz", "frequency_Hz", "whirl_ratio"}
+    uncertainty = {"speed_uncertainty_Hz", "frequency_uncertainty_Hz"}
+    assert set(document["threshold"]) == {"speed_Hz", "frequency_Hz", "whirl_ratio"} | uncertainty
+    assert all(0.0 < document["threshold"][key] < 0.1 for key in uncertainty)
     slow, fast, none = document["points"]
     assert (slow["speed_Hz"], fast["speed_Hz"]) == (25.0, 100.0)
     point = stability(load_case("jeffcott"), [25.0]).points[0]

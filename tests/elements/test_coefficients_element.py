@@ -23,7 +23,8 @@ from frbcli.errors import InputError
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.modes import natural_modes
 from frbcli.linear.response import response
-from frbcli.linear.stability import eigenvalues, stability, stability_points
+from frbcli.linear.stability import stability, stability_points
+from frbcli.linear.stability_point import eigenvalues
 from frbcli.rotor.over_speed import LinearPart
 from frbcli.runs.run import runup
 from frbcli.scene.machine.rotors import make_rotor

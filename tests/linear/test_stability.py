@@ -13,13 +13,16 @@ from paths import DATA
 
 import frbcli
 from frbcli.case.reading.load import load_case
+from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.errors import InputError, NotConverged
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.untabulated import direct_force
-from frbcli.linear.stability import Stability, StabilityPoint, eigenvalues, stability
+from frbcli.linear import stability as stability_room
+from frbcli.linear.stability import Stability, stability
+from frbcli.linear.stability_point import StabilityPoint, eigenvalues
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -66,6 +69,30 @@ def test_threshold_is_that_of_an_independent_program(name: str, speed_Hz: float)
     assert threshold.speed_Hz == pytest.approx(speed_Hz, rel=5e-3)
     assert threshold.whirl_ratio == pytest.approx(0.51, abs=0.01)
     assert threshold.frequency_Hz == pytest.approx(threshold.whirl_ratio * threshold.speed_Hz)
+
+
+@pytest.mark.parametrize(
+    ("name", "law", "mesh", "most"),
+    [
+        ("jeffcott", "half-sommerfeld", "[18, 288]", 0.1),
+        ("axial-groove", "half-sommerfeld", "[12, 192]", 0.5),
+        ("jeffcott", "reynolds", "", 0.5),
+    ],
+)
+def test_the_stated_error_of_a_threshold_holds(
+    name: str, law: str, mesh: str, most: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Against the threshold on a finer mesh: of a film on cells, 288 x 30. `most` is in Hz."""
+    chosen = (f"film.cavitation={law}",)
+    found = stability(load_case(name, chosen)).threshold
+    assert found is not None
+    near = (f"speed.from={0.98 * found.speed_Hz} Hz", f"speed.to={1.02 * found.speed_Hz} Hz")
+    monkeypatch.setattr(static_films, "CELLS", (288, 30))
+    monkeypatch.setattr(stability_room, "default_speeds", lambda case: (case.speed.start, case.speed.end))
+    exact = stability(load_case(name, [*chosen, *near, *([f"accuracy.mesh={mesh}"] if mesh else [])])).threshold
+    assert exact is not None
+    assert abs(found.speed_Hz - exact.speed_Hz) < found.speed_uncertainty_Hz < most
+    assert abs(found.frequency_Hz - exact.frequency_Hz) < found.frequency_uncertainty_Hz < most
 
 
 def test_growth_is_zero_at_the_threshold_and_changes_sign_there() -> None:
@@ -280,13 +307,13 @@ def test_rotor_that_becomes_stable_again_is_told_beside_its_threshold(monkeypatc
     """Growth of a made-up rotor: negative, positive from 177 Hz on, and negative again beyond 250 Hz."""
     import frbcli.linear.stability as module
 
-    real = module._at_rest
+    real = module.point_at_rest
 
     def calms_down(machine: MachineAtRest, speed: float) -> StabilityPoint:
         point = real(machine, speed)
         return point if speed < 250.0 else replace(point, eigenvalues=-np.abs(point.eigenvalues.real) + 1j)
 
-    monkeypatch.setattr(module, "_at_rest", calms_down)
+    monkeypatch.setattr(module, "point_at_rest", calms_down)
     found = stability(load_case("jeffcott", ["film.theory=short"]))
     assert found.threshold is not None
     assert "No motion grows at 11 higher speeds, from 250 to 300 Hz." in found.note

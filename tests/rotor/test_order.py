@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from frbcli.linear.stability import StabilityPoint, eigenvalues
+from frbcli.linear.stability_point import StabilityPoint, eigenvalues
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import fastest_first, first_largest, largest_first, ranks
 

@@ -20,7 +20,7 @@ from frbcli.cli.main import run as frb
 from frbcli.equilibrium.coefficients import RestingFilm
 from frbcli.errors import InputError
 from frbcli.linear.modes import film_springs, natural_modes
-from frbcli.linear.stability import eigenvalues
+from frbcli.linear.stability_point import eigenvalues
 from frbcli.plot.machine.modes import modes_figure
 from frbcli.rotor.jeffcott import jeffcott_rotor
 from frbcli.rotor.linear import LinearRotor

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from frbcli.cli.common import Terminal
-    from frbcli.linear.stability import StabilityPoint
+    from frbcli.linear.stability_point import StabilityPoint
 
 
 def errors_of(points: Iterable[StabilityPoint]) -> list[tuple[float, float]]:

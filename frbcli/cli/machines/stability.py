@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
@@ -24,7 +25,9 @@ from frbcli.cli.runs.live import counting, live_lines
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.method.threshold import ThresholdKind
-    from frbcli.linear.stability import Stability, StabilityPoint
+    from frbcli.linear.stability import Stability
+    from frbcli.linear.stability_point import StabilityPoint
+    from frbcli.linear.threshold import Threshold
 
 
 @click.command()
@@ -138,8 +141,17 @@ def _sentence(found: Stability) -> str:
         return found.note
     return (
         f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, initially with "
-        f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed.{found.note}"
+        f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed"
+        f"{_uncertain(threshold)}.{found.note}"
     )
+
+
+def _uncertain(threshold: Threshold) -> str:
+    """The expected errors of a threshold, where they are known."""
+    if math.isnan(threshold.speed_uncertainty_Hz):
+        return ""
+    speed, frequency = threshold.speed_uncertainty_Hz, threshold.frequency_uncertainty_Hz
+    return f" (expected errors {speed:.1g} and {frequency:.1g} Hz)"
 
 
 def _character(kind: ThresholdKind) -> str:
@@ -183,4 +195,6 @@ def _threshold(found: Stability) -> dict[str, float] | None:
         "speed_Hz": threshold.speed_Hz,
         "frequency_Hz": threshold.frequency_Hz,
         "whirl_ratio": threshold.whirl_ratio,
+        "speed_uncertainty_Hz": threshold.speed_uncertainty_Hz,
+        "frequency_uncertainty_Hz": threshold.frequency_uncertainty_Hz,
     }

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from frbcli.cli.common import Terminal
-    from frbcli.linear.stability import Stability, StabilityPoint
+    from frbcli.linear.stability import Stability
+    from frbcli.linear.stability_point import StabilityPoint
 
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 MODES_TOLD = 2  # in the one line of a single film

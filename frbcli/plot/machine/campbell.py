@@ -6,7 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.linear.stability import Stability, StabilityPoint, Threshold
+from frbcli.linear.stability import Stability
+from frbcli.linear.stability_point import StabilityPoint
+from frbcli.linear.threshold import Threshold
 from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 
 ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode

@@ -105,5 +105,7 @@ def _threshold(task: Task) -> SweepPoint:
         status = FINISHED if any(point.rests for point in found.sweep) else NOT_CONVERGED
         return SweepPoint(task.number, task.settings, status, found.note, (), cost)
     event = {"kind": THRESHOLD, "film": None, "t_s": None, "speed_Hz": at.speed_Hz,
-             "frequency_Hz": at.frequency_Hz, "frequency_ratio": at.whirl_ratio}  # fmt: skip
+             "frequency_Hz": at.frequency_Hz, "frequency_ratio": at.whirl_ratio,
+             "speed_uncertainty_Hz": at.speed_uncertainty_Hz,
+             "frequency_uncertainty_Hz": at.frequency_uncertainty_Hz}  # fmt: skip
     return SweepPoint(task.number, task.settings, FINISHED, "", (event,), cost)

@@ -1,0 +1,113 @@
+"""The threshold of stability: the lowest speed at which a whirl begins to grow, and its error."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from frbcli.case.schema import Case
+from frbcli.equilibrium.coefficients import LEAST
+from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.errors import NotConverged
+from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, machine_eigenvalues, point_at_rest
+from frbcli.scene.remedies import advised
+
+THRESHOLD_TOLERANCE = 1e-9  # relative tolerance of the speed: one step of brentq beyond 1e-6
+AHEAD = 1e-3  # of the speed, for the derivative of the eigenvalue
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """Where a whirl begins to grow: rotor speed and frequency of the whirl, with their expected errors by the mesh of
+    the films, NaN where they are not known."""
+
+    speed_Hz: float
+    frequency_Hz: float
+    speed_uncertainty_Hz: float = math.nan
+    frequency_uncertainty_Hz: float = math.nan
+
+    @property
+    def whirl_ratio(self) -> float:
+        """Frequency of the whirl over the rotor speed."""
+        return self.frequency_Hz / self.speed_Hz
+
+
+def find_threshold(
+    case: Case, machines: StaticMachines, sweep: Sequence[StabilityPoint]
+) -> tuple[Threshold | None, str]:
+    """The lowest speed at which the growth passes zero from below; a note where there is none, or where the rotor
+    becomes stable once more."""
+    resting = [point for point in sweep if point.rests]
+    if not resting:
+        return None, "No threshold: there is no resting position in the whole range of speeds."
+    slowest, fastest = resting[0], resting[-1]
+    if len(resting) == 1:
+        return None, _one_speed(slowest, len(sweep))
+    if slowest.growth > 0.0:
+        unstable = "Unstable from the lowest speed on: a threshold, if there is one, lies below"
+        beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
+        return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
+    for place, (below, above) in enumerate(itertools.pairwise(resting)):
+        if above.growth > 0.0:
+            threshold, problem = _crossing(case, machines, below.speed_Hz, above.speed_Hz)
+            return threshold, problem + _stable_again(resting[place + 1 :])
+    return None, f"Stable up to the highest speed: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
+
+
+def _one_speed(point: StabilityPoint, tried: int) -> str:
+    """Why a single speed has no threshold."""
+    speed, found = f"{point.speed_Hz:.4g} Hz", "a motion grows" if point.growth > 0.0 else "every motion decays"
+    if tried > 1:
+        return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {found}."
+    return (
+        f"No threshold is sought: there is one speed only, {speed}, where {found}. "
+        "Widen the range of speed.from and speed.to."
+    )
+
+
+def _stable_again(points: Sequence[StabilityPoint]) -> str:
+    """Where no motion grows any more, of points that begin with an unstable one."""
+    stable = [point.speed_Hz for point in points if point.growth <= 0.0]
+    if not stable:
+        return ""
+    return f" No motion grows at {len(stable)} higher speeds, from {stable[0]:.4g} to {stable[-1]:.4g} Hz."
+
+
+def _crossing(case: Case, machines: StaticMachines, low: float, high: float) -> tuple[Threshold | None, str]:
+    """The threshold between two speeds in Hz."""
+    from scipy.optimize import brentq  # runs, which need eigenvalues alone, need not wait for its import
+
+    def growth(speed: float) -> float:
+        return _critical(machines, speed).real
+
+    try:
+        with advised(case):
+            speed = brentq(growth, low, high, xtol=THRESHOLD_TOLERANCE * low, rtol=THRESHOLD_TOLERANCE)
+            return _with_error(machines, speed), ""
+    except NotConverged as error:
+        return None, f"A threshold lies between {low:.4g} and {high:.4g} Hz, but was not found: {error}"
+
+
+def _critical(machines: StaticMachines, speed: float) -> complex:
+    """The critical eigenvalue in 1/s at a speed in Hz."""
+    return point_at_rest(machines.at(2 * math.pi * speed, with_error=False), speed).critical
+
+
+def _with_error(machines: StaticMachines, speed: float) -> Threshold:
+    """The threshold at a speed in Hz. Its error is the distance to the thresholds on the other meshes, to first order
+    in the eigenvalues there."""
+    machine = machines.at(2 * math.pi * speed)
+    own = point_at_rest(machine, speed).critical
+    frequency = own.imag / (2 * math.pi)
+    slope = (_critical(machines, speed * (1.0 + AHEAD)) - own) / (AHEAD * speed)
+    known = machine.static.case.bearings == () or bool(machine.others)
+    least = (LEAST if machine.static.case.bearings else THRESHOLD_TOLERANCE) if known else math.nan
+    speeds, frequencies = [least * speed], [least * frequency]
+    for films, share in machine.others:
+        apart = critical_eigenvalue(machine_eigenvalues(machine, films)) - own
+        ahead = -apart.real / slope.real
+        speeds.append(share * abs(ahead))
+        frequencies.append(share * abs(apart.imag + slope.imag * ahead) / (2 * math.pi))
+    return Threshold(speed, frequency, max(speeds), max(frequencies))
