@@ -92,6 +92,7 @@ def pages(source: Path) -> None:
         (source / name).write_text(text, encoding="utf-8")
     shutil.copy(DOCS / "tutorial.ipynb", source)
     shutil.copytree(DOCS / "images", source / "images")
+    shutil.copy(DOCS / "site" / "equations.css", source)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     readme = readme.replace("](docs/README.md)", "](contents.md)").replace("](docs/", "](")
     readme = re.sub(r"\[([^\]]*)\]\((?:LICENSE|CHANGELOG\.md|cases/[^)]*|tests/[^)]*|frbcli/[^)]*)\)", r"\1", readme)
@@ -214,12 +215,12 @@ def _escaped(words: str) -> str:
 
 
 def configuration(source: Path, target: Path) -> str:
-    """Of MkDocs: no fonts and scripts from elsewhere."""
+    """Settings of MkDocs: no fonts and scripts from elsewhere, equations by equations.py."""
     commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
     guides = ("case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements", "report",
               "bearing-sheet", "rotors", "floating-rings", "elements", "limit-cycles", "couplings",
               "sweeps")  # fmt: skip
-    science = ("theory", "heat", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
+    science = ("theory", "equations", "heat", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
 
     def entries(names: tuple[str, ...]) -> str:
         return "\n".join(f"      - {name.replace('-', ' ')}: {name}.md" for name in names)
@@ -233,7 +234,14 @@ theme:
   font: false
   features: [navigation.sections, content.code.copy]
 plugins: [search]
-markdown_extensions: [tables, fenced_code, toc]
+markdown_extensions:
+  - tables
+  - fenced_code
+  - toc
+  - pymdownx.arithmatex:
+      generic: true
+hooks: [{DOCS / "site" / "equations.py"}]
+extra_css: [equations.css]
 validation:
   links:
     anchors: warn

@@ -118,3 +118,37 @@ def test_rows_of_the_page_of_additions_name_what_is_there() -> None:
             assert re.search(rf"^(def |class )?{name}\b", (ROOT / path).read_text(encoding="utf-8"), re.MULTILINE), what
     named = [path for path in re.findall(r"`((?:frbcli|tests)/[\w./-]+)`", text) if not (ROOT / path).exists()]
     assert named == []
+
+
+def equation_rows() -> list[tuple[str, list[str]]]:
+    """Numbers and files of the first table of the page of equations."""
+    text = (ROOT / "docs" / "equations.md").read_text(encoding="utf-8").partition("\n## ")[0]
+    rows = [line.split(" | ") for line in text.splitlines() if line.startswith("| (")]
+    return [(row[0], re.findall(r"`(frbcli/[\w/]+\.py)`", row[2])) for row in rows]
+
+
+def expanded(numbers: str) -> list[str]:
+    """'(4.8) to (4.10)' and '(4.36), (4.37)' as single numbers."""
+    found = re.findall(r"\((\w)\.(\d+)\)", numbers)
+    if " to " not in numbers:
+        return [f"({chapter}.{number})" for chapter, number in found]
+    (chapter, first), (_, last) = found
+    return [f"({chapter}.{number})" for number in range(int(first), int(last) + 1)]
+
+
+def test_files_of_the_page_of_equations_name_their_equations() -> None:
+    rows = equation_rows()
+    assert len(rows) > 30
+    for numbers, files in rows:
+        assert files, numbers
+        texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in files}
+        missing = [name for name, text in texts.items() if not any(n in text for n in expanded(numbers))]
+        assert missing == [], numbers
+
+
+def test_every_equation_that_the_code_names_is_on_the_page_of_equations() -> None:
+    elsewhere = {"(3.20)"}  # of Kuznetsov, in frbcli/cycles/method/criticality.py
+    listed = {number for numbers, _ in equation_rows() for number in expanded(numbers)} | elsewhere
+    for file in sorted((ROOT / "frbcli").rglob("*.py")):
+        named = re.findall(r"(?<!\w)\((?:[2-6]|B)\.[1-9]\d?\)", file.read_text(encoding="utf-8"))
+        assert [number for number in named if number not in listed] == [], file
