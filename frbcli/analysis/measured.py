@@ -11,37 +11,72 @@ import numpy as np
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.tacho import tacho_speed
-from frbcli.analysis.signals import Values, joined, located
+from frbcli.analysis.signals import Values, point_of
 from frbcli.analysis.spectra.sampling import even_steps, times
-from frbcli.results.measured import Columns, read_columns, wrong_file
+from frbcli.nearest import did_you_mean
+from frbcli.results.measured.columns import Columns, wrong_file
+from frbcli.results.measured.reading import read_columns
 from frbcli.results.records import LARGEST, SMALLEST, wrong_values
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 from frbcli.units import SPEED, ValueFault, quantity
 
 MEASURED = "measured"  # the command of such a run
+USUAL = {"--unit": 1e-6, "--time-unit": 1.0, "--speed-unit": 1.0}  # SI, of columns without a unit
+SPELLINGS = {"mil": "thou", "mils": "thou", "u/min": "rpm", "upm": "rpm"}  # of units, in measured files
+MOST_NUMBERS = 8  # of a file, in a remedy
+EXAMPLES = {"--unit": '"125 um"', "--time-unit": '"1 ms"', "--speed-unit": '"1 rpm"'}
 SAME = 1e-6  # relative difference of two units that are one
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """Where a motion stands in a file. x, y: columns of the displacement of a journal, y may be left out; time: column
-    of the times, or rate in samples per second; speed: column of the rotor speed, or speed_Hz a constant one, or tacho
-    the column of a signal with `pulses` per revolution; unit_m, time_unit_s, speed_unit_Hz: what 1 in the columns of
-    displacements, times and speeds is; clearance: m, to which amplitudes refer."""
+    """Where a motion stands in a file.
+
+    Parameters
+    ----------
+    x : str
+        Column of the displacement of a journal.
+    clearance : float, optional
+        Radial clearance in m, to which amplitudes refer. Without it there are amplitudes in m, and no events.
+    y : str, optional
+        Column of the other displacement; frb finds events only if both are given.
+    time : str, optional
+        Column of the times.
+    rate : float or str, optional
+        Samples per second in place of `time`, or the name of a single number of the file, such as "fs".
+    speed : str, optional
+        Column of the rotor speed.
+    speed_Hz : float, optional
+        A constant rotor speed in Hz, in place of `speed`.
+    tacho : str, optional
+        Column of a signal with pulses, from which the rotor speed follows, in place of `speed`.
+    pulses : int
+        Pulses of `tacho` per revolution.
+    unit_m, time_unit_s, speed_unit_Hz : float, optional
+        What 1 in the columns of displacements, times and speeds is, in m, s and Hz. None: the unit that the file
+        tells, or else 1 um, 1 s and 1 Hz.
+
+    Examples
+    --------
+    >>> from frbcli import Measurement
+    >>> given = Measurement("x", clearance=35e-6, y="y", time="t", speed="n", unit_m=None)
+    >>> given.pulses
+    1
+    """
 
     x: str
-    clearance: float
+    clearance: float | None = None
     y: str | None = None
     time: str | None = None
-    rate: float | None = None
+    rate: float | str | None = None
     speed: str | None = None
     speed_Hz: float | None = None
     tacho: str | None = None
     pulses: int = 1
-    unit_m: float = 1.0
-    time_unit_s: float = 1.0
-    speed_unit_Hz: float = 1.0
+    unit_m: float | None = 1.0
+    time_unit_s: float | None = 1.0
+    speed_unit_Hz: float | None = 1.0
 
 
 def measured_run(path: Path, given: Measurement) -> Run:
@@ -52,8 +87,8 @@ def measured_run(path: Path, given: Measurement) -> Run:
     cannot be read or is ragged, a column that is missing or doubtful, times that do not rise or have gaps, and a rotor
     that turns faster than the samples show.
     """
-    columns = read_columns(path)
-    if not SMALLEST <= given.clearance <= LARGEST:
+    columns = read_columns(Path(path))
+    if given.clearance is not None and not SMALLEST <= given.clearance <= LARGEST:
         raise wrong_file(
             path, f"cannot refer to a clearance of {given.clearance:g} m.", 'Give e.g. --clearance "35 um".'
         )
@@ -71,10 +106,10 @@ def measured_run(path: Path, given: Measurement) -> Run:
         events=[],
         cost={},
         error={},
-        references={"clearance_m": given.clearance},
+        references={} if given.clearance is None else {"clearance_m": given.clearance},
         checkpoint=None,
     )
-    if given.y is not None:
+    if given.y is not None and given.clearance is not None:
         run.events.extend(asdict(event) for event in find_events(run))
     return run
 
@@ -84,7 +119,7 @@ def events_at(run: Run, point: str, clearance: float) -> list[dict[str, Any]]:
     points nor the critical speeds of the linearised machine help. point: "journal", "disk", "journal_NAME" or
     "disk_NAME"; clearance in m. None where y is zero throughout: it was not measured.
     """
-    seen = joined(*located(run, point))
+    seen = point_of(run, point)
     if not np.any(run[f"{seen}_y_m"]):
         return []
     signals = {"time_s": run.signal("time_s"), "speed_Hz": run.signal("speed_Hz")}
@@ -112,10 +147,15 @@ def _signals(columns: Columns, given: Measurement) -> dict[str, Signal]:
     return signals
 
 
-def _column(columns: Columns, name: str, one: float, unit: str, option: str) -> Values:
-    """A column in SI; one: what 1 in it is. Raises InputError if the file says that it is something else."""
-    values, stated = columns[name], columns.units.get(name)
+def _column(columns: Columns, name: str, one: float | None, unit: str, option: str) -> Values:
+    """A column in SI; one: what 1 in it is, None for what the file says or else the usual unit. Raises InputError if
+    the file says that it is something else."""
+    values, stated = columns[name], columns.unit(name)
     found = None if stated is None else _in_si(stated, unit)
+    if one is None and stated is not None and found is None:
+        problem = f'says that "{name}" is in {stated}, which is no unit of this kind.'
+        raise wrong_file(columns.path, problem, f"Say by {option} what 1 {stated} stands for, e.g. {EXAMPLES[option]}.")
+    one = (found or USUAL[option]) if one is None else one
     if found is not None and not math.isclose(found, one, rel_tol=SAME):
         problem = f'says that "{name}" is in {stated}, but {option} is {one:g} {unit}.'
         raise wrong_file(columns.path, problem, f'Give {option} "1 {stated}".')
@@ -127,10 +167,12 @@ def _column(columns: Columns, name: str, one: float, unit: str, option: str) -> 
 
 def _in_si(stated: str, unit: str) -> float | None:
     """What a unit in a file is in SI, None if it is no unit, or another kind of one."""
-    try:
-        return quantity(f"1 {stated}", unit)
-    except ValueFault:
-        return None
+    for spelled in (stated, SPELLINGS.get(stated.lower(), stated.lower())):
+        try:
+            return quantity(f"1 {spelled}", unit)
+        except ValueFault:
+            continue
+    return None
 
 
 def _times(columns: Columns, given: Measurement, count: int) -> Values:
@@ -138,10 +180,23 @@ def _times(columns: Columns, given: Measurement, count: int) -> Values:
         return times(columns, given.time, _column(columns, given.time, given.time_unit_s, "s", "--time-unit"))
     rate = columns.rate if given.rate is None else given.rate
     if rate is None:
-        raise wrong_file(columns.path, "does not tell the times of its samples.", "Give --time COLUMN or --rate.")
+        numbers = ", ".join(f"{name} = {value:g}" for name, value in list(columns.numbers.items())[:MOST_NUMBERS])
+        beside = f", or --rate NAME of one of its numbers: {numbers}." if numbers else "."
+        remedy = f"Give --time COLUMN, --rate NUMBER{beside}"
+        raise wrong_file(columns.path, "does not tell the times of its samples.", remedy)
+    if isinstance(rate, str):
+        rate = _number(columns, rate)
     if not SMALLEST <= rate <= LARGEST:
         raise wrong_file(columns.path, f"cannot have {rate:g} samples per second.", "Give --rate.")
     return np.arange(count) / rate
+
+
+def _number(columns: Columns, name: str) -> float:
+    """A single number of the file."""
+    if name in columns.numbers:
+        return columns.numbers[name]
+    remedy = f"Give --rate in samples per second. {did_you_mean(name, columns.numbers)}".strip()
+    raise wrong_file(columns.path, f'has no single number "{name}".', remedy)
 
 
 def _speeds(columns: Columns, given: Measurement, time: Values) -> Values:

@@ -9,12 +9,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.errors import Fault, InputError
+from frbcli.nearest import did_you_mean
 from frbcli.results.records import TIME
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
 
 Values = NDArray[np.float64]
 Motion = NDArray[np.complex128]
 
+KINDS = ("journal", "disk", "ring")  # of points
 END = "_x_m"
 PIECE = 2**17  # samples of a signal that are looked at together: 1 MB
 CORNERS = 400  # intervals of a run in which its ramp is determined
@@ -107,9 +110,24 @@ def pieces(count: int) -> Iterator[tuple[int, int]]:
 
 
 def located(run: RunLike, node: str) -> tuple[str, str]:
-    """Kind and name of "disk", "journal" (the first, if there are several) or "journal_NAME" of a bearing."""
+    """Kind and name of "disk", "journal" (the first, if there are several), "journal_NAME" of a bearing or "disk_NAME"
+    of a disk; NAME alone will do where only one point has it."""
+    alone = [kind for kind in KINDS if node in points(run.signals, kind)]
+    if len(alone) == 1 and node not in KINDS:
+        return alone[0], node
     kind, _, name = node.partition("_")
     return kind, name or next(points(run.signals, kind), "")
+
+
+def point_of(run: RunLike, node: str) -> str:
+    """The name of a point, as `located` finds it, in the names of its signals. Raises InputError if the run has no such
+    point."""
+    kind, name = located(run, node)
+    if kind not in KINDS or name not in points(run.signals, kind):
+        known = [joined(each, one) for each in KINDS for one in points(run.signals, each)]
+        problem = "is not a point of the run."
+        raise InputError("signals", (Fault("signal", node, None, problem, did_you_mean(node, known)),))
+    return joined(kind, name)
 
 
 def joined(*words: str) -> str:

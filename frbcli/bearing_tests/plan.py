@@ -15,6 +15,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.nearest import did_you_mean
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import make_law
 from frbcli.scene.forms.models import chosen_model, model_decisions
@@ -219,7 +220,7 @@ def _model_faults(case: Case, cavitation: str) -> list[Fault]:
     faults = []
     known = cavitation in names()
     if not known:
-        faults.append(Fault("--cavitation", cavitation, None, "is no model.", f"There are: {', '.join(names())}."))
+        faults.append(Fault("--cavitation", cavitation, None, "is no model.", did_you_mean(cavitation, names())))
     if case.film.theory == "short":
         problem = "is not for kinematic tests, which solve the whole film."
         faults.append(Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".'))

@@ -11,13 +11,13 @@ import errno
 import importlib
 import io
 from collections.abc import Sequence
-from difflib import get_close_matches
 
 import click
 
 from frbcli.cli.common import Terminal
 from frbcli.cli.runs.memory import require_memory, reserve, shortage
 from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, printable
+from frbcli.nearest import did_you_mean
 from frbcli.version import __version__
 
 # name: (module, one line of help); the module is imported when its command is called
@@ -80,9 +80,7 @@ class LazyGroup(click.Group):
         """As click does; a name that is no command is told with the nearest ones."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
-            near = get_close_matches(name, COMMANDS, n=2)
-            meant = f" Did you mean {' or '.join(near)}?" if near else ""
-            ctx.fail(f"No such command {name!r}.{meant}")
+            ctx.fail(f"No such command {name!r}. {did_you_mean(name, COMMANDS, '`frb --help` lists them.')}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.revolutions import CELLS
-from frbcli.analysis.signals import bearing_clearance, films, in_film, joined, located, points
+from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points
 from frbcli.case.reading.load import LARGEST_FILE
 from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.case.theories import SHIPPED as THEORIES
@@ -24,13 +24,14 @@ from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 
 MICRO = 1e6
+NO_CLEARANCE = "Run the case again; of a measurement give --clearance, or --linear for amplitudes in um."
 MOST_SEARCHED = 2_000_000  # samples in which events are sought
 _MODEL = re.compile("[a-z-]{1,40}")
 
 
 def motion(run: Run, node: str) -> tuple[Signal, Signal]:
     """x and y (n,) in m of a point, see located."""
-    point = joined(*located(run, node))
+    point = point_of(run, node)
     x, y = run.signal(f"{point}_x_m"), run.signal(f"{point}_y_m")
     ends(run)
     return x, y
@@ -74,7 +75,7 @@ def clearance(run: Run, bearing: str = "") -> float:
     length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
     if length > 0.0:
         return length
-    raise refuse(run.path, "lacks the clearance to which amplitudes refer.", "Run the case again.")
+    raise refuse(run.path, "lacks the clearance to which amplitudes refer.", NO_CLEARANCE)
 
 
 def shell(run: Run, bearing: str = "") -> float | None:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.html import html_table
+from frbcli.nearest import did_you_mean
 from frbcli.results.files import parts
 from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
 from frbcli.results.files.stored import RunPlace, Stored, StoredArrays
@@ -103,7 +104,8 @@ class Run:
     def signal(self, name: str) -> Signal:
         """A signal, not yet read. Raises RunFileError if there is no such signal."""
         if name not in self.signals:
-            raise refuse(self.path, f'has no signal "{name}".', f"It has: {', '.join(self.signals)}.")
+            listed = "`frb export RUN.h5` writes all of its signals."
+            raise refuse(self.path, f'has no signal "{name}".', did_you_mean(name, self.signals, listed))
         return self.signals[name]
 
     def __contains__(self, name: str) -> bool:

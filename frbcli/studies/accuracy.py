@@ -15,6 +15,7 @@ from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.stability import default_speeds, stability
+from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
@@ -201,7 +202,7 @@ def _with(case: Case, *settings: str) -> Case:
 
 def _check_names(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> None:
     faults = [
-        Fault(option, name, None, "is not known.", f"There are: {', '.join(known)}.")
+        Fault(option, name, None, "is not known.", did_you_mean(name, known))
         for option, names, known in (("--theory", theories, THEORIES), ("--coupling", couplings, COUPLINGS))
         for name in dict.fromkeys(names)
         if name not in known

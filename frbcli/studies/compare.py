@@ -21,6 +21,7 @@ from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
 from frbcli.html import Tabular
+from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.record.header import POWER
@@ -262,8 +263,9 @@ def _check_test(test: str) -> None:
 
 
 def _unknown(option: str, names: Sequence[str], known: Sequence[str]) -> list[Fault]:
-    problem, remedy = "is not a model of this version.", f"There are: {', '.join(known)}."
-    return [Fault(option, name, None, problem, remedy) for name in dict.fromkeys(names) if name not in known]
+    problem = "is not a model of this version."
+    unknown = (name for name in dict.fromkeys(names) if name not in known)
+    return [Fault(option, name, None, problem, did_you_mean(name, known)) for name in unknown]
 
 
 def _with_models(case: Case, variant: Variant) -> Case:

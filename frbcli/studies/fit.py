@@ -9,7 +9,6 @@ residuals; where they scatter more than the measurement does, from that.
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,6 +27,7 @@ from frbcli.case.reading.listing import values as listed
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, FrbError, InputError
 from frbcli.html import Tabular
+from frbcli.nearest import did_you_mean
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
@@ -296,8 +296,7 @@ def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
         raise InputError(case.name, (fault,))
     if key not in known:
         alike = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
-        near = alike or difflib.get_close_matches(key, known, cutoff=0.8)
-        remedy = f"Did you mean {', '.join(near[:4])}?" if near else "`frb check CASE --all` lists the keys."
+        remedy = did_you_mean(key, alike or known, "`frb check CASE --all` lists the keys.", 0.0 if alike else 0.7)
         raise InputError(case.name, (Fault("--vary", key, None, "is no number of the case.", remedy),))
     value = known[key].value
     if not isinstance(value, float) or not value > 0.0:

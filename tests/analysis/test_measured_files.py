@@ -323,7 +323,7 @@ def test_an_imaginary_part_is_not_dropped(tmp_path: Path) -> None:
     ("variables", "x", "problem"),
     [
         ({"x": X, "y": Y[:-1]}, "x", "unequal length"),
-        ({"probes": np.ones((2, 100_000))}, "probes.1", "100000 columns of 2 rows: transpose it"),
+        ({"probes": np.ones((1001, 1002))}, "probes.1", "1001 x 1002 values, more than 1000 columns"),
         ({"x": np.where(TIME > 0.1, np.nan, X), "y": Y}, "x", "no number in row 402"),
         ({"fs": np.array([1.0])}, "x", "no columns of numbers"),
     ],
@@ -335,7 +335,7 @@ def test_variables_that_are_no_signals_are_refused(
     assert problem in said(path, Measurement(x, 35e-6, "y", rate=RATE_Hz, speed_Hz=SPEED_Hz, unit_m=1e-6))
 
 
-def test_a_file_of_matlab_7_3_is_refused(tmp_path: Path) -> None:
+def test_a_damaged_file_of_matlab_7_3_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.mat"
     head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + struct.pack("<H", 0x0200) + b"IM"
     path.write_bytes(head.ljust(512, b"\0") + b"\x89HDF\r\n\x1a\n" + bytes(500))

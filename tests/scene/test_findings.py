@@ -80,6 +80,6 @@ def test_values_are_shown_on_demand_and_fit_the_screen(capsys: pytest.CaptureFix
 
 def test_a_name_that_is_nearly_a_command_is_suggested(capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(["stabilty", "jeffcott"]) == 2
-    assert "Did you mean stability?" in capsys.readouterr().err
+    assert 'Did you mean "stability"?' in capsys.readouterr().err
     assert frb(["zzz"]) == 2
     assert "Did you mean" not in capsys.readouterr().err

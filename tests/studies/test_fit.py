@@ -174,7 +174,7 @@ def test_the_commands(folder: Path, found: Fit, monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize(
     ("keys", "bounds", "words"),
     [
-        (["bearing.clearence"], {}, "Did you mean bearing.clearance?"),
+        (["bearing.clearence"], {}, 'Did you mean "bearing.clearance"?'),
         (["bearing.clearance", "oil.viscosity", "bearing.clearance"], {}, "named more than once"),
         (["bearing.clearance"], {"oil.viscosity": (8e-3, 2e-2)}, "is not varied"),
         (["bearing.clearance"], {"bearing.clearance": (5e-5, 2e-5)}, "not below the upper one"),

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.analysis.orders.revolutions import Tracked, track
-from frbcli.analysis.signals import Motion, RunLike, Values, joined, located, points
+from frbcli.analysis.signals import Motion, RunLike, Values, located, point_of
 from frbcli.analysis.spectra.spectrum import DIRECTIONS, Direction
 from frbcli.errors import Fault, InputError
 
@@ -76,10 +76,8 @@ def order_tracks(
     if not FEWEST <= revolutions <= MOST or int(revolutions) != revolutions:
         limits = f"Use {FEWEST} to {MOST} whole revolutions."
         raise _fault("revolutions", f"{revolutions:g}", "is not a valid window length.", limits)
+    point_of(run, signal)  # raises for none
     kind, name = located(run, signal)
-    if name not in points(run.signals, kind):
-        known = ", ".join(joined(each, point) for each in ("journal", "disk") for point in points(run.signals, each))
-        raise _fault("signal", signal, "is not a point of the run.", f"Use one of {known}.")
     signs = [sign * order for order in orders for sign in (1.0, -1.0)]
     wanted = [Tracked(kind, name, order, int(revolutions), power=2) for order in signs]
     turns, motions = track(run, wanted)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from frbcli.analysis.signals import Values
-from frbcli.results.measured import Columns, wrong_file
+from frbcli.results.measured.columns import Columns, wrong_file
 
 UNEVEN = 1e-3  # of the step, by which times may be off it; beyond this the signals are interpolated to even steps
 # A step may differ from the median one by this share of it. What is further apart has lost samples between: what moves

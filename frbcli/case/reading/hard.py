@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import shlex
 import tomllib
@@ -15,6 +14,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import shipped_folder
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.nearest import did_you_mean
 
 LIST, REFERENCES = "hard-cases.toml", "references.json"
 WITHIN_s = 600.0  # compilation included, where nothing is compiled yet
@@ -93,8 +93,7 @@ def _hard_case(entry: dict[str, Any]) -> HardCase:
 
 
 def _nearest(name: str, found: dict[str, HardCase]) -> str:
-    close = difflib.get_close_matches(name, found, n=1, cutoff=0.5)
-    return f'Did you mean "{close[0]}"?' if close else "`frb cases --hard` lists them."
+    return did_you_mean(name, found, "`frb cases --hard` lists them.")
 
 
 def _folder() -> Traversable:

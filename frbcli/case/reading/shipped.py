@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import tomllib
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from frbcli.errors import Fault, InputError
+from frbcli.nearest import did_you_mean
 
 
 def shipped_cases() -> dict[str, str]:
@@ -31,8 +31,8 @@ def shipped_names() -> tuple[str, ...]:
 
 def nearest(name: str) -> str:
     """A remedy for an unknown name."""
-    close = difflib.get_close_matches(name, shipped_names(), n=1, cutoff=0.5)
-    return f'Did you mean the shipped case "{close[0]}"?' if close else "`frb cases` lists the shipped cases."
+    close = did_you_mean(name, shipped_names(), "`frb cases` lists the shipped cases.")
+    return close.replace("Did you mean", "Did you mean the shipped case")
 
 
 def _text(name: str) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import difflib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
@@ -16,6 +15,7 @@ from frbcli.case.quantities import Count, Quantity
 from frbcli.case.reading.lines import Path
 from frbcli.case.rules.checks import Breach
 from frbcli.case.schema import Case
+from frbcli.nearest import did_you_mean, nearest
 from frbcli.units import ValueFault
 
 _FORMS = {
@@ -182,15 +182,13 @@ def _how_to_add(path: Path, field: FieldInfo | None) -> str:
 
 def _nearest(key: str, models: Sequence[type[Model]]) -> str:
     known = [name for model in models for name in _fields(model)]
-    close = _close(key, known)
-    return f'Did you mean "{close}"?' if close else f"Known are: {', '.join(known)}."
+    return did_you_mean(key, known, f"Known are: {', '.join(known)}.")
 
 
 def _one_of(found: str, choices: Sequence[str]) -> str:
-    close = _close(found, choices)
-    return f'Did you mean "{close}"?' if close else f"Write one of: {', '.join(choices)}."
+    return did_you_mean(found, choices)
 
 
 def _close(found: str, choices: Sequence[str]) -> str:
     """The choice nearest to what was found, or nothing."""
-    return next(iter(difflib.get_close_matches(found, choices, n=1, cutoff=0.6)), "")
+    return next(iter(nearest(found, choices)), "")

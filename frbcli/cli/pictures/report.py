@@ -16,7 +16,7 @@ from frbcli.cli.quantities import SPEED_OPTION
 @click.option("-o", "--output", metavar="PAGE.html", type=OUTPUT, help="The page. [RUN-report.html]")
 @click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
               help="Orbit and spectrum at this speed. Repeatable. [those of the events, and the last]")  # fmt: skip
-@click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME, disk_NAME.")
+@click.option("--signal", default="journal", show_default=True, help="journal or disk; NAME of a bearing or disk.")
 @output_options
 def command(
     run_file: Path, output: Path | None, speeds: tuple[float, ...], signal: str, terminal: Terminal

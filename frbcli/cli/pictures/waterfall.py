@@ -15,7 +15,7 @@ from frbcli.cli.pictures.pictures import draw_wanted
 from frbcli.cli.quantities import TIME_OPTION
 from frbcli.cli.runs.events import EVENT_COLUMNS, event_row
 from frbcli.cli.studies.gathered import gathered
-from frbcli.cli.studies.measured import measured_options, run_of
+from frbcli.cli.studies.measured import measured_options, run_of, show_columns
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -57,7 +57,7 @@ class View:
 @click.command()
 @click.argument("run_file", metavar="RUN", type=INPUT)
 @click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-waterfall.png]")
-@click.option("--signal", default="journal", show_default=True, help="journal or disk; journal_NAME, disk_NAME.")
+@click.option("--signal", default="journal", show_default=True, help="journal or disk; NAME of a bearing or disk.")
 @click.option(
     "--order",
     "orders",
@@ -79,6 +79,7 @@ class View:
 @click.option("--levels", type=Span(), metavar="A,B", help="Range of the colours in dB, with --linear in um. [-60,0]")
 @click.option("--linear", is_flag=True, help="Amplitudes in um in place of levels in dB.")
 @click.option("--lines", type=Orders(), metavar="1,0.5", help="Orders whose lines are drawn in. [those of free whirls]")
+@click.option("--list", "listed", is_flag=True, help="List the columns of a measurement, with shapes and units.")
 @measured_options
 @picture_options
 @output_options
@@ -89,21 +90,25 @@ def command(
     signal: str,
     orders: tuple[float, ...] | None,
     view: View,
+    listed: bool,
     measurement: Measurement | None,
     terminal: Terminal,
 ) -> None:
     """Draw the spectra of RUN in dB relative to the clearance, over time or rotor speed; or, with --order, its
     amplitudes by order.
 
-    RUN is a run file, or a measurement as CSV, WAV or MAT, whose columns --x, --speed and so on name.
+    RUN is a run file, or a measurement as CSV, WAV, MAT or UFF, whose columns --x, --speed and so on name.
     """
+    if listed:
+        show_columns(run_file, terminal)
+        return
     if orders is not None and (view.cascade or view.window is not None):
         raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
     if orders is not None and (view.levels is not None or view.linear or view.lines is not None):
         raise click.UsageError("--levels, --linear and --lines belong to spectra, not to --order.")
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_outputs(picture=target)
-    run = run_of(run_file, measurement)
+    run = run_of(run_file, measurement, relative=orders is None and not view.linear)
     told: dict[str, Any]
     if orders is None:
         from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure

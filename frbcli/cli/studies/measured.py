@@ -12,6 +12,7 @@ from frbcli.cli.quantities import LENGTH_OPTION, SPEED_OPTION, QuantityOption
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
+    from frbcli.cli.common import Terminal
     from frbcli.results.store import Run
 
 _GIVEN = "frbcli.measurement"  # in the context of a command
@@ -20,20 +21,35 @@ _TIME_UNIT, _SPEED_UNIT = QuantityOption("time", "s", "1 ms"), QuantityOption("s
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+class Rate(click.ParamType["float | str"]):
+    """Samples per second, or the name of a single number of the file."""
+
+    name = "rate"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float | str:
+        try:
+            rate = float(str(value))
+        except ValueError:
+            return str(value)
+        if not rate > 0.0:
+            self.fail(f"{value} samples per second are not above 0.", param, ctx)
+        return rate
+
+
 def measured_options(function: Function) -> Function:
     """Give a command the options of a measurement; it receives `measurement: Measurement | None`."""
     named: dict[str, tuple[dict[str, Any], str]] = {
-        "x": ({"metavar": "COLUMN"}, "Of a measurement: column of the displacement in x."),
-        "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; events need it."),
+        "x": ({"metavar": "COLUMN"}, "Of a measurement: column of the displacement in x; of WAV the channel, from 1."),
+        "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; without it there are no events."),
         "time": ({"metavar": "COLUMN"}, "Column of the times."),
-        "rate": ({"type": click.FloatRange(min=0.0, min_open=True)}, "Samples per second, without a column of times."),
+        "rate": ({"type": Rate()}, "Samples per second, without a column of times; or a number of the file, as fs."),
         "speed": ({"metavar": "COLUMN"}, "Column of the rotor speed."),
         "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
         "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
         "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Pulses per revolution."),
-        "unit": ({"type": LENGTH_OPTION, "default": "1 um", "show_default": True}, "Unit of the displacements."),
-        "time-unit": ({"type": _TIME_UNIT, "default": "1 s", "show_default": True}, "Unit of the times."),
-        "speed-unit": ({"type": _SPEED_UNIT, "default": "1 Hz", "show_default": True}, "Unit of the rotor speed."),
+        "unit": ({"type": LENGTH_OPTION}, "Unit of the displacements. [of the file, or 1 um]"),
+        "time-unit": ({"type": _TIME_UNIT}, "Unit of the times. [of the file, or 1 s]"),
+        "speed-unit": ({"type": _SPEED_UNIT}, "Unit of the rotor speed. [of the file, or 1 Hz]"),
     }
     told: Any = function
     told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
@@ -42,6 +58,16 @@ def measured_options(function: Function) -> Function:
         kind |= {"is_eager": True, "expose_value": False, "callback": _remember}
         told = click.option(f"--{name}", help=meaning, **kind)(told)
     return told  # type: ignore[no-any-return]
+
+
+def show_columns(path: Path, terminal: Terminal) -> None:
+    """A table of what a measured file holds."""
+    from frbcli.results.measured.reading import read_columns
+
+    listed = read_columns(path).listed()
+    rows = [(row["name"], " x ".join(map(str, row["shape"])), row["unit"] or "", row["kind"]) for row in listed]
+    terminal.table(str(path), ("name", "shape", "unit", ""), rows)
+    terminal.emit({"command": "waterfall", "run": path, "columns": listed})
 
 
 def _remember(context: click.Context, option: click.Parameter, value: Any) -> None:
@@ -54,9 +80,6 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
     given = context.meta[_GIVEN]
     if given["x"] is None:
         return None
-    if clearance is None:
-        words = "A measurement needs --clearance, to which amplitudes refer; a run of frb needs neither that nor --x."
-        raise click.UsageError(words)
     for names in EITHER:
         several = [f"--{name.replace('_', '-')}" for name in names if given[name] is not None]
         if len(several) > 1:
@@ -77,13 +100,18 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
     )
 
 
-def run_of(path: Path, measurement: Measurement | None) -> Run:
-    """The run in a file: a computed one, or a measurement. Raises as read_run and measured_run do."""
-    from frbcli.results.measured import SUFFIXES
+def run_of(path: Path, measurement: Measurement | None, relative: bool = True) -> Run:
+    """The run in a file: a computed one, or a measurement. relative: whether amplitudes refer to a clearance. Raises as
+    read_run and measured_run do."""
+    from frbcli.results.measured.reading import READERS
 
-    if path.suffix.lower() in SUFFIXES:
+    if path.suffix.lower() in READERS:
         if measurement is None:
-            raise click.UsageError(f"{path} is a measurement: say by --x COLUMN where its motion stands.")
+            columns = f"`frb waterfall {path} --list` lists its columns."
+            raise click.UsageError(f"{path} is a measurement: say by --x COLUMN where its motion stands. {columns}")
+        if measurement.clearance is None and relative:
+            words = "A measurement needs --clearance, to which amplitudes refer; frb waterfall --linear does without."
+            raise click.UsageError(words)
         from frbcli.analysis.measured import measured_run
 
         return measured_run(path, measurement)

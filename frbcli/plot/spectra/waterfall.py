@@ -37,6 +37,7 @@ MOST_VALUES = 3e6  # of a map of levels
 TURNING = 1e-3  # share of the highest speed per window that is a change of speed
 FEWEST_COLUMNS, COLUMNS = 50, 2000  # spectra: the latter are more than a picture has columns of pixels
 SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
+UNKNOWN_m = 1.0  # stands for the clearance of a measurement without one, whose amplitudes are drawn in µm
 TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
 
 
@@ -82,8 +83,10 @@ def waterfall_figure(
     (None: as the ramp asks for) and direction as `waterfall` of analysis/spectra/spectrum.py; log: logarithmic
     frequency; found: the spectra of `run_spectra`, where they are known; scale: what the colours or heights are.
 
-    Raises InputError if the run does not have the signal or is shorter than a window.
+    Raises InputError if the run does not have the signal, is shorter than a window, or lacks the clearance of levels.
     """
+    if not scale.linear:
+        clearance(run, bearing_of(run, signal))  # raises without one
     found = found or run_spectra(run, signal, window_s, direction)
     parts = _parts(run, found) if over == "speed" else [("", found)]
     point = joined(*located(run, signal)).replace("_", " ")
@@ -118,7 +121,7 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
     fastest = max(map(abs, extremes(speed, 0, len(run))))
     highest = max(ABOVE_SYNCHRONOUS * fastest, FEWEST_LINES / window_s)
     most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * window_s))))
-    length = clearance(run, bearing_of(run, signal))
+    length = clearance(run, bearing_of(run, signal)) if run.references else UNKNOWN_m
     return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)
 
 

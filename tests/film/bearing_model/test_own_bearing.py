@@ -357,7 +357,7 @@ def test_keys_and_plan_of_a_model_are_those_of_a_case(capsys: pytest.CaptureFixt
         (["film.damper.spring=-1 N/m"], "film.damper.spring"),
         (["film.damper.spring=1 N"], "film.damper.spring"),
         (["film.damper.sprung=1"], 'Did you mean "spring"'),
-        (["film.damper.film=half"], "Write one of: pi, full"),
+        (["film.damper.film=half"], "There are: pi, full"),
         (["film.short-pi.length=1"], "film.short-pi: is not known here"),
     ],
 )

@@ -28,10 +28,21 @@ UNITS = {  # that are told from names where they have a line of their own
     "°c", "degc", "k", "bar", "pa", "n", "counts", "mm/v", "v/mm",
 }  # fmt: skip
 
+UNEVEN = "Give every row as many fields as there are names."
+DECIMAL_COMMA = "If its numbers have a decimal comma, put semicolons between them, or write decimal points."
+
 _DIGITS = r"[+-]?(?:\d+{0}?\d*|{0}\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf|infinity)"
 _POINT, _COMMA = (re.compile(_DIGITS.format(mark), re.IGNORECASE) for mark in (r"\.", ","))
 _BRACKETS = re.compile(r"[\[(](.*)[\])]")
 _IN_NAME = re.compile(r".*\S\s*[\[(]([^\[\]()]+)[\])]")
+
+
+class NoTable(ValueError):
+    """A text is no table for a reason that a remedy mends."""
+
+    def __init__(self, problem: str, remedy: str) -> None:
+        self.remedy = remedy
+        super().__init__(problem)
 
 
 @dataclass(frozen=True)
@@ -105,7 +116,8 @@ def _decimal_mark(delimiter: str, rows: Sequence[Sequence[str]]) -> str:
         return "."
     found = {mark for row in rows for field in row for mark in ".," if mark in field and _number(field, mark)}
     if len(found) > 1:
-        raise ValueError("it has numbers both with a decimal point and with a decimal comma")
+        problem = "it has numbers both with a decimal point and with a decimal comma"
+        raise NoTable(problem, "Write all with one of them, without marks between thousands.")
     return found.pop() if found else "."
 
 
@@ -129,7 +141,7 @@ def _head(
         if not numbers and any(found):
             last = place
     if last is None:
-        raise ValueError("there is no line of names above its numbers")
+        raise NoTable("there is no line of names above its numbers", "Write a line of names above them, e.g. t,x,y.")
     names, units = _without_end(fields(numbered[last][1], delimiter)), []
     if last > 0 and len(names) > 1 and all(_unit(name).lower() in UNITS for name in names):
         above = _without_end(fields(numbered[last - 1][1], delimiter))
@@ -152,6 +164,12 @@ def _unit(text: str) -> str:
     return (inside.group(1) if inside else text).strip()
 
 
+def without_unit(name: str) -> str:
+    """A name without the unit in brackets at its end."""
+    inside = _IN_NAME.fullmatch(name)
+    return name if inside is None else name[: inside.start(1) - 1].rstrip()
+
+
 def _unit_in(name: str) -> str:
     """The unit in the brackets at the end of a name."""
     inside = _IN_NAME.fullmatch(name)
@@ -168,5 +186,7 @@ def _even_rows(numbered: Sequence[tuple[int, str]], delimiter: str, width: int) 
             continue
         found = fields(line, delimiter)
         if count < width or any(found[width:]):
-            raise ValueError(f"row {row} (line {number}) has {count} fields, and the line of names {width}")
+            problem = f"row {row} (line {number}) has {count} fields, and the line of names {width}"
+            remedy = DECIMAL_COMMA if delimiter == "," and width < count and "." not in line else UNEVEN
+            raise NoTable(problem, remedy)
         yield number, delimiter.join(found[:width])

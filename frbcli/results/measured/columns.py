@@ -1,0 +1,102 @@
+"""Columns of numbers from a file of a measuring instrument, by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.errors import Fault, InputError, printable
+from frbcli.nearest import FEW, did_you_mean, nearest
+from frbcli.results.measured.delimited import without_unit
+from frbcli.results.records import LARGEST
+
+Values = NDArray[np.float64]
+
+LARGEST_FILE = 1024**3  # bytes
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Columns (n,) of a file by their names.
+
+    rate: samples per second where the file tells it, as WAV does; numbers: single numbers beside the columns, such as a
+    sampling rate; units: of columns that have one in the file; lines: of a text, the number of the line of each row;
+    doubtful: what is wrong with columns that cannot be used; shapes: of variables as they stand in the file, where
+    that has shapes.
+    """
+
+    path: Path
+    values: Mapping[str, Values]
+    rate: float | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+    lines: tuple[int, ...] | None = None
+    doubtful: Mapping[str, str] = field(default_factory=dict)
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Values:
+        """A column. Raises InputError if there is none of this name, or its values are not finite."""
+        column = self.values[self.named(name)]
+        with np.errstate(invalid="ignore"):
+            good = np.abs(column) <= LARGEST  # NaN is not
+        if not np.all(good):
+            first = int(np.argmin(good))
+            what = f"the number {column[first]:g}" if np.isfinite(column[first]) else "no number"
+            raise wrong_file(
+                self.path, f'has {what} in {self.row(first)} of the column "{name}".', "Leave such rows out."
+            )
+        return column
+
+    def named(self, name: str) -> str:
+        """The name of a column in the file; `name` may leave out the unit at its end. Raises InputError if there is no
+        such column, or it cannot be used."""
+        for known in (name, name.rpartition(".")[0]):  # columns of a matrix are called after it
+            if known in self.doubtful:
+                raise wrong_file(self.path, f'"{known}" {self.doubtful[known]}.', "Name a column of real numbers.")
+        if name in self.values:
+            return name
+        alike = [known for known in self.values if without_unit(known) == name]
+        if len(alike) == 1:
+            return alike[0]
+        if name in self.numbers:
+            problem = f'"{name}" is the single number {self.numbers[name]:g}, not a column.'
+            raise wrong_file(self.path, problem, self._known())
+        meant = did_you_mean(name, self.values) + " " if nearest(name, self.values) else ""
+        raise wrong_file(self.path, f'has no column "{name}".', meant + self._known())
+
+    def unit(self, name: str) -> str | None:
+        """The unit of a column, None where the file does not tell it."""
+        return self.units.get(self.named(name))
+
+    def row(self, place: int) -> str:
+        """The name of a row, counted from 0 here and from 1 in the name."""
+        return f"row {place + 1}" + (f" (line {self.lines[place]})" if self.lines else "")
+
+    def listed(self) -> list[dict[str, Any]]:
+        """What the file holds, in its order: name, shape in the file, unit, and what it is where it is no column."""
+        rows: list[dict[str, Any]] = []
+        for name, values in self.values.items():
+            shape = self.shapes.get(name) or self.shapes.get(name.rpartition(".")[0]) or (len(values),)
+            rows.append({"name": name, "shape": list(shape), "unit": self.units.get(name), "kind": "column"})
+        for name, value in self.numbers.items():
+            rows.append({"name": name, "shape": [1, 1], "unit": None, "kind": f"number {value:.10g}"})
+        for name, reason in self.doubtful.items():
+            shape = self.shapes.get(name, ())
+            rows.append({"name": name, "shape": list(shape), "unit": None, "kind": f"not usable: {reason}"})
+        return rows
+
+    def _known(self) -> str:
+        names = [f'"{printable(name)}"' for name in self.values]
+        if len(names) <= FEW:
+            return f"It has: {', '.join(names)}."
+        return f"It has {len(names)} columns: `frb waterfall {self.path.name} --list` lists them."
+
+
+def wrong_file(path: Path, problem: str, remedy: str) -> InputError:
+    """The error of the file of a measurement."""
+    return InputError(f"measurement {path}", (Fault("file", "", None, problem, remedy),))

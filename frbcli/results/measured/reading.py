@@ -1,0 +1,95 @@
+"""Measured files of all kinds, read as columns of numbers."""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from frbcli.errors import InputError, printable
+from frbcli.results.measured.columns import LARGEST_FILE, Columns, Values, wrong_file
+from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table
+from frbcli.results.measured.mat import read_mat
+from frbcli.results.measured.uff import read_uff
+from frbcli.results.records import MOST_SAMPLES
+
+TOLD = (ValueError, OSError, NotImplementedError, Warning)  # whose words a reader of the file is meant to read
+NO_TABLE = "Write CSV with one line of names, and numbers below."
+
+
+def read_columns(path: Path) -> Columns:
+    """The columns of a file.
+
+    CSV (or txt): a line of names, perhaps one of units, then numbers, separated by comma, semicolon, tab or blanks;
+    lines above the names, and those that begin with #, are left out; with a semicolon, tab or blanks, numbers may have
+    a decimal comma. WAV: the channels, named 1, 2 and so on, from -1 to 1 where they are whole numbers. MAT: `read_mat`
+    of mat.py. UFF (or unv): `read_uff` of uff.py. Raises InputError for what is none of these.
+    """
+    if not path.is_file():
+        problem = "is no file." if path.exists() else "does not exist."
+        raise wrong_file(path, problem, "Give the file of a measurement.")
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise wrong_file(path, "is of no known kind.", f"Known are {', '.join(READERS)}.")
+    if path.stat().st_size > LARGEST_FILE:
+        raise wrong_file(path, f"has more than {LARGEST_FILE // 1024**2} MB.", "Cut it into several files.")
+    try:
+        found = reader(path)
+    except InputError:
+        raise
+    except Exception as error:  # of several libraries, which raise errors of their own
+        reason = " ".join(str(error).split()) if isinstance(error, TOLD) else "it is damaged"
+        problem = f"cannot be read: {printable(reason)[:200].rstrip('.')}."
+        raise wrong_file(path, problem, error.remedy if isinstance(error, NoTable) else NO_TABLE) from None
+    counts = [len(values) for values in found.values.values()]
+    if not found.doubtful and (not counts or min(counts) < 2):
+        raise wrong_file(path, "holds no columns of numbers.", NO_TABLE)
+    if max(counts, default=0) > MOST_SAMPLES:
+        raise wrong_file(path, f"has more than {MOST_SAMPLES} samples.", "Cut it into several files.")
+    return found
+
+
+def _csv(path: Path) -> Columns:
+    table = read_table(path.read_bytes())
+    units = {name: unit for name, unit in zip(table.names, table.units, strict=True) if unit}
+    named = Counter(table.names)
+    doubtful = {name: f"is the name of {count} columns" for name, count in named.items() if count > 1}
+    values = {name: _numbers(table, place) for place, name in enumerate(table.names) if name and named[name] == 1}
+    return Columns(path, values, None, units, table.lines, doubtful)
+
+
+def _numbers(table: DelimitedTable, place: int) -> Values:
+    """A column, NaN where it holds no number."""
+    import pandas as pd
+
+    column = table.values[place]
+    if column.dtype == bool:
+        return np.full(len(column), np.nan)
+    return np.asarray(pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64))
+
+
+def _wav(path: Path) -> Columns:
+    """Channels from -1 to 1. Whole numbers of 8 bits have no sign: 128 is zero. Those of 24 bits come as ones of 32."""
+    from scipy.io import wavfile
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", wavfile.WavFileWarning)  # a file that ends too early
+        warnings.filterwarnings("ignore", "Chunk .*not understood", wavfile.WavFileWarning)  # notes beside the samples
+        rate, samples = wavfile.read(path)
+    if not samples.size:
+        raise ValueError("it has no samples")
+    if rate <= 0:
+        raise ValueError("it has no samples per second")
+    channels = np.asarray(samples, dtype=np.float64).reshape(len(samples), -1).T
+    if len(channels) > MOST_COLUMNS:
+        raise ValueError(f"it has {len(channels)} channels, more than {MOST_COLUMNS}")
+    if np.issubdtype(samples.dtype, np.integer):
+        whole = np.iinfo(samples.dtype)
+        middle = 0.5 * (whole.min + whole.max + 1)
+        channels = (channels - middle) / (whole.max + 1 - middle)
+    return Columns(path, {str(number): channel for number, channel in enumerate(channels, start=1)}, float(rate))
+
+
+READERS = {".csv": _csv, ".txt": _csv, ".wav": _wav, ".mat": read_mat, ".uff": read_uff, ".unv": read_uff}
