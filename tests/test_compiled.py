@@ -206,6 +206,7 @@ def test_a_comparison_compiles_for_all_of_its_films() -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.timing
 @pytest.mark.parametrize("law", ["half-sommerfeld", "penalty", "elrod"])
 def test_the_announced_time_of_compiling_holds(law: str, tmp_path: Path) -> None:
     """Within a factor of 1.5, in a process with an empty cache: 20 or 40 s were announced for 26, 42 and 66."""

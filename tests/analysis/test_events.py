@@ -342,6 +342,7 @@ def test_linear_critical_speeds_of_a_fast_ramp_and_of_a_rigid_rotor() -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.timing
 def test_two_hundred_thousand_samples_take_less_than_half_a_second() -> None:
     run = make_run()
     assert len(run) > 200_000

@@ -1,4 +1,4 @@
-"""Speed against the naive way, measured in one process: `pytest -m nightly -s` prints the ratios.
+"""Speed against the naive way, measured in one process: `pytest -m timing -s` prints the ratios.
 
 The naive way is what one writes first: scikit-fem assembly and a sparse solve at every call of the right-hand side, the
 pressure clipped at the quadrature points, and scipy's LSODA around it.
@@ -30,7 +30,7 @@ from frbcli.runs.run import runup
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
-pytestmark = pytest.mark.nightly
+pytestmark = [pytest.mark.nightly, pytest.mark.timing]
 
 Array = NDArray[np.float64]
 AXIAL, AROUND = 10, 20  # the mesh of the naive film, as published

@@ -1,4 +1,4 @@
-"""Cost of the compiled film on volumes, CPU time in one process: `pytest -m nightly -s` prints it.
+"""Cost of the compiled film on volumes, CPU time in one process: `pytest -m timing -s` prints it.
 
 One iteration of Newton's method of the two-phase film, with its derivatives by the journal's velocity, beside the naive
 way: one assembly with scikit-fem and one sparse solve on quadratic elements with as many nodes, without derivatives.
@@ -31,7 +31,7 @@ from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.rectangles.bearing import RectangularBearing
 
-pytestmark = pytest.mark.nightly
+pytestmark = [pytest.mark.nightly, pytest.mark.timing]
 
 REPEATS, ITERATIONS, STEPS = 5, 200, 300
 STEP_s, WHIRL, OMEGA = 1e-4, 2.0 * math.pi * 10.0, 2.0 * math.pi * 100.0

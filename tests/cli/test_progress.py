@@ -47,15 +47,21 @@ def test_without_a_terminal_a_line_comes_now_and_then(
     assert any(re.match(r"\d+ of 100: a rung: .*left$", line) for line in lines)
 
 
-def test_what_takes_long_tells_where_it_is() -> None:
-    case = frbcli.load_case("jeffcott", ["film.theory=short"])
+def test_stability_is_told_speed_by_speed() -> None:
     seen: list[tuple[int, int]] = []
-    frbcli.stability(case, [50.0], lambda number, count: seen.append((number, count)))
-    assert seen == [(number, len(seen)) for number in range(1, len(seen) + 1)]
-    moments: list[tuple[int, int]] = []
+    case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    frbcli.stability(case, [40.0, 50.0, 60.0], lambda *told: seen.append(told))
+    assert seen == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_a_squeeze_is_told_moment_by_moment_and_a_rotation_model_by_model() -> None:
+    """The moments of both models are counted through: those that their histories hold."""
+    seen: list[tuple[int, int]] = []
     squeeze = frbcli.load_case("squeeze", ["motion.periods=0.1", "accuracy.mesh=[4, 16]"])
-    frbcli.squeeze(squeeze, ["half-sommerfeld", "sommerfeld"], lambda *told: moments.append(told))
-    assert moments == [(number, len(moments)) for number in range(1, len(moments) + 1)]
+    moved = frbcli.squeeze(squeeze, ["half-sommerfeld", "sommerfeld"], lambda *told: seen.append(told))
+    whole = sum(len(result.history.time_s) for result in moved.results if result.history is not None)
+    assert whole > 2
+    assert seen == [(number, whole) for number in range(1, whole + 1)]
     turns: list[tuple[int, int]] = []
     bearing = frbcli.load_case("bearing-axial-groove", ["accuracy.mesh=[4, 16]"])
     frbcli.rotation(bearing, ["half-sommerfeld", "sommerfeld"], lambda *told: turns.append(told))

@@ -247,6 +247,7 @@ def test_a_sample_of_nasty_numbers_is_refused_or_planned() -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.timing
 @pytest.mark.skipif(sys.platform == "win32", reason="forks")
 def test_nasty_numbers_run_or_are_refused(tmp_path: Path) -> None:
     for name in CASES:  # the kernels of all kinds, before the processes are forked

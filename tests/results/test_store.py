@@ -249,6 +249,7 @@ def test_a_killed_run_leaves_a_file_that_opens(tmp_path: Path) -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.timing
 def test_ten_seconds_are_written_quickly(tmp_path: Path) -> None:
     names = [f"signal_{i}" for i in range(12)]
     writer = RunWriter(tmp_path / "run.h5", Header("t", "runup", "c", "", dict.fromkeys(names, "m")))

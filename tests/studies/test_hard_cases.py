@@ -34,6 +34,7 @@ def test_quick_hard_cases_end_as_listed(hard: HardCase) -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.timing
 def test_all_hard_cases_end_as_listed() -> None:
     found = run_hard_cases()
     assert {result.hard.name: result.problems for result in found.results if not result.ok} == {}

@@ -433,6 +433,7 @@ def worked_and_waited() -> tuple[float, float]:
 
 
 @pytest.mark.nightly
+@pytest.mark.timing
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the scheduler's statistics of Linux")
 def test_all_cores_work(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """64 run-ups of some tenths of a second each: the share of the cores' time that the workers ask for."""

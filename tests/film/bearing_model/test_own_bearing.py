@@ -560,6 +560,7 @@ def test_the_bearing_of_the_page_is_a_squeeze_film_damper(tmp_path: Path, monkey
 
 
 @pytest.mark.nightly
+@pytest.mark.timing
 def test_a_run_with_a_model_takes_about_twice_the_time_of_the_film_of_the_program(tmp_path: Path) -> None:
     """By paired runs, CPU time of the time loop; the model has no derivatives of its own."""
     speeds = ("speed.to=150 Hz", "speed.duration=2 s", "rotor.unbalance=1 g*mm")
