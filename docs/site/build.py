@@ -95,7 +95,7 @@ def pages(source: Path) -> None:
     shutil.copy(DOCS / "site" / "equations.css", source)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     readme = readme.replace("](docs/README.md)", "](contents.md)").replace("](docs/", "](")
-    readme = re.sub(r"\[([^\]]*)\]\((?:LICENSE|CHANGELOG\.md|cases/[^)]*|tests/[^)]*|frbcli/[^)]*)\)", r"\1", readme)
+    readme = re.sub(r"\[([^\]]*)\]\((?:LICENSE|CHANGELOG\.md|CITATION\.cff|cases/[^)]*|tests/[^)]*|frbcli/[^)]*)\)", r"\1", readme)
     (source / "index.md").write_text(readme, encoding="utf-8")
 
 
@@ -217,9 +217,9 @@ def _escaped(words: str) -> str:
 def configuration(source: Path, target: Path) -> str:
     """Settings of MkDocs: no fonts and scripts from elsewhere, equations by equations.py."""
     commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
-    guides = ("case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements", "report",
-              "bearing-sheet", "rotors", "floating-rings", "elements", "limit-cycles", "couplings",
-              "sweeps")  # fmt: skip
+    guides = ("terms", "case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements",
+              "report", "bearing-sheet", "rotors", "standards", "floating-rings", "elements", "limit-cycles",
+              "couplings", "sweeps")  # fmt: skip
     science = ("theory", "equations", "heat", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
 
     def entries(names: tuple[str, ...]) -> str:
@@ -247,6 +247,7 @@ validation:
     anchors: warn
 nav:
   - frb: index.md
+  - installation: installation.md
   - tutorial: tutorial.md
   - gallery: gallery.md
   - commands:
