@@ -95,7 +95,8 @@ def pages(source: Path) -> None:
     shutil.copy(DOCS / "site" / "equations.css", source)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     readme = readme.replace("](docs/README.md)", "](contents.md)").replace("](docs/", "](")
-    readme = re.sub(r"\[([^\]]*)\]\((?:LICENSE|CHANGELOG\.md|CITATION\.cff|cases/[^)]*|tests/[^)]*|frbcli/[^)]*)\)", r"\1", readme)
+    outside = r"\[([^\]]*)\]\((?:LICENSE|CHANGELOG\.md|CITATION\.cff|(?:cases|tests|frbcli)/[^)]*)\)"
+    readme = re.sub(outside, r"\1", readme)
     (source / "index.md").write_text(readme, encoding="utf-8")
 
 
