@@ -1,8 +1,12 @@
-"""The rotors of a case: rigid (2.3), Jeffcott (2.4) and turbocharger."""
+"""The rotors of a case: rigid (2.3), Jeffcott (2.4) and turbocharger.
+
+A symmetric rotor lies in two equal bearings, of which a case describes one; another one has a shaft of sections.
+`frbcli/scene/shafts/` makes bodies of them.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -35,6 +39,8 @@ GRAVITY = 9.81
 class RigidRotor(Model):
     """A rigid rotor that does not tilt, carried by two equal bearings."""
 
+    symmetric: ClassVar[bool] = True
+
     kind: Literal["rigid"] = Field(description="one mass, no tilting (2.3)")
     mass: Mass = Field(description="mass of the whole rotor")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
@@ -44,6 +50,8 @@ class RigidRotor(Model):
 
 class JeffcottRotor(Model):
     """A disk on a massless elastic shaft with a journal at each end, carried by two equal bearings."""
+
+    symmetric: ClassVar[bool] = True
 
     kind: Literal["jeffcott"] = Field(description="a disk on an elastic shaft (2.4)")
     mass: Mass = Field(description="mass of the disk")
@@ -57,6 +65,8 @@ class JeffcottRotor(Model):
 
 class TurbochargerRotor(Model):
     """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
+
+    symmetric: ClassVar[bool] = False
 
     kind: Literal["turbocharger"] = Field(description="a shaft of [[shaft]] sections with [[disk]] entries")
     file: Label = Field(
@@ -72,6 +82,7 @@ class TurbochargerRotor(Model):
 
 
 Rotor = Annotated[RigidRotor | JeffcottRotor | TurbochargerRotor, Field(discriminator="kind")]
+SYMMETRIC, OF_SECTIONS = ("rigid", "jeffcott"), ("turbocharger",)  # kinds
 
 
 class ShaftSection(Model):

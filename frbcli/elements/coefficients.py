@@ -10,8 +10,9 @@ import math
 import numpy as np
 
 from frbcli.case.elements import AXES, EMPTY_MATRIX, CoefficientsBearing
-from frbcli.elements.kind import XY, ElementKind
+from frbcli.elements.kind import ElementKind
 from frbcli.errors import Fault
+from frbcli.rotor.body import COORDINATES
 from frbcli.rotor.over_speed import Array, LinearPart
 
 
@@ -50,4 +51,4 @@ def told(element: CoefficientsBearing) -> tuple[str, str]:
     return f"given coefficients, over speed{source}", f"{many}; linear between them, constant beyond"
 
 
-KIND = ElementKind(CoefficientsBearing, XY, linear, faults, told, "journal", "spring")
+KIND = ElementKind(CoefficientsBearing, COORDINATES, linear, faults, told, "spring")

@@ -20,6 +20,8 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
+from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.body import point_mass
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.forms.cells import CELLS as ON_CELLS
@@ -146,15 +148,4 @@ def _rotor(case: Case, load: float | None) -> LinearRotor | None:
     if load is None:
         remedy = "Give --load, or --over eccentricity, or add [rotor]."
         raise InputError(case.name or "case", (Fault("motion.load", "", None, "is missing.", remedy),))
-    return LinearRotor(
-        mass=np.eye(2),
-        damping=np.zeros((2, 2)),
-        gyroscopic=np.zeros((2, 2)),
-        stiffness=np.zeros((2, 2)),
-        static_load=np.array([0.0, -load]),
-        unbalance_cos=np.zeros(2),
-        unbalance_sin=np.zeros(2),
-        journals=np.eye(2)[None],
-        multiplicity=np.ones(1),
-        points=(),
-    )
+    return assembled([point_mass("journal", mass=1.0, gravity=load)], [Link("journal")])

@@ -18,20 +18,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.modes import film_springs
 from frbcli.linear.stability_point import StabilityPoint
-from frbcli.rotor.jeffcott import jeffcott_rotor
-from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.rigid import rigid_rotor
-from frbcli.rotor.turbocharger import turbocharger_rotor
+from frbcli.rotor.assembly import Link, assembled
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.keys import element_keys
 from frbcli.scene.machine.findings import findings
-from frbcli.scene.machine.turbocharger import all_modes, journals, wheels
+from frbcli.scene.shafts.table import shaft_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,7 +77,7 @@ def critical_map(
     if not len(given) or not (np.isfinite(given).all() and given[0] > 0.0):
         fault = Fault("stiffness", "", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".')
         raise InputError(case.name or "case", (fault,))
-    plane = _plane(_alone(case))
+    plane = _plane(case)
     forward, backward = (np.array([_criticals(plane, k, sign) for k in given]) for sign in (-1.0, 1.0))
     known = [(point.speed_Hz, film_springs(case, point.films)) for point in resting if point.rests]
     films = [(speed, springs) for speed, springs in known if springs]
@@ -95,18 +91,12 @@ def _default(case: Case) -> Array:
     return np.asarray(usual * np.logspace(*DECADES, STIFFNESSES), dtype=np.float64)
 
 
-def _alone(case: Case) -> LinearRotor:
-    """The rotor without rings and damping, with all its modes."""
-    rotor = case.rotor
-    if isinstance(rotor, RigidRotor):
-        return rigid_rotor(rotor.mass, 0.0, 0.0, 0.0)
-    if isinstance(rotor, JeffcottRotor):
-        return jeffcott_rotor(rotor.mass, rotor.journal_mass, rotor.shaft_stiffness, 0.0, 0.0, 0.0, 0.0)
-    return turbocharger_rotor(all_modes(case), wheels(case), journals(case), 0.0, 0.0, 0.0)
-
-
-def _plane(rotor: LinearRotor) -> tuple[Array, Array, Array, Array]:
-    """Mass, gyroscopic term, stiffness and that of springs of 1 N/m in all bearings, (n, n) of one plane."""
+def _plane(case: Case) -> tuple[Array, Array, Array, Array]:
+    """Mass, gyroscopic term, stiffness of the rotor without rings and damping, with all its modes, and the stiffness of
+    springs of 1 N/m in all bearings, (n, n) of one plane."""
+    shaft = shaft_of(case)
+    films = [Link(shaft.journal(bearing.name), count=float(shaft.equal_bearings)) for bearing in case.bearings]
+    rotor = assembled([shaft.undamped_body()], films)
     n = rotor.size // 2
     bearings = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
     springs = (bearings @ rotor.journals).sum(axis=0)

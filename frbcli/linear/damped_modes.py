@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.coefficients import coefficients_of
@@ -18,10 +17,9 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import OSCILLATING
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.order import EQUAL, first_largest, ranks
-from frbcli.rotor.ring import without_spins
-from frbcli.scene.machine.turbocharger import all_modes, kept_modes
+from frbcli.scene.shafts.table import shaft_of
 
 Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
@@ -94,11 +92,11 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
         raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, point.problem, ""),))
     rotor = without_spins(system.rotor, system.ring_count)
     stiffness, damping = coefficients_of(point.films)
-    positions, along, to_scale, marks = _stations(case, rotor)
+    stations = shaft_of(case).stations(rotor)
     modes = []
     for value, vector in _eigenvectors(rotor, 2.0 * math.pi * speed_Hz, stiffness, damping):
         motion: Amplitudes = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
-        shape = np.einsum("sij,j->si", along, vector)
+        shape = np.einsum("sij,j->si", stations.maps, vector)
         size = float(np.max(_larger(np.concatenate([motion, shape]))))
         if size > 0.0:
             there = shape.ravel()[first_largest(shape.ravel())]
@@ -108,7 +106,9 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     modes = [modes[i] for i in np.lexsort(keys)] if modes else []
     names = tuple(name for name, _ in rotor.points)
     error = max((film.error for film in point.films), default=math.nan)
-    return DampedModes(case, speed_Hz, names, positions, to_scale, marks, tuple(modes), error)
+    return DampedModes(
+        case, speed_Hz, names, stations.positions, stations.to_scale, stations.marks, tuple(modes), error
+    )
 
 
 def _eigenvectors(
@@ -134,25 +134,3 @@ def _larger(motion: Amplitudes) -> Array:
     """(...) larger semi-axes of amplitudes (..., 2)."""
     x, y = motion[..., 0], motion[..., 1]
     return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
-
-
-def _stations(case: Case, rotor: LinearRotor) -> tuple[Array, Array, bool, tuple[tuple[str, float], ...]]:
-    """Positions (s,), maps (s, 2, n) of the displacements there, whether these are in m, and what lies where."""
-    kind, named = case.rotor, dict(rotor.points)
-    if isinstance(kind, TurbochargerRotor):
-        modes = all_modes(case)
-        kept = kept_modes(kind, modes)
-        along = np.zeros((len(modes.positions), 2, rotor.size))
-        along[:, 0, :kept] = along[:, 1, kept : 2 * kept] = modes.shapes[:, :kept]
-        marks = [(bearing.name, bearing.position or 0.0) for bearing in case.given_bearings]
-        marks += [(disk.name, disk.position) for disk in case.disks]
-        return modes.positions, along, True, tuple(marks)
-    journal = named["journal"]
-    if isinstance(kind, JeffcottRotor):
-        # The massless shaft bends to both sides of its disk as a beam that is loaded there.
-        positions = np.linspace(0.0, 1.0, 21)
-        half = np.minimum(positions, 1.0 - positions)
-        share = (3.0 * half - 4.0 * half**3)[:, None, None]
-        along = (1.0 - share) * journal + share * named["disk"]
-        return positions, along, False, (("bearing", 0.0), ("disk", 0.5), ("bearing", 1.0))
-    return np.array([0.0, 1.0]), np.stack([journal, journal]), False, (("bearing", 0.0), ("bearing", 1.0))

@@ -18,10 +18,10 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.rotor.order import first_largest, ranks
-from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, reduction_error, whirl_modes
+from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, whirl_modes
 from frbcli.scene.film_faults import require_films
-from frbcli.scene.machine.elements import element_places, element_springs
-from frbcli.scene.machine.turbocharger import all_modes, journals, kept_modes, turbocharger_of, wheels
+from frbcli.scene.machine.elements import element_springs
+from frbcli.scene.shafts.table import shaft_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -109,31 +109,29 @@ def natural_modes(
     rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not as many as bearings.
     """
     require_films(case)
-    rotor = turbocharger_of(case)
+    free = shaft_of(case).free()
     speeds = np.linspace(0.0, max(case.speed.start, case.speed.end), SPEEDS) if speeds_Hz is None else speeds_Hz
     springs = _springs(case, stiffness)
     _check(case, springs, speeds)
-    modes = all_modes(case)
-    places = () if stiffness is None else (*journals(case), *element_places(case))
-    held = np.array([modes.at(place.position) for place in places]).reshape(len(places), len(modes.frequencies))
+    modes = free.modes
+    held = np.zeros((0, len(modes.frequencies))) if stiffness is None else free.held
 
     def on(omega: float) -> Array:
         """(b,) N/m of all bearings."""
         return springs if stiffness is None else np.concatenate([springs, element_springs(case, omega)])
 
     omega = 2 * math.pi * np.asarray(speeds, dtype=np.float64)
-    kept = kept_modes(rotor, modes)
     return Modes(
         case,
         tuple(on(float(np.max(omega))).tolist()),
         modes.positions,
-        tuple((journal.name, journal.position) for journal in (*journals(case), *element_places(case))),
-        tuple((wheel.name, wheel.position) for wheel in wheels(case)),
+        tuple((journal.name, journal.position) for journal in free.journals),
+        tuple((wheel.name, wheel.position) for wheel in free.wheels),
         float(modes.weight[0] ** 2),
         tuple((modes.frequencies[RIGID : RIGID + SHOWN] / (2 * math.pi)).tolist()),
-        kept,
+        free.kept,
         tuple(_at_speed(modes, held, on(float(value)), value) for value in omega),
-        reduction_error(modes, kept, held, on(float(np.max(omega))), float(np.max(omega))) if places else None,
+        free.reduction_error(on(float(np.max(omega))), float(np.max(omega))) if len(held) else None,
     )
 
 

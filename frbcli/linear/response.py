@@ -30,8 +30,7 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import RESPONSE_POINTS
 from frbcli.linear.stability import default_speeds, stability_points
 from frbcli.linear.stability_point import StabilityPoint
-from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.ring import without_spins
+from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.machine.elements import element_forces
 

@@ -12,9 +12,8 @@ from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.order import fastest_first, ranks
-from frbcli.rotor.ring import without_spins
 
 Array = NDArray[np.float64]
 Eigenvalues = NDArray[np.complex128]

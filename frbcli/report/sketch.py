@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from frbcli.case.bearing import FilmGeometry, SingleFilmBearing
-from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.report.element_symbols import symbol
 from frbcli.report.svg import box, curve, drawing, element, line, text
 from frbcli.scene.films import film_places
+from frbcli.scene.shafts.table import shaft_of
 
 WIDTH, MARGIN = 720.0, 46.0  # of the drawing along the axis
 HIGHEST = 135.0  # half of it, at most
@@ -47,9 +47,9 @@ class _SketchScale:
 
 def rotor_sketch(case: Case) -> tuple[str, str]:
     """(drawing along the axis, a sentence about what is not to scale)."""
-    if isinstance(case.rotor, TurbochargerRotor) and case.shaft:
-        return _turbocharger(case), "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
-    if isinstance(case.rotor, TurbochargerRotor):
+    if case.shaft:
+        return _of_sections(case), "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
+    if not case.rotor.symmetric:
         return "", "The shaft of this rotor is in a file of its own and is not drawn."
     if not case.bearings:
         return _symmetric(case), "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
@@ -96,7 +96,7 @@ def _largest_radius(case: Case) -> float:
     return max(((1.0 + HOUSING) * 0.5 * film.diameter for film in films), default=0.0)
 
 
-def _turbocharger(case: Case) -> str:
+def _of_sections(case: Case) -> str:
     length = sum(section.length for section in case.shaft)
     disks = [(disk, *_cylinder(disk.mass, disk.polar_inertia, disk.diametral_inertia)) for disk in case.disks]
     reach = max([_largest_radius(case), *(radius for _, radius, _ in disks), *(0.5 * s.diameter for s in case.shaft)])
@@ -126,7 +126,6 @@ def _turbocharger(case: Case) -> str:
 
 
 def _symmetric(case: Case) -> str:
-    assert not isinstance(case.rotor, TurbochargerRotor)
     width, journal = _journal(case)
     span = SPAN * width
     disk = max(DISK * journal, 1.1 * _largest_radius(case))
@@ -134,7 +133,7 @@ def _symmetric(case: Case) -> str:
     per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
     half = per_m * disk
     scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
-    thin = 0.45 * journal if case.rotor.kind == "jeffcott" else journal
+    thin = 0.45 * journal if shaft_of(case).elastic else journal
     parts = [scale.box(0.0, span, 0.0, thin, "vague")]
     parts.append(scale.box(0.5 * span - 0.3 * width, 0.5 * span + 0.3 * width, 0.0, disk, "vague"))
     for at in (0.0, span):
@@ -145,7 +144,7 @@ def _symmetric(case: Case) -> str:
             place = at + half_width * _place(case, number) * (1.0 if at else -1.0)
             parts += symbol(each, scale.left + per_m * place, scale.middle, per_m * journal)
         parts.append(_named("bearing", at, scale, half + 16.0))
-    parts.append(_named(f"{case.rotor.mass:.4g} kg", 0.5 * span, scale, -half - 6.0))
+    parts.append(_named(f"{shaft_of(case).disk_mass:.4g} kg", 0.5 * span, scale, -half - 6.0))
     return _finish(parts, scale, half, None, bool(case.bearings))
 
 

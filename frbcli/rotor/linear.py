@@ -1,4 +1,4 @@
-"""The one linear system that every rotor builds.
+"""The machine without its films, as one linear system: assembled of bodies, see assembly.py.
 
 M q'' + (D + Omega G) q' + K q = f_static + unbalance(alpha) + sum over films of P^T F
 
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LinearRotor:
-    """A rotor with n degrees of freedom, SI units.
+    """A machine with n degrees of freedom: a rotor, its rings and whatever else moves. SI units.
 
     mass, damping, gyroscopic, stiffness: (n, n); gyroscopic is multiplied by the rotor speed in rad/s.
     static_load: (n,) N. unbalance_cos, unbalance_sin: (n,) kg m: the unbalance pulls (2.3) with
@@ -92,8 +92,20 @@ def unbalance_shares(alpha: Real, omega: Real, sine: Real, cosine: Real) -> tupl
     return alpha * cosine - omega**2 * sine, alpha * sine + omega**2 * cosine
 
 
-def planar(degrees: int, x: int, y: int) -> Array:
-    """(2, degrees) map that picks the degrees of freedom x and y."""
-    selection = np.zeros((2, degrees))
-    selection[0, x] = selection[1, y] = 1.0
-    return selection
+def without_spins(rotor: LinearRotor, count: int) -> LinearRotor:
+    """The machine without its last `count` degrees of freedom, the angles of its rings."""
+    if count == 0:
+        return rotor
+    return replace(
+        rotor,
+        mass=rotor.mass[:-count, :-count],
+        damping=rotor.damping[:-count, :-count],
+        gyroscopic=rotor.gyroscopic[:-count, :-count],
+        stiffness=rotor.stiffness[:-count, :-count],
+        static_load=rotor.static_load[:-count],
+        unbalance_cos=rotor.unbalance_cos[:-count],
+        unbalance_sin=rotor.unbalance_sin[:-count],
+        journals=rotor.journals[:, :, :-count],
+        points=tuple((name, place[:, :-count]) for name, place in rotor.points),
+        over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(count),
+    )

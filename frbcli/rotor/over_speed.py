@@ -42,15 +42,10 @@ class LinearPart:
         return stiffness, damping, mass
 
     def seen_by(self, place: Array, count: float = 1.0) -> LinearPart:
-        """The part on all degrees of freedom of a rotor. place: (c, n) the coordinates that it sees out of those of the
-        rotor; count: of equal elements that it stands for."""
+        """The part on all degrees of freedom of a machine. place: (c, n) the coordinates that it sees out of those of
+        the machine; count: of equal elements that it stands for."""
         stiffness, damping, mass = (count * (place.T @ each @ place) for each in self._matrices)
         return LinearPart(self.speeds, stiffness, damping, mass)
-
-    def bordered(self, added: int) -> LinearPart:
-        """The part of a rotor with so many degrees of freedom more, on which it does not act."""
-        wider = ((0, 0), (0, added), (0, added))
-        return LinearPart(self.speeds, *(np.pad(each, wider) for each in self._matrices))
 
     def cut(self, count: int) -> LinearPart:
         """The part of a rotor without its last `count` degrees of freedom."""

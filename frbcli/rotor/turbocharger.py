@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.rotor.beam import BeamSection, Plane, beam
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.body import Body
 from frbcli.rotor.reduction import FreeModes
 
 Array = NDArray[np.float64]
@@ -60,13 +60,11 @@ def turbocharger_rotor(
     modal_damping: float,
     external_damping: float,
     gravity: float,
-    others: Sequence[Journal] = (),
-) -> LinearRotor:
+) -> Body:
     """The rotor in the given modes, which are its degrees of freedom: n of the x-plane, then n of the y-plane.
 
-    journals: those in films; others: places of elements that are no films, which a run records like journals.
-    modal_damping: ratio to the critical damping of every elastic mode; external_damping: of each wheel against the
-    ground, N s/m; gravity in m/s^2.
+    journals: the places of all bearings, with a film or without one. modal_damping: ratio to the critical damping of
+    every elastic mode; external_damping: of each wheel against the ground, N s/m; gravity in m/s^2.
     """
     n = len(modes.frequencies)
     both, turned = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
@@ -78,10 +76,9 @@ def turbocharger_rotor(
         cos, sin = wheel.unbalance * math.cos(wheel.phase), wheel.unbalance * math.sin(wheel.phase)
         unbalance_cos += np.outer([cos, sin], shape)
         unbalance_sin += np.outer([-sin, cos], shape)
-    maps = [_of(both, modes.at(journal.position)) for journal in (*journals, *others)]
-    points = [(f"journal_{journal.name}", place) for journal, place in zip((*journals, *others), maps, strict=True)]
-    points += [(f"disk_{wheel.name}", _of(both, modes.at(wheel.position))) for wheel in wheels]
-    return LinearRotor(
+    nodes = [(f"journal_{journal.name}", _of(both, modes.at(journal.position))) for journal in journals]
+    nodes += [(f"disk_{wheel.name}", _of(both, modes.at(wheel.position))) for wheel in wheels]
+    return Body(
         mass=np.eye(2 * n),
         damping=_of(both, damping),
         gyroscopic=_of(turned, modes.polar),
@@ -89,12 +86,10 @@ def turbocharger_rotor(
         static_load=np.concatenate([np.zeros(n), -gravity * modes.weight]),
         unbalance_cos=unbalance_cos.ravel(),
         unbalance_sin=unbalance_sin.ravel(),
-        journals=np.array(maps[: len(journals)]).reshape(len(journals), 2, 2 * n),
-        multiplicity=np.ones(len(journals)),
-        points=tuple(points),
+        nodes=tuple(nodes),
     )
 
 
 def _of(planes: Array, modes: Array) -> Array:
-    """What `modes` say of one plane for both, coupled by `planes` (2, 2)."""
+    """Both planes, coupled by `planes` (2, 2), out of the modes of one."""
     return np.asarray(np.kron(planes, modes), dtype=np.float64)

@@ -27,7 +27,7 @@ from frbcli.linear.stability import stability, stability_points
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.rotor.over_speed import LinearPart
 from frbcli.runs.run import runup
-from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.sweep.sweep import sweep

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import films
 import numpy as np
 import pytest
+from marches import rigid
 from numpy.typing import NDArray
 
 from frbcli.case.reading.load import load_case
@@ -25,7 +26,6 @@ from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.equations.unknown import unknowns_of
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.film.state import WET
-from frbcli.rotor.rigid import rigid_rotor
 from frbcli.runs.march import March
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System, make_system
@@ -107,7 +107,7 @@ Pressed = Callable[[Array, Array], Array]  # displacement and velocity over the 
 def system_of(kind: str) -> System:
     if kind in films.KINDS:
         bearing = films.KINDS[kind][0]
-        return films.system_of(rigid_rotor(6.0, 0.0, 0.0, 9.81), (bearing,), (films.film_of(*films.KINDS[kind]),))
+        return films.system_of(rigid(6.0, 0.0, 0.0), (bearing,), (films.film_of(*films.KINDS[kind]),))
     case = load_case(CASES[kind][0], CASES[kind][1:])
     return make_system(case, make_plan(case))
 

@@ -13,7 +13,8 @@ from scipy.linalg import expm
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
-from frbcli.rotor.jeffcott import jeffcott_rotor
+from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.start import rotor_data, state_at
@@ -134,13 +135,22 @@ def linear_reference(rotor: LinearRotor, omega: float, times: Array, q: Array, v
     return exact[:, :n], exact[:, n : 2 * n]
 
 
+def in_two_bearings(shaft: Body) -> LinearRotor:
+    """A symmetric rotor in two equal bearings, as one film counts twice."""
+    return assembled([shaft], [Link("journal", count=2.0)])
+
+
+def rigid(mass: float, unbalance: float, external_damping: float, gravity: float = GRAVITY) -> LinearRotor:
+    return in_two_bearings(point_mass("journal", mass, gravity, unbalance, external_damping))
+
+
 def jeffcott(journal_mass: float = 0.1, unbalance: float = 3e-6) -> LinearRotor:
-    return jeffcott_rotor(6.0, journal_mass, 5e6, unbalance, 1.0, 0.1, GRAVITY)
+    return in_two_bearings(jeffcott_rotor(6.0, journal_mass, 5e6, unbalance, 1.0, 0.1, GRAVITY))
 
 
 def slender_jeffcott() -> LinearRotor:
     """Without films, and with natural frequencies that are not worlds apart."""
-    return jeffcott_rotor(1.0, 0.5, 4e4, 1e-3, 3.0, 2.0, GRAVITY)
+    return in_two_bearings(jeffcott_rotor(1.0, 0.5, 4e4, 1e-3, 3.0, 2.0, GRAVITY))
 
 
 def slope(sizes: list[float], errors: list[float]) -> float:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import in_two_bearings, rigid
 
 from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.case.reading.load import load_case
@@ -16,8 +17,7 @@ from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.linear.response import DOUBTFUL, Response, larger_semi_axis, response, unbalance_motion
 from frbcli.plot.machine.response import response_figure
-from frbcli.rotor.jeffcott import jeffcott_rotor
-from frbcli.rotor.rigid import rigid_rotor
+from frbcli.rotor.body import jeffcott_rotor
 from frbcli.runs.run import runup
 
 MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER = 6.0, 0.1, 5e6, 3e-6, 4.0, 0.7
@@ -26,7 +26,7 @@ MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER = 6.0, 0.1, 5e6, 3e-6, 4.0, 0.7
 @pytest.mark.parametrize("omega", [50.0, 700.0, 912.0, 3000.0])
 def test_a_jeffcott_rotor_on_springs_and_dampers_has_its_closed_form(omega: float) -> None:
     """Equal in x and y, and not cross-coupled: z = x + iy turns forward alone, two equations remain."""
-    rotor = jeffcott_rotor(MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER, 9.81)
+    rotor = in_two_bearings(jeffcott_rotor(MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER, 9.81))
     k, c = 3e6, 2e3
     motion = unbalance_motion(rotor, omega, k * np.eye(2)[None], c * np.eye(2)[None])
     spring = SHAFT + 1j * omega * INNER
@@ -42,7 +42,7 @@ def test_a_jeffcott_rotor_on_springs_and_dampers_has_its_closed_form(omega: floa
 
 
 def test_a_rigid_rotor_far_above_all_turns_about_its_centre_of_mass() -> None:
-    rotor = rigid_rotor(5.0, 2e-6, 0.0, 9.81)
+    rotor = rigid(5.0, 2e-6, 0.0)
     omega = 1e6
     x, y = unbalance_motion(rotor, omega, 1e6 * np.eye(2)[None], 10.0 * np.eye(2)[None])
     assert 0.5 * abs(x + 1j * y) == pytest.approx(2e-6 / 5.0, rel=1e-4)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,10 +21,11 @@ from frbcli.errors import InputError
 from frbcli.linear.modes import film_springs, natural_modes
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.plot.machine.modes import modes_figure
-from frbcli.rotor.jeffcott import jeffcott_rotor
-from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.ring import with_rings
-from frbcli.scene.machine.turbocharger import all_modes, make_turbocharger
+from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
+from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.shafts.table import shaft_of
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ def test_spin_raises_forward_and_lowers_backward_modes(heavy: Case) -> None:
 def test_free_precession_of_the_spinning_rotor(heavy: Case) -> None:
     """Between the rigid body's Omega I_p / I_d and less: an elastic shaft lets the wheels tilt on their own."""
     slowest = natural_modes(heavy, None, [10.0]).points[0].directed("forward")[0]
-    modes = all_modes(heavy)
+    modes = shaft_of(heavy).free().modes
     assert slowest.kind == "conical"
     assert slowest.frequency_Hz == pytest.approx(10.0 * modes.polar[1, 1], rel=1e-3)  # the inertia of the tilt is 1
 
@@ -116,7 +116,7 @@ def test_free_precession_of_the_spinning_rotor(heavy: Case) -> None:
 def test_soft_springs_carry_a_rigid_rotor(heavy: Case) -> None:
     """On springs that are soft against the shaft, at rest: sum of s x = omega^2 m x and the same about the tilt."""
     found = natural_modes(heavy, 1e3, [0.0]).points[0].directed("forward")[:2]
-    modes = all_modes(heavy)
+    modes = shaft_of(heavy).free().modes
     rigid = np.stack([modes.at(b.position or 0.0)[:2] for b in heavy.bearings])
     exact = np.sqrt(np.linalg.eigvalsh(1e3 * rigid.T @ rigid)) / (2 * math.pi)
     assert [mode.frequency_Hz for mode in found] == pytest.approx(exact, rel=1e-4)
@@ -158,8 +158,13 @@ def test_picture_of_the_modes(heavy: Case, stiffness: float | None) -> None:
 # ---------------------------------------------------------------------------------------------------- whole rotor
 
 
+def whole(case: Case) -> LinearRotor:
+    """Without the angles of the two rings."""
+    return without_spins(make_rotor(case), 2)
+
+
 def test_size_films_and_points(heavy: Case) -> None:
-    rotor = make_turbocharger(heavy)
+    rotor = whole(heavy)
     assert rotor.size == 2 * 6 + 2 * 2
     assert rotor.journals.shape == (4, 2, 16)
     assert rotor.multiplicity.tolist() == [1.0] * 4
@@ -173,16 +178,16 @@ def test_size_films_and_points(heavy: Case) -> None:
 
 def test_cutoff_keeps_the_modes_below_it() -> None:
     low = load_case("turbocharger-heavy", ["rotor={kind='turbocharger', cutoff='1.2 kHz'}"])
-    assert make_turbocharger(low).size == 2 * 4 + 2 * 2  # translation, tilt, 619 and 1120 Hz
+    assert whole(low).size == 2 * 4 + 2 * 2  # translation, tilt, 619 and 1120 Hz
     rigid = load_case("turbocharger-heavy", ["rotor={kind='turbocharger', cutoff='1 Hz'}"])
-    assert make_turbocharger(rigid).size == 2 * 2 + 2 * 2
+    assert whole(rigid).size == 2 * 2 + 2 * 2
     with pytest.raises(InputError, match="beside modes"):
         load_case("turbocharger-heavy", ["rotor.cutoff=2 kHz"])
 
 
 def test_films_carry_the_weights_and_no_moment(heavy: Case) -> None:
     """At rest on springs: inner films the rotor, outer ones the rings as well; moments about the bearings balance."""
-    rotor = make_turbocharger(heavy)
+    rotor = whole(heavy)
     stiffness = rotor.stiffness + 1e7 * np.einsum("fki,fkj->ij", rotor.journals, rotor.journals)
     forces = -1e7 * (rotor.journals @ np.linalg.solve(stiffness, rotor.static_load))
     mass = natural_modes(heavy, None, [0.0]).mass_kg
@@ -202,7 +207,7 @@ def test_films_carry_the_weights_and_no_moment(heavy: Case) -> None:
 def test_unbalance_turns_with_the_rotor() -> None:
     """At constant speed: U omega^2 in the direction of the eccentric mass; upwards for an angle and a phase of 0."""
     case = load_case("turbocharger-heavy", ["disk.1.unbalance=0 g*mm", "disk.2.phase=30 deg"])
-    rotor, modes = make_turbocharger(case), all_modes(case).lowest(6)
+    rotor, modes = whole(case), shaft_of(case).free().modes.lowest(6)
     alpha, omega, unbalance, phase = 0.7, 100.0, 2e-6, math.pi / 6
     force = -(omega**2) * (rotor.unbalance_cos * math.sin(alpha) - rotor.unbalance_sin * math.cos(alpha))
     direction = np.array([-math.sin(alpha + phase), math.cos(alpha + phase)])
@@ -215,7 +220,7 @@ def test_reduced_rotor_whirls_as_the_whole_one(heavy: Case) -> None:
     text = heavy.source_text
     assert 'kind = "floating-ring"' in text
     case = load_case("turbocharger-heavy", ["rotor.modal_damping=0", "bearing=" + SINGLE])
-    rotor = make_turbocharger(case)
+    rotor = make_rotor(case)
     assert rotor.journals.shape == (2, 2, 12)
     omega = 2 * math.pi * 350
     springs, none = np.tile(SPRING * np.eye(2), (2, 1, 1)), np.zeros((2, 2, 2))
@@ -233,10 +238,10 @@ SINGLE = "[" + ", ".join(
 
 
 def test_damping_is_modal_and_external(heavy: Case) -> None:
-    rotor = make_turbocharger(heavy)
+    rotor = whole(heavy)
     frequencies = np.sqrt(np.diag(rotor.stiffness))[:6]
     assert np.diag(rotor.damping)[:6] == pytest.approx(2 * 0.002 * frequencies)
-    outside = make_turbocharger(load_case("turbocharger-heavy", ["rotor.external_damping=2 N*s/m"]))
+    outside = whole(load_case("turbocharger-heavy", ["rotor.external_damping=2 N*s/m"]))
     places = np.stack([place[0] for name, place in rotor.points if name.startswith("disk")])
     assert (outside.damping - rotor.damping)[:6, :6] == pytest.approx(2.0 * (places.T @ places)[:6, :6])
 
@@ -244,14 +249,24 @@ def test_damping_is_modal_and_external(heavy: Case) -> None:
 # ---------------------------------------------------------------------------------------------------------- rings
 
 
-def jeffcott() -> LinearRotor:
+def jeffcott() -> Body:
     """Table 7.1."""
     return jeffcott_rotor(5.0, 1.0, 2e7, 3e-6, 1.0, 0.1, GRAVITY)
 
 
+def on_shell() -> LinearRotor:
+    return assembled([jeffcott()], [Link("journal", count=2.0)])
+
+
+def on_rings(mass: float) -> LinearRotor:
+    """mass in kg, of one ring."""
+    ring = point_mass("ring", 2.0 * mass, GRAVITY)
+    return assembled([jeffcott(), ring], [Link("journal", "ring", 2.0), Link("ring", count=2.0)])
+
+
 def test_rings_of_a_symmetric_rotor_are_two() -> None:
     """m_F x_F'' = F_o - F_i of each ring, m_J x_J'' = 2 F_i + shaft (2.4)."""
-    rotor = with_rings(jeffcott(), [0.075], GRAVITY)
+    rotor = on_rings(0.075)
     assert rotor.multiplicity.tolist() == [2.0, 2.0]
     assert np.diag(rotor.mass)[4:].tolist() == [0.15, 0.15]
     assert rotor.static_load[[4, 5]].tolist() == [0.0, -0.15 * GRAVITY]
@@ -265,24 +280,23 @@ def test_rings_of_a_symmetric_rotor_are_two() -> None:
 
 def test_a_ring_on_a_stiff_film_is_a_shell() -> None:
     springs = np.stack([1e6 * np.eye(2), 1e14 * np.eye(2)])
-    ringed = eigenvalues(with_rings(jeffcott(), [0.075], GRAVITY), 100.0, springs, 0 * springs)
-    single = eigenvalues(jeffcott(), 100.0, springs[:1], 0 * springs[:1])
+    ringed = eigenvalues(on_rings(0.075), 100.0, springs, 0 * springs)
+    single = eigenvalues(on_shell(), 100.0, springs[:1], 0 * springs[:1])
     assert ringed[: len(single)] == pytest.approx(single, rel=1e-6)
 
 
 def test_a_light_ring_puts_films_in_series() -> None:
     inner, outer = 2e6, 3e6
     springs = np.stack([inner * np.eye(2), outer * np.eye(2)])
-    ringed = eigenvalues(with_rings(jeffcott(), [1e-9], GRAVITY), 100.0, springs, 0 * springs)
+    ringed = eigenvalues(on_rings(1e-9), 100.0, springs, 0 * springs)
     series = np.eye(2)[None] / (1 / inner + 1 / outer)
-    single = eigenvalues(jeffcott(), 100.0, series, 0 * series)
+    single = eigenvalues(on_shell(), 100.0, series, 0 * series)
     assert ringed[: len(single)] == pytest.approx(single, rel=1e-6)
 
 
 def test_bearings_with_and_without_a_ring() -> None:
-    base = jeffcott()
-    two = replace(base, journals=np.repeat(base.journals, 2, axis=0), multiplicity=np.ones(2))
-    rotor = with_rings(two, [None, 0.1], GRAVITY, ["a", "b"])
+    films = [Link("journal"), Link("journal", "ring_b"), Link("ring_b")]
+    rotor = assembled([jeffcott(), point_mass("ring_b", 0.1, GRAVITY)], films)
     q = np.arange(1.0, 7.0)
     assert (rotor.journals @ q).tolist() == [[1.0, 3.0], [1.0 - 5.0, 3.0 - 6.0], [5.0, 6.0]]
     assert rotor.mass[4, 4] == 0.1

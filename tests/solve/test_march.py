@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from marches import (
     BEARING,
-    GRAVITY,
     SHORT_FILM,
     Array,
     control,
@@ -19,6 +18,7 @@ from marches import (
     linear_reference,
     march,
     modal_rotor,
+    rigid,
     slender_jeffcott,
     slope,
     start,
@@ -29,8 +29,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag
 
 from frbcli.film.rectangles.film import evaluate
-from frbcli.rotor.linear import LinearRotor, planar
-from frbcli.rotor.rigid import rigid_rotor
+from frbcli.rotor.body import planar
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.solve.state import FINISHED, STEP, STEPS, State
 from frbcli.solve.tableau import METHODS, Method, Tableau
@@ -273,7 +273,7 @@ def side_by_side(rotors: list[LinearRotor]) -> LinearRotor:
 
 def test_two_equal_rotors_in_one_system_move_as_each_does_alone() -> None:
     profile, limits = speed_profile([0.0, 0.1], [300.0, 500.0]), control(1e-6)
-    rotor = rigid_rotor(6.1, 1e-6, 0.0, GRAVITY)
+    rotor = rigid(6.1, 1e-6, 0.0)
     alone = march(with_short_films(rotor), profile, limits)
     both = march(with_short_films(side_by_side([rotor, rotor])), profile, limits)
     assert both.numbers[STEPS] == alone.numbers[STEPS]
@@ -284,7 +284,7 @@ def test_two_equal_rotors_in_one_system_move_as_each_does_alone() -> None:
 
 def test_two_different_rotors_in_one_system_do_not_disturb_each_other() -> None:
     profile, limits = speed_profile([0.0, 0.1], [300.0, 500.0]), control(1e-10)
-    rotors = [rigid_rotor(6.1, 1e-6, 0.0, GRAVITY), rigid_rotor(2.0, 4e-6, 5.0, GRAVITY)]
+    rotors = [rigid(6.1, 1e-6, 0.0), rigid(2.0, 4e-6, 5.0)]
     both = march(with_short_films(side_by_side(rotors)), profile, limits)
     for film, rotor in enumerate(rotors):
         alone = march(with_short_films(rotor), profile, limits)

@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from marches import BEARING, GRAVITY, control, forces, jeffcott, march, modal_rotor, start, with_short_films
+from marches import BEARING, control, forces, jeffcott, march, modal_rotor, rigid, start, with_short_films
 from scipy.integrate import simpson
 
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.rigid import rigid_rotor
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.start import rotor_data
 from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME, make_output
@@ -79,7 +78,7 @@ def test_work_done_on_the_rotor_is_the_energy_it_gains() -> None:
 
 def test_results_converge_as_the_tolerance_shrinks() -> None:
     """The run passes the threshold: a whirl grows out of a small error, the same one for every small tolerance."""
-    system = with_short_films(rigid_rotor(6.1, 3e-6, 0.0, GRAVITY))
+    system = with_short_films(rigid(6.1, 3e-6, 0.0))
     profile = speed_profile([0.0, 0.3], [2 * math.pi * 100.0, 2 * math.pi * 250.0])
     runs = [march(system, profile, control(tolerance)) for tolerance in (1e-6, 1e-7, 1e-8, 1e-10)]
     errors = [float(np.abs(run.q - runs[-1].q).max()) / BEARING.clearance for run in runs[:-1]]

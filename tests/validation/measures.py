@@ -20,7 +20,7 @@ from frbcli.film.rectangles.untabulated import largest_pressure
 from frbcli.linear.stability import Stability, stability
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

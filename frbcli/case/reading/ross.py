@@ -18,6 +18,7 @@ from typing import Any, get_args
 from frbcli.case.quantities import Density, Inertia, InnerDiameter, Length, Mass, Modulus
 from frbcli.case.reading.tables import Breach, table
 from frbcli.case.reading.toml import TomlFault, parse
+from frbcli.case.rotor import OF_SECTIONS
 from frbcli.units import ValueFault
 
 LARGEST_FILE = 4_194_304  # bytes
@@ -50,7 +51,7 @@ def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any],
     """
     rotor = table(data, "rotor")
     name = rotor.get("file")
-    if rotor.get("kind") != "turbocharger" or not isinstance(name, str) or not name:
+    if rotor.get("kind") not in OF_SECTIONS or not isinstance(name, str) or not name:
         return data, []
     if "shaft" in data:
         return data, [Breach(KEY, "is given beside [[shaft]].", "Keep one of the two.")]

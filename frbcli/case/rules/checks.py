@@ -13,6 +13,7 @@ from typing import Any
 from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
 from frbcli.case.rules.element_checks import element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
 from frbcli.case.rules.plausible import implausible
@@ -91,7 +92,7 @@ def _names(what: str, named: list[tuple[Path, dict[str, Any]]]) -> Iterator[Brea
 
 def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
     kind = table(data, "rotor").get("kind")
-    if kind == "turbocharger":
+    if kind in OF_SECTIONS:
         if not data.get("shaft") and "file" not in table(data, "rotor"):
             yield Breach(("shaft",), "is missing.", "Add [[shaft]] sections with length and diameter, or rotor.file.")
         if {"modes", "cutoff"} <= set(table(data, "rotor")):
@@ -102,7 +103,7 @@ def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]])
             if "position" not in bearing:
                 yield Breach((*path, "position"), "is missing.", 'Add e.g. position = "80 mm".')
         yield from _on_shaft(data, bearings)
-    elif kind in ("rigid", "jeffcott"):
+    elif kind in SYMMETRIC:
         for key in ("shaft", "disk"):
             if key in data:
                 yield Breach((key,), f"does not go with a {kind} rotor.", 'Remove it, or take kind = "turbocharger".')

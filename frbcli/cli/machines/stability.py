@@ -125,7 +125,7 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     """Stiffness of the bearings and speed in Hz at which the modes of a turbocharger's rotor are of interest."""
     from frbcli.linear.modes import film_springs
 
-    if found.case.rotor.kind != "turbocharger":
+    if found.case.rotor.symmetric:
         return []
     wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
     for point in found.points[-1:]:

@@ -26,8 +26,7 @@ from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.parts.rotor_parts import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.ring import without_spins
+from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.scene.films import ROTOR
 from frbcli.scene.machine.system import System
 

@@ -9,19 +9,17 @@ from typing import Any
 import numpy as np
 
 from frbcli.case.bearing import FloatingRingBearing
-from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.rotor.reduction import reduction_error
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.film_error import film_force_errors
 from frbcli.runs.oil import oil_defect
 from frbcli.scene.coupling import APART, SEMI
-from frbcli.scene.machine.elements import element_places, element_springs
+from frbcli.scene.machine.elements import element_springs
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
-from frbcli.scene.machine.turbocharger import all_modes, journals, kept_modes
 from frbcli.scene.planning.planned import Plan
+from frbcli.scene.shafts.table import shaft_of
 from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array, State
 from frbcli.solve.time_loop import NEWTON_SHARE
 
@@ -129,22 +127,19 @@ def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:
 def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
     """Relative error of the slowest natural frequencies by the rotor's modes that were left out, on springs as stiff as
     the films in the middle of the run; None for a rotor that has no modes, or without a state whose films are stiff."""
-    if not isinstance(case.rotor, TurbochargerRotor) or not len(samples):
+    if case.rotor.symmetric or not len(samples):
         return None
-    modes = all_modes(case)
-    kept = kept_modes(case.rotor, modes)
-    if kept == len(modes.frequencies):
+    free, middle = shaft_of(case).free(), samples[len(samples) // 2]
+    if free.kept == len(free.modes.frequencies):
         return 0.0
     try:
-        springs = _springs(case, system, samples[len(samples) // 2])
+        springs = _springs(case, system, middle)
     except NotConverged:
         return None
     if not np.all(springs > 0.0):
         return None
-    springs = np.concatenate([springs, element_springs(case, float(samples[len(samples) // 2][2 * system.rotor.size]))])
-    stations = np.stack([modes.at(place.position) for place in (*journals(case), *element_places(case))])
-    top = 2.0 * math.pi * max(case.speed.start, case.speed.end)
-    return reduction_error(modes, kept, stations, springs, top).frequency
+    springs = np.concatenate([springs, element_springs(case, float(middle[2 * system.rotor.size]))])
+    return free.reduction_error(springs, 2.0 * math.pi * max(case.speed.start, case.speed.end)).frequency
 
 
 def _springs(case: Case, system: System, sample: Array) -> Array:

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.costs.course import STAGES, RunCourse, expected_course, runs_nearly_dry, whirl_speed
@@ -22,6 +21,7 @@ from frbcli.scene.costs.preparation import after_s, before_s, memory_B, rotor_si
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.elements import changes_with_speed
 from frbcli.scene.planning.planned import Plan
+from frbcli.scene.shafts.table import shaft_of
 
 DAY_s = 86_400.0
 GROWING = 0.2  # share of a run with films that run nearly dry until their whirl has grown: 0.05 to 0.3 as measured
@@ -79,7 +79,7 @@ def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
     """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve, but for an
     inverse that is renewed in every stage."""
     n, m, stages = max(rotor_size(case), SMALL_ROTOR), 2 * len(film_places(case)), STAGES[plan.method]
-    follows = changes_with_speed(case) or (not case.bearings and isinstance(case.rotor, TurbochargerRotor))
+    follows = changes_with_speed(case) or (not case.bearings and shaft_of(case).gyroscopic)
     renewed = stages * INVERSE_ns * rotor_size(case) ** 3 if follows else 0.0  # an inverse for each speed
     inverse, products = n**3 - SMALL_ROTOR**3, n**2 - SMALL_ROTOR**2
     journals = max(0, m**3 - SMALL_ROTOR**3)

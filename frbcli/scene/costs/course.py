@@ -17,26 +17,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import no_inflow
 from frbcli.rotor.speed_profile import Array, SpeedProfile
-from frbcli.scene.costs.preparation import shaft_mass
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.section import film_section
+from frbcli.scene.shafts.table import shaft_of
 
 STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
 ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step size in the local error
 
 
 RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring
-# Fronts that cross cells make the local error of second order: steps per revolution times the root of the tolerance on
-# the usual cells, of a rotor whose journals follow at once and of a rigid one.
-FRONTS, FRONTS_RIGID = 0.55, 0.2
 # Steps of a journal that a whirl presses into an elastic shell over those of one that it presses into the oil alone:
 # 1.3 to 3.4.
 ELASTIC = 1.7
@@ -106,9 +102,7 @@ def whirl_speed(case: Case) -> float:
         free = free or any(not law_named(name).cavitates for name in case.cavitations)
     if free:
         return 0.0
-    square = max(place.geometry.clearance for place in places) / rotor.gravity
-    if isinstance(rotor, JeffcottRotor):
-        square += rotor.mass / rotor.shaft_stiffness
+    square = max(place.geometry.clearance for place in places) / rotor.gravity + shaft_of(case).compliance
     return WHIRL / math.sqrt(square)
 
 
@@ -133,12 +127,11 @@ def _pressing_speed(case: Case) -> float:
     """Rotor speed in rad/s from which a whirl comes near to the natural frequency of the shaft; infinite for a shaft so
     soft that its sag is larger than the clearance, which cannot press, for rotors without such a shaft or on rings,
     and for films that run nearly dry, which their fronts keep at short steps all along."""
-    rotor = case.rotor
-    if not isinstance(rotor, JeffcottRotor) or not case.bearings or rings(case) or runs_nearly_dry(case):
+    compliance = shaft_of(case).compliance
+    if not compliance or not case.bearings or rings(case) or runs_nearly_dry(case):
         return math.inf
-    square = rotor.shaft_stiffness / rotor.mass
-    stiff = rotor.gravity / square < film_places(case)[0].geometry.clearance
-    return 2.0 * NEAR * math.sqrt(square) if stiff else math.inf
+    stiff = case.rotor.gravity * compliance < film_places(case)[0].geometry.clearance
+    return 2.0 * NEAR / math.sqrt(compliance) if stiff else math.inf
 
 
 def _solves_of_a_stage(case: Case, plan: Plan, whirls: NDArray[np.bool_], per_turn: Array) -> Array:
@@ -156,32 +149,21 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
 
     The local error of a motion A cos(w t) is A (w h / SMOOTH)^p of a method with an embedded solution of order p - 1.
     """
-    rotor, order = case.rotor, ERROR_ORDERS[plan.method]
+    shaft, order = shaft_of(case), ERROR_ORDERS[plan.method]
     clearance = film_places(case)[0].geometry.clearance if case.bearings else plan.length
-    eccentric = unbalance_eccentricity(case)
 
     def steps(w: Array | float, size: Array | float) -> Array:
         return np.asarray(w / SMOOTH * (size / (plan.tolerance * clearance)) ** (1.0 / order), dtype=np.float64)
 
-    rate = np.maximum(steps(omega, eccentric), np.where(whirls, steps(HARMONICS * omega, clearance), 0.0))
-    if isinstance(rotor, JeffcottRotor) and case.start.position == "centre":  # it falls to its resting position
-        square = rotor.shaft_stiffness / rotor.mass
-        natural = math.sqrt(square)
+    rate = np.maximum(steps(omega, shaft.eccentricity), np.where(whirls, steps(HARMONICS * omega, clearance), 0.0))
+    if shaft.compliance and case.start.position == "centre":  # it falls to its resting position
+        natural = 1.0 / math.sqrt(shaft.compliance)
         left = np.exp(-FADING * natural * (times - times[0]))
-        rate = np.maximum(rate, steps(natural, rotor.gravity / square * left))
+        rate = np.maximum(rate, steps(natural, case.rotor.gravity * shaft.compliance * left))
     if runs_nearly_dry(case):
-        fronts = FRONTS_RIGID if rotor.kind == "rigid" else FRONTS
-        fronts *= max(law.fronts for law in _dry_laws(case))
+        fronts = shaft.fronts * max(law.fronts for law in _dry_laws(case))
         rate = np.maximum(rate, plan.form.steps_at_fronts(plan, fronts) * omega / (2.0 * math.pi))
     return rate
-
-
-def unbalance_eccentricity(case: Case) -> float:
-    """Distance in m of the centre of mass from the axis by the unbalance of a rotor, that of all disks in phase."""
-    rotor = case.rotor
-    if isinstance(rotor, TurbochargerRotor):
-        return sum(disk.unbalance for disk in case.disks) / shaft_mass(case)
-    return rotor.unbalance / rotor.mass
 
 
 def _summed(rate: Array, times: Array) -> Array:

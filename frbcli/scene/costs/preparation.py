@@ -7,18 +7,16 @@ numbers are CPU seconds of the reference machine of cost.py.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
-from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.rotor.beam import ELEMENTS
-from frbcli.rotor.reduction import DENSE, MOST, RIGID
+from frbcli.rotor.reduction import DENSE, MOST
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.films import film_places, rings, turning_rings
 from frbcli.scene.planning.film_choice import all_clipped, needs_cells
 from frbcli.scene.planning.planned import Plan
+from frbcli.scene.shafts.table import shaft_of
 
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
 # To compile, at the first start: CPU time in s and memory in bytes, for finite-volume films, for tables of solutions on
@@ -72,7 +70,7 @@ def film_error_s(case: Case, plan: Plan) -> float:
 def memory_B(case: Case, plan: Plan, samples: float) -> float:
     """Largest memory of the process in bytes. samples: number that the run writes."""
     n = rotor_size(case)
-    found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_freedoms(case)
+    found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_of(case).beam_freedoms
     found += 8.0 * signal_count(case) * (COPIES * SAMPLES_HELD + KEPT * samples)
     return found + plan.form.memory_B(plan, len(film_places(case)))
 
@@ -80,7 +78,7 @@ def memory_B(case: Case, plan: Plan, samples: float) -> float:
 def signal_count(case: Case) -> int:
     """Signals that a run records; with heat at most."""
     places, floating = film_places(case), rings(case)
-    disks = len(case.disks) + isinstance(case.rotor, JeffcottRotor)
+    disks = shaft_of(case).disk_count
     found = 2 + 2 * (len(case.given_bearings) + len(floating) + disks) + len(turning_rings(case))
     found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
     found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
@@ -91,42 +89,10 @@ def signal_count(case: Case) -> int:
 
 def rotor_size(case: Case) -> int:
     """Degrees of freedom of the rotor with its rings, as reduced."""
-    turning = len(turning_rings(case))
     rings = len(film_places(case)) - len(case.bearings)
-    if isinstance(case.rotor, TurbochargerRotor):
-        return 2 * expected_modes(case) + 2 * rings + turning
-    return (2 if case.rotor.kind == "rigid" else 4) + 2 * rings + turning
-
-
-def expected_modes(case: Case) -> int:
-    """Modes of a plane that the rotor of a turbocharger keeps; below a cut-off as many half waves as the shaft without
-    its wheels has at that frequency."""
-    rotor = case.rotor
-    assert isinstance(rotor, TurbochargerRotor)
-    if rotor.cutoff is None:
-        return min(rotor.modes, shaft_freedoms(case))
-    omega, waves = 2.0 * math.pi * rotor.cutoff, 0.0
-    for part in case.shaft:
-        gyration = math.hypot(part.diameter, part.inner_diameter) / 4.0
-        sound = math.sqrt(part.youngs_modulus / part.density)
-        waves += part.length * math.sqrt(omega / (gyration * sound)) / math.pi
-    return int(min(RIGID + waves, MOST, shaft_freedoms(case)))
-
-
-def shaft_freedoms(case: Case) -> int:
-    """Degrees of freedom of the shaft in a plane, before its reduction; none of a rotor without sections."""
-    if not isinstance(case.rotor, TurbochargerRotor):
-        return 0
-    return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.given_bearings))
-
-
-def shaft_mass(case: Case) -> float:
-    """Of a turbocharger's shaft with its wheels, kg."""
-    areas = (0.25 * math.pi * (part.diameter**2 - part.inner_diameter**2) for part in case.shaft)
-    shaft = sum(area * part.length * part.density for area, part in zip(areas, case.shaft, strict=True))
-    return shaft + sum(disk.mass for disk in case.disks)
+    return shaft_of(case).freedoms + 2 * rings + len(turning_rings(case))
 
 
 def _reduction_s(case: Case) -> float:
-    freedoms = shaft_freedoms(case)
+    freedoms = shaft_of(case).beam_freedoms
     return SPARSE_s * freedoms if freedoms > DENSE else DENSE_s * (freedoms / DENSE) ** 3

@@ -10,8 +10,8 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.costs.course import unbalance_eccentricity
-from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.shafts.table import shaft_of
 
 SMALLEST = 1e-9  # m: of a rotor that neither its weight nor an unbalance moves
 LARGEST = 1.0  # m: bearings that let the rotor sag further do not hold it
@@ -24,7 +24,7 @@ def reference_length(case: Case) -> tuple[float, str]:
     rotor = make_rotor(case)
     speeds = (2.0 * math.pi * speed for speed in (case.speed.start, case.speed.end))
     sag = max(_sag(rotor, omega) for omega in speeds)
-    return max((sag, SAGS), (unbalance_eccentricity(case), TURNS), (SMALLEST, LEAST))
+    return max((sag, SAGS), (shaft_of(case).eccentricity, TURNS), (SMALLEST, LEAST))
 
 
 def _sag(rotor: LinearRotor, omega: float) -> float:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.case.bearing import FloatingRingBearing
-from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
@@ -103,8 +102,8 @@ def published_faults(case: Case) -> list[Fault]:
     if not is_published(case):
         return []
     found: list[tuple[str, str, str, str]] = []
-    if isinstance(case.rotor, TurbochargerRotor):
-        found.append(("rotor.kind", "turbocharger", "has two bearings; the published form is for one film", REMEDY))
+    if not case.rotor.symmetric:
+        found.append(("rotor.kind", case.rotor.kind, "has two bearings; the published form is for one film", REMEDY))
     elif any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
         found.append(("bearing.kind", "floating-ring", "has two films; the published form is for one", REMEDY))
     if case.film.grid == "half-speed":

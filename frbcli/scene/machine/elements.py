@@ -1,53 +1,27 @@
-"""The elements of a case in its rotor: where they act, what they add to it, and how the plan tells of them."""
+"""The elements of a case: their forces, springs and faults, and their lines of the plan."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.elements.table import kind_of
 from frbcli.errors import Fault, InputError
 from frbcli.rotor.linear import Array, LinearRotor
-from frbcli.rotor.turbocharger import Journal
 from frbcli.scene.keys import element_keys
-
-
-def element_points(case: Case) -> tuple[str, ...]:
-    """What the points of the rotor are called at which the elements act: of a symmetric rotor both journals, which move
-    as one."""
-    if isinstance(case.rotor, TurbochargerRotor):
-        return tuple(f"{kind_of(element).point}_{element.name}" for element in case.elements)
-    return ("journal",) * len(case.elements)
-
-
-def element_places(case: Case) -> tuple[Journal, ...]:
-    """Names and positions of the elements of a turbocharger's shaft."""
-    return tuple(Journal(element.name, element.position or 0.0) for element in case.elements)
-
-
-def with_elements(case: Case, rotor: LinearRotor) -> LinearRotor:
-    """The rotor of a case with the linear parts of its elements. A symmetric rotor has each of them twice."""
-    maps: dict[str, Array] = dict(rotor.points)
-    count = 1.0 if isinstance(case.rotor, TurbochargerRotor) else 2.0
-    parts = [
-        kind_of(element).linear(element).seen_by(maps[point], count)
-        for element, point in zip(case.elements, element_points(case), strict=True)
-    ]
-    return rotor.with_parts(parts) if parts else rotor
+from frbcli.scene.shafts.table import shaft_of
 
 
 def element_forces(case: Case, rotor: LinearRotor, omega: float, q: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(e, 2) complex amplitudes in N of the forces of the elements on the shaft, of one each. rotor: of the case; q:
     (n,) complex amplitudes of its motion with omega rad/s."""
-    maps, forces = dict(rotor.points), np.zeros((len(case.elements), 2), dtype=np.complex128)
-    for force, element, point in zip(forces, case.elements, element_points(case), strict=True):
+    shaft, nodes, forces = shaft_of(case), dict(rotor.points), np.zeros((len(case.elements), 2), dtype=np.complex128)
+    for force, element in zip(forces, case.elements, strict=True):
         stiffness, damping, mass = kind_of(element).linear(element).at(omega)
-        force[:] = -(stiffness + 1j * omega * damping - omega**2 * mass) @ (maps[point] @ q)
+        force[:] = -(stiffness + 1j * omega * damping - omega**2 * mass) @ (nodes[shaft.journal(element.name)] @ q)
     return forces
 
 
@@ -100,8 +74,3 @@ def speed_dependent(case: Case, what: str) -> list[Fault]:
         for key, element in zip(element_keys(case), case.elements, strict=True)
         if not kind_of(element).linear(element).constant
     ]
-
-
-def without_journals(rotor: LinearRotor) -> LinearRotor:
-    """The rotor without any film: no journal of it moves in one."""
-    return replace(rotor, journals=np.zeros((0, 2, rotor.size)), multiplicity=np.zeros(0))

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from frbcli.case.bearing import FilmGeometry
-from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.operating import sommerfeld_number
 from frbcli.rotor.held import held_rotor
-from frbcli.rotor.reduction import RIGID
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.operating import operating_points
-from frbcli.scene.machine.rotors import make_rotor
-from frbcli.scene.machine.turbocharger import all_modes
-
-FREQUENCIES = 3  # bending modes that are told
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.shafts.table import shaft_of
 
 
 @dataclass(frozen=True)
@@ -53,17 +48,9 @@ def findings(case: Case) -> Findings:
     )
     if case.given_rotor is None:
         return Findings(None, (), "", films)
-    rotor = case.rotor
-    if isinstance(rotor, TurbochargerRotor):
-        modes = all_modes(case)
-        frequencies = modes.frequencies[RIGID : RIGID + FREQUENCIES] / (2.0 * math.pi)
-        mass = float(np.sum(modes.weight[:RIGID] ** 2))  # a uniform motion is one of the rigid body
-        return Findings(mass, tuple(frequencies.tolist()), "free, at rest", films)
-    mass, frequencies_Hz = rotor.mass, tuple[float, ...]()
-    if isinstance(rotor, JeffcottRotor):
-        mass += rotor.journal_mass
-        frequencies_Hz = (math.sqrt(rotor.shaft_stiffness / rotor.mass) / (2.0 * math.pi),)
-    return Findings(mass, frequencies_Hz, "in rigid bearings" if frequencies_Hz else "", films)
+    shaft = shaft_of(case)
+    frequencies, supported = shaft.natural_frequencies
+    return Findings(shaft.mass, frequencies, supported, films)
 
 
 def static_loads(case: Case) -> tuple[float, ...]:

@@ -12,10 +12,9 @@ from frbcli.case.schema import Case
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.ring import with_spins
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
 from frbcli.scene.machine.machine_films import make_films
-from frbcli.scene.machine.rotors import make_rotor
+from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.planned import Plan
 
 
@@ -75,11 +74,8 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
     """The system of a case; its films are tabulated here. rotor: default that of the case; top_Hz: largest speed of the
     rotor, default that of the run."""
     places, ringed = film_places(case), turning_rings(case)
-    rotor = make_rotor(case) if rotor is None else rotor
-    if ringed:
-        rotor = with_spins(rotor, [bearing.ring.inertia for bearing in ringed])
     return System(
-        rotor=rotor,
+        rotor=make_rotor(case) if rotor is None else rotor,
         films=make_films(case, plan, top_Hz),
         names=tuple(place.name for place in places),
         bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64).reshape(-1, 2),

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 from frbcli.case.bearing import FilmGeometry, FloatingRingBearing
 from frbcli.case.model import altered
-from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
@@ -30,6 +29,7 @@ from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmCho
 from frbcli.scene.planning.plan_faults import plan_faults
 from frbcli.scene.planning.planned import Decision, Plan
 from frbcli.scene.planning.profiles import run_up_profile
+from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.supply import unfed_films
 from frbcli.units import display
 
@@ -173,13 +173,8 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
 
 def _decide_scene(case: Case, decide: Decide) -> None:
     """Bearings, films and gap."""
-    places, count = film_places(case), len(case.given_bearings)
-    if isinstance(case.rotor, TurbochargerRotor):
-        decide("bearings", f"{count} of {count}", "the rotor is not symmetric")
-    else:
-        decide(
-            "bearings", "1 of 2", "symmetric rotor and bearings: both journals have the same motion, forces count twice"
-        )
+    places = film_places(case)
+    decide("bearings", *shaft_of(case).bearings_modelled)
     for decided in element_decisions(case):
         decide(*decided)
     if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):

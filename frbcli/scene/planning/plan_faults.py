@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from frbcli.case.rotor import TurbochargerRotor
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.clearance_steps import clearance_faults
@@ -72,7 +71,7 @@ def signal_faults(case: Case, flow_known: bool) -> list[Fault]:
 
 def _bearing_faults(case: Case) -> list[Fault]:
     """Faults of the number of bearings."""
-    if len(case.bearings) <= 1 or isinstance(case.rotor, TurbochargerRotor):
+    if len(case.bearings) <= 1 or not case.rotor.symmetric:
         return []
     both = "one bearing with a film, which stands for both of a symmetric rotor, and any with given coefficients"
     return [_missing("bearing", f"{len(case.bearings)} bearings", (both,))]

@@ -1,0 +1,96 @@
+"""Bodies of a machine: a shaft, a ring, a housing. Each moves by itself, and elements act between their nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+COORDINATES = "xy"  # of a node, in the order of the rows of its map: the displacements along x and y
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body with n degrees of freedom, SI units.
+
+    mass, damping, gyroscopic, stiffness: (n, n), see LinearRotor; static_load: (n,) N; unbalance_cos, unbalance_sin:
+    (n,) kg m, see LinearRotor. nodes: names and (c, n) maps of the places at which elements act and which a run
+    records, with a row for each of the COORDINATES.
+    """
+
+    mass: Array
+    damping: Array
+    gyroscopic: Array
+    stiffness: Array
+    static_load: Array
+    unbalance_cos: Array
+    unbalance_sin: Array
+    nodes: tuple[tuple[str, Array], ...]
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom."""
+        return len(self.mass)
+
+
+def point_mass(node: str, mass: float, gravity: float, unbalance: float = 0.0, external_damping: float = 0.0) -> Body:
+    """A body that moves in the plane and does not tilt: a ring, the mass of a support, a rigid rotor. mass in kg,
+    gravity in m/s^2, unbalance in kg m, external_damping against the ground in N s/m. q = [x, y]."""
+    return Body(
+        mass=mass * np.eye(2),
+        damping=external_damping * np.eye(2),
+        gyroscopic=np.zeros((2, 2)),
+        stiffness=np.zeros((2, 2)),
+        static_load=np.array([0.0, -mass * gravity]),
+        unbalance_cos=np.array([unbalance, 0.0]),
+        unbalance_sin=np.array([0.0, unbalance]),
+        nodes=((node, np.eye(2)),),
+    )
+
+
+def spin(inertia: float) -> Body:
+    """The angle of a ring that turns, in rad, which no element between nodes acts on; inertia in kg m^2."""
+    one, none = np.eye(1), np.zeros((1, 1))
+    return Body(inertia * one, none, none, none, np.zeros(1), np.zeros(1), np.zeros(1), ())
+
+
+def jeffcott_rotor(
+    mass: float,
+    journal_mass: float,
+    shaft_stiffness: float,
+    unbalance: float,
+    external_damping: float,
+    shaft_damping: float,
+    gravity: float,
+) -> Body:
+    """The symmetric Jeffcott rotor (2.4): a disk on a massless flexible shaft, two equal journals moving as one.
+
+    Masses m_D, m_J in kg, stiffness c in N/m, unbalance U of the disk in kg m, dampings d_o, d_i in N s/m, gravity in
+    m/s^2. q = [x_J, x_D, y_J, y_D]."""
+    coupling = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    weight = -gravity * np.array([journal_mass, mass])
+    return Body(
+        mass=_both_planes(np.diag([journal_mass, mass])),
+        damping=_both_planes(shaft_damping * coupling + np.diag([0.0, external_damping])),
+        gyroscopic=np.zeros((4, 4)),
+        stiffness=_both_planes(shaft_stiffness * coupling),
+        static_load=np.concatenate([np.zeros(2), weight]),
+        unbalance_cos=np.array([0.0, unbalance, 0.0, 0.0]),
+        unbalance_sin=np.array([0.0, 0.0, 0.0, unbalance]),
+        nodes=(("journal", planar(4, 0, 2)), ("disk", planar(4, 1, 3))),
+    )
+
+
+def planar(degrees: int, x: int, y: int) -> Array:
+    """(2, degrees) map that picks the degrees of freedom x and y."""
+    selection = np.zeros((2, degrees))
+    selection[0, x] = selection[1, y] = 1.0
+    return selection
+
+
+def _both_planes(matrix: Array) -> Array:
+    """The (2, 2) matrix of one plane for q = [x_J, x_D, y_J, y_D]."""
+    return np.asarray(np.kron(np.eye(2), matrix), dtype=np.float64)

@@ -1,0 +1,112 @@
+"""The contract of a shaft: what bodies, plans, costs, findings and pictures ask of it, whatever kind it is."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.rotor.body import Body
+from frbcli.rotor.linear import Array, LinearRotor
+
+if TYPE_CHECKING:
+    from frbcli.scene.shafts.turbocharger import FreeShaft
+
+
+@dataclass(frozen=True)
+class Stations:
+    """Places along a shaft. positions: (s,) in m, or over its length where a case gives none; maps: (s, 2, n) of the
+    displacements there; to_scale: whether positions are in m; marks: names and positions of bearings and disks."""
+
+    positions: Array
+    maps: Array
+    to_scale: bool
+    marks: tuple[tuple[str, float], ...]
+
+
+@dataclass(frozen=True)
+class Shaft(ABC):
+    """The shaft of a case with its disks."""
+
+    case: Case
+
+    equal_bearings: ClassVar[int] = 2  # that a bearing of the case stands for
+    gyroscopic: ClassVar[bool] = False  # whether its matrices depend on the speed
+    elastic: ClassVar[bool] = False  # whether its disk moves against its journals
+    fronts: ClassVar[float]  # steps per revolution times the root of the tolerance, where fronts of oil cross cells
+    bearings_modelled: ClassVar[tuple[str, str]] = (
+        "1 of 2", "symmetric rotor and bearings: both journals have the same motion, forces count twice"
+    )  # fmt: skip
+
+    @abstractmethod
+    def body(self) -> Body:
+        """Its body. Raises InputError if it has no modes."""
+
+    @abstractmethod
+    def undamped_body(self) -> Body:
+        """Its body with all its modes, without damping, unbalance and weight. Raises InputError if it has none."""
+
+    @property
+    @abstractmethod
+    def mass(self) -> float:
+        """Of shaft, disks and journals, kg."""
+
+    @property
+    @abstractmethod
+    def disk_count(self) -> int:
+        """Disks that a run records."""
+
+    @property
+    @abstractmethod
+    def freedoms(self) -> int:
+        """Degrees of freedom of its body, as expected before it is made."""
+
+    @abstractmethod
+    def stations(self, machine: LinearRotor) -> Stations:
+        """The places along the shaft at which mode shapes are drawn. machine: with this shaft as its first body."""
+
+    @property
+    def beam_freedoms(self) -> int:
+        """Degrees of freedom of a plane before the reduction to modes, 0 of a shaft that is not reduced."""
+        return 0
+
+    @property
+    @abstractmethod
+    def eccentricity(self) -> float:
+        """Distance of the centre of mass from the axis by the unbalance, that of all disks in phase, m."""
+
+    @property
+    def disk_mass(self) -> float:
+        """In the middle of a symmetric rotor, kg."""
+        return self.mass
+
+    @property
+    def compliance(self) -> float:
+        """Mass over stiffness in rigid bearings, the inverse square of the natural frequency in rad/s; 0 of a shaft
+        that does not bend or whose modes are not known before they are computed."""
+        return 0.0
+
+    @property
+    def natural_frequencies(self) -> tuple[tuple[float, ...], str]:
+        """The slowest ones in Hz, ascending, and how the shaft is supported then; ((), "") without any."""
+        return (), ""
+
+    def journal(self, name: str) -> str:
+        """The node of the bearing with a name."""
+        return "journal"
+
+    def free(self) -> FreeShaft:
+        """The shaft without bearings in its free modes. Raises InputError for one without sections."""
+        kind = self.case.rotor.kind
+        fault = Fault("rotor.kind", kind, None, "has no shaft of sections.", 'Take kind = "turbocharger".')
+        raise InputError(self.case.name or "case", (fault,))
+
+
+def symmetric_stations(positions: Array, maps: Array) -> Stations:
+    """Of a symmetric rotor; a disk in the middle where there are more places than its journals."""
+    disk = (("disk", 0.5),) if len(positions) > 2 else ()
+    return Stations(positions, np.asarray(maps), False, (("bearing", 0.0), *disk, ("bearing", 1.0)))

@@ -1,0 +1,131 @@
+"""Symmetric rotors on two equal bearings: rigid (2.3) and Jeffcott (2.4)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from frbcli.case.rotor import JeffcottRotor, RigidRotor
+from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
+from frbcli.rotor.linear import LinearRotor
+from frbcli.scene.shafts.shaft import Shaft, Stations, symmetric_stations
+
+BENT = 21  # places along a shaft that bends
+
+
+@dataclass(frozen=True)
+class RigidShaft(Shaft):
+    """One mass that does not tilt."""
+
+    rotor: RigidRotor
+
+    fronts: ClassVar[float] = 0.2
+
+    def body(self) -> Body:
+        """See Shaft."""
+        rotor = self.rotor
+        return point_mass("journal", rotor.mass, rotor.gravity, rotor.unbalance, rotor.external_damping)
+
+    def undamped_body(self) -> Body:
+        """See Shaft."""
+        return point_mass("journal", self.rotor.mass, 0.0)
+
+    @property
+    def mass(self) -> float:
+        """See Shaft."""
+        return self.rotor.mass
+
+    @property
+    def eccentricity(self) -> float:
+        """See Shaft."""
+        return self.rotor.unbalance / self.rotor.mass
+
+    @property
+    def disk_count(self) -> int:
+        """See Shaft."""
+        return 0
+
+    @property
+    def freedoms(self) -> int:
+        """See Shaft."""
+        return 2
+
+    def stations(self, machine: LinearRotor) -> Stations:
+        """See Shaft."""
+        journal = dict(machine.points)["journal"]
+        return symmetric_stations(np.array([0.0, 1.0]), np.stack([journal, journal]))
+
+
+@dataclass(frozen=True)
+class JeffcottShaft(Shaft):
+    """A disk on a massless elastic shaft."""
+
+    rotor: JeffcottRotor
+
+    elastic: ClassVar[bool] = True
+    fronts: ClassVar[float] = 0.55
+
+    def body(self) -> Body:
+        """See Shaft."""
+        rotor = self.rotor
+        return jeffcott_rotor(
+            rotor.mass,
+            rotor.journal_mass,
+            rotor.shaft_stiffness,
+            rotor.unbalance,
+            rotor.external_damping,
+            rotor.shaft_damping,
+            rotor.gravity,
+        )
+
+    def undamped_body(self) -> Body:
+        """See Shaft."""
+        rotor = self.rotor
+        return jeffcott_rotor(rotor.mass, rotor.journal_mass, rotor.shaft_stiffness, 0.0, 0.0, 0.0, 0.0)
+
+    @property
+    def mass(self) -> float:
+        """See Shaft."""
+        return self.rotor.mass + self.rotor.journal_mass
+
+    @property
+    def disk_mass(self) -> float:
+        """See Shaft."""
+        return self.rotor.mass
+
+    @property
+    def eccentricity(self) -> float:
+        """See Shaft."""
+        return self.rotor.unbalance / self.rotor.mass
+
+    @property
+    def disk_count(self) -> int:
+        """See Shaft."""
+        return 1
+
+    @property
+    def freedoms(self) -> int:
+        """See Shaft."""
+        return 4
+
+    @property
+    def compliance(self) -> float:
+        """See Shaft."""
+        return self.rotor.mass / self.rotor.shaft_stiffness
+
+    @property
+    def natural_frequencies(self) -> tuple[tuple[float, ...], str]:
+        """See Shaft."""
+        frequency = math.sqrt(self.rotor.shaft_stiffness / self.rotor.mass) / (2.0 * math.pi)
+        return (frequency,), "in rigid bearings"
+
+    def stations(self, machine: LinearRotor) -> Stations:
+        """See Shaft: the massless shaft bends to both sides of its disk as a beam that is loaded there."""
+        nodes = dict(machine.points)
+        positions = np.linspace(0.0, 1.0, BENT)
+        half = np.minimum(positions, 1.0 - positions)
+        share = (3.0 * half - 4.0 * half**3)[:, None, None]
+        return symmetric_stations(positions, (1.0 - share) * nodes["journal"] + share * nodes["disk"])

@@ -1,0 +1,175 @@
+"""A turbocharger's shaft of sections with its wheels, in its lowest free modes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from frbcli.case.rotor import TurbochargerRotor
+from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.rotor.beam import ELEMENTS, BeamSection
+from frbcli.rotor.body import Body
+from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.reduction import MOST, RIGID, FreeModes, ReductionError, free_modes, reduction_error
+from frbcli.rotor.turbocharger import Journal, Wheel, turbocharger_rotor, wheels_on_shaft
+from frbcli.scene.shafts.shaft import Shaft, Stations
+
+FREQUENCIES = 3  # bending modes that are shown
+
+
+@dataclass(frozen=True)
+class FreeShaft:
+    """A shaft in its free modes. modes: all of each plane; kept: how many of them its body has; journals: places of all
+    bearings, those with a film first; wheels: its disks."""
+
+    modes: FreeModes
+    kept: int
+    journals: tuple[Journal, ...]
+    wheels: tuple[Wheel, ...]
+
+    @property
+    def held(self) -> Array:
+        """(b, n) displacements of the modes at the bearings."""
+        return np.stack([self.modes.at(journal.position) for journal in self.journals])
+
+    def reduction_error(self, springs: Array, omega: float) -> ReductionError:
+        """What the modes leave out that are not kept, on springs (b,) in N/m, at omega rad/s."""
+        return reduction_error(self.modes, self.kept, self.held, springs, omega)
+
+
+@dataclass(frozen=True)
+class TurbochargerShaft(Shaft):
+    """Rigid wheels on an elastic shaft in any bearings."""
+
+    rotor: TurbochargerRotor
+
+    equal_bearings: ClassVar[int] = 1
+    gyroscopic: ClassVar[bool] = True
+    elastic: ClassVar[bool] = True
+    fronts: ClassVar[float] = 0.55
+
+    @property
+    def bearings_modelled(self) -> tuple[str, str]:  # type: ignore[override]
+        """See Shaft."""
+        count = len(self.case.given_bearings)
+        return f"{count} of {count}", "the rotor is not symmetric"
+
+    def body(self) -> Body:
+        """See Shaft."""
+        rotor, free = self.rotor, self.free()
+        modes = free.modes.lowest(free.kept)
+        return turbocharger_rotor(
+            modes, free.wheels, free.journals, rotor.modal_damping, rotor.external_damping, rotor.gravity
+        )
+
+    def undamped_body(self) -> Body:
+        """See Shaft."""
+        free = self.free()
+        return turbocharger_rotor(free.modes, free.wheels, free.journals, 0.0, 0.0, 0.0)
+
+    def free(self) -> FreeShaft:
+        """See Shaft. Raises InputError where masses and stiffnesses differ by too many powers of ten for its modes."""
+        return self._free
+
+    @cached_property
+    def _free(self) -> FreeShaft:
+        case = self.case
+        sections = [
+            BeamSection(
+                part.length,
+                part.diameter,
+                part.inner_diameter,
+                part.density,
+                part.youngs_modulus,
+                part.poisson_ratio,
+            )
+            for part in case.shaft
+        ]
+        bearings = (*case.bearings, *case.elements)
+        journals = tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in bearings)
+        try:
+            modes = free_modes(wheels_on_shaft(sections, self._wheels, journals))
+        except NotConverged as error:
+            problem = f"is no shaft whose motion can be computed. {error}"
+            remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."
+            fault = Fault("shaft", f"{len(sections)} sections", None, problem, remedy)
+            raise InputError(case.name or "case", (fault,)) from None
+        cutoff = self.rotor.cutoff
+        count = self.rotor.modes if cutoff is None else modes.below(2 * math.pi * cutoff)
+        return FreeShaft(modes, min(max(count, RIGID), len(modes.frequencies)), journals, self._wheels)
+
+    @property
+    def _wheels(self) -> tuple[Wheel, ...]:
+        """The disks of the case; those without a name are numbered."""
+        return tuple(
+            Wheel(
+                disk.name or str(number),
+                disk.position,
+                disk.mass,
+                disk.polar_inertia,
+                disk.diametral_inertia,
+                disk.unbalance,
+                disk.phase,
+            )
+            for number, disk in enumerate(self.case.disks, start=1)
+        )
+
+    @property
+    def mass(self) -> float:
+        """See Shaft."""
+        areas = (0.25 * math.pi * (part.diameter**2 - part.inner_diameter**2) for part in self.case.shaft)
+        shaft = sum(area * part.length * part.density for area, part in zip(areas, self.case.shaft, strict=True))
+        return shaft + sum(disk.mass for disk in self.case.disks)
+
+    @property
+    def eccentricity(self) -> float:
+        """See Shaft."""
+        return sum(disk.unbalance for disk in self.case.disks) / self.mass
+
+    @property
+    def disk_count(self) -> int:
+        """See Shaft."""
+        return len(self.case.disks)
+
+    @property
+    def freedoms(self) -> int:
+        """See Shaft: below a cut-off as many modes of a plane as the shaft without its wheels has half waves at that
+        frequency."""
+        rotor = self.rotor
+        if rotor.cutoff is None:
+            return 2 * min(rotor.modes, self.beam_freedoms)
+        omega, waves = 2.0 * math.pi * rotor.cutoff, 0.0
+        for part in self.case.shaft:
+            gyration = math.hypot(part.diameter, part.inner_diameter) / 4.0
+            sound = math.sqrt(part.youngs_modulus / part.density)
+            waves += part.length * math.sqrt(omega / (gyration * sound)) / math.pi
+        return 2 * int(min(RIGID + waves, MOST, self.beam_freedoms))
+
+    @property
+    def beam_freedoms(self) -> int:
+        """See Shaft."""
+        case = self.case
+        return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.given_bearings))
+
+    @property
+    def natural_frequencies(self) -> tuple[tuple[float, ...], str]:
+        """See Shaft. Raises InputError if it has no modes."""
+        frequencies = self.free().modes.frequencies[RIGID : RIGID + FREQUENCIES] / (2.0 * math.pi)
+        return tuple(frequencies.tolist()), "free, at rest"
+
+    def journal(self, name: str) -> str:
+        """See Shaft."""
+        return f"journal_{name}"
+
+    def stations(self, machine: LinearRotor) -> Stations:
+        """See Shaft."""
+        free = self.free()
+        maps = np.zeros((len(free.modes.positions), 2, machine.size))
+        maps[:, 0, : free.kept] = maps[:, 1, free.kept : 2 * free.kept] = free.modes.shapes[:, : free.kept]
+        marks = [(bearing.name, bearing.position or 0.0) for bearing in self.case.given_bearings]
+        marks += [(disk.name, disk.position) for disk in self.case.disks]
+        return Stations(free.modes.positions, maps, True, tuple(marks))
