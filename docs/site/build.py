@@ -221,7 +221,8 @@ def configuration(source: Path, target: Path) -> str:
     guides = ("terms", "case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements",
               "report", "bearing-sheet", "rotors", "standards", "floating-rings", "elements", "limit-cycles",
               "couplings", "sweeps")  # fmt: skip
-    science = ("theory", "equations", "heat", "validation", "accuracy", "hard-cases", "architecture", "adding-a-model")
+    science = ("theory", "equations", "heat", "validation", "accuracy")
+    development = ("architecture", "adding-a-model", "accuracy-measured", "limit-cycles-method", "hard-cases")
 
     def entries(names: tuple[str, ...]) -> str:
         return "\n".join(f"      - {name.replace('-', ' ')}: {name}.md" for name in names)
@@ -258,6 +259,8 @@ nav:
 {entries(guides)}
   - science:
 {entries(science)}
+  - development:
+{entries(development)}
   - Python: reference.md
 """
 

@@ -1,4 +1,4 @@
-"""Measures true against stated error and real against predicted cost, and writes docs/accuracy.md.
+"""Measures true against stated error and real against predicted cost, and writes docs/accuracy-measured.md.
 
 `cd tests && python -m accuracy.report FOLDER [CASE ...]`: ladders and full runs are kept in FOLDER and taken from it
 the next time. With cases named, these alone are measured, and the page is left as it is. Half an hour in all.
@@ -16,7 +16,7 @@ from accuracy.kinematic import KINEMATIC, Stated, stated
 from accuracy.measured import CASES, PICTURES, Cost, Ladder, Rung, cost, ladder
 
 HERE = Path(__file__).parent
-PAGE = HERE.parent.parent / "docs" / "accuracy.md"
+PAGE = HERE.parent.parent / "docs" / "accuracy-measured.md"
 BOUNDED, OVERSTATED, ABOVE_FRONT, COST_FACTOR = 0.95, 20.0, 1.5, 2.0  # the requirements
 NEGLIGIBLE = 1e-9  # an error that is no error: a signal that stays zero
 
