@@ -19,13 +19,12 @@ from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
 from frbcli.cycles.method.balance import Balance, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable
-from frbcli.cycles.method.equilibria import Resting, hopf_points, settled
+from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, settled
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import LimitCycles
-from frbcli.equilibrium.resting import resting_position, ring_speeds
+from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
-from frbcli.rotor.held import held_rotor
 from frbcli.scene.remedies import advised
 
 Array = NDArray[np.float64]
@@ -106,10 +105,7 @@ def resting_over(family: Family, lowest: float) -> Resting:
     """Resting positions over the key, ascending, sought from the largest value on. Raises Unreachable,
     NotConverged."""
     with advised(family.case):
-        system, machine = family.system(1.0), family.machine(1.0)
-        q = resting_position(system, family.omega)
-    turning = ring_speeds(system, held_rotor(system.rotor, family.omega), family.omega, system.rotor.journals @ q)
-    near = np.concatenate([machine.places @ q[: machine.rotor.size], turning / machine.pace])
+        near = at_rest(family.machine(1.0), resting_position(family.system(1.0), family.omega))
     points = []
     for share in np.linspace(1.0, lowest, POINTS):
         points.append(settled(family.machine(float(share)), near, family.omega, float(share)))

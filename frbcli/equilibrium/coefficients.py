@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.equilibrium.resting import ring_speeds
+from frbcli.equilibrium.resting import RestingPosition
 from frbcli.equilibrium.static_films import StaticFilms
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.rotor.held import held_rotor
 from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
@@ -73,25 +72,22 @@ def settled_force(system: System, i: int, place: Array, total: float, near: Film
 
 @dataclass(frozen=True)
 class FilmsAtRest:
-    """The films of a machine at rest. journals: (films, 2) in m; ring_speeds: (rings,) rad/s; totals: (films,)
-    omega_J + omega_S; forces: of the films."""
+    """The films of a machine at rest. position: of the machine; totals: (films,) omega_J + omega_S; forces: of the
+    films."""
 
-    journals: Array
-    ring_speeds: Array
+    position: RestingPosition
     totals: Array
     forces: tuple[FilmForce, ...]
 
 
-def films_at_rest(system: System, omega: float, resting: Array, near: Sequence[FilmForce] = ()) -> FilmsAtRest:
-    """The films at omega rad/s in the displacements `resting` (n,) in m; near: in a motion near by, if known. Raises
-    NotConverged."""
-    journals = system.rotor.journals @ resting
-    turning = ring_speeds(system, held_rotor(system.rotor, omega), omega, journals)
-    totals = system.omegas(omega, turning)
+def films_at_rest(system: System, omega: float, position: RestingPosition) -> FilmsAtRest:
+    """The films of a machine that rests at omega rad/s. Raises NotConverged."""
+    totals, near = system.omegas(omega, position.ring_speeds), position.films
     forces = tuple(
-        settled_force(system, i, place, float(totals[i]), near[i] if near else None) for i, place in enumerate(journals)
+        settled_force(system, i, place, float(totals[i]), near[i] if near else None)
+        for i, place in enumerate(position.journals)
     )
-    return FilmsAtRest(journals, turning, totals, forces)
+    return FilmsAtRest(position, totals, forces)
 
 
 def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]]) -> float:

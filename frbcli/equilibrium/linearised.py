@@ -22,6 +22,10 @@ def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arra
 
 def state_matrix(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Array:
     """(2 n, 2 n) of the states (q, q'), as `linearised`."""
-    mass, d, k = linearised(rotor, omega, stiffness, damping)
+    return first_order(*linearised(rotor, omega, stiffness, damping))
+
+
+def first_order(mass: Array, damping: Array, stiffness: Array) -> Array:
+    """(2 n, 2 n) A of x' = A x, x = (q, q'), for M q'' + D q' + K q = 0 with matrices (n, n)."""
     n = len(mass)
-    return np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(mass, np.hstack([k, d]))]])
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(mass, np.hstack([stiffness, damping]))]])

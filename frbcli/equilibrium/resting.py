@@ -9,6 +9,7 @@ journals: they are no unknowns of their own.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,22 +32,35 @@ OUTER_START = 0.9  # eccentricity of the last start that is tried
 NUDGE = 1e-6  # of the clearance: of the differences by which the rings' speeds follow a journal
 
 
-def resting_position(system: System, omega: float, start: Array | None = None) -> Array:
-    """(n,) displacements in which the rotor rests at omega rad/s; sought from those of `start`, then from the centre.
+@dataclass(frozen=True)
+class RestingPosition:
+    """A machine at rest. displacements: (n,) in m, rings at their angle 0; journals: (films, 2) in m; ring_speeds:
+    (rings,) rad/s at which the torques on the rings balance; films: the films there, () where nothing turns and nothing
+    has to be carried."""
+
+    displacements: Array
+    journals: Array
+    ring_speeds: Array
+    films: tuple[FilmForce, ...]
+
+    def velocities(self, system: System) -> Array:
+        """(n,) those of all degrees of freedom: the rings turn."""
+        found = np.zeros_like(self.displacements)
+        found[list(system.spins)] = self.ring_speeds
+        return found
+
+
+def resting_position(system: System, omega: float, start: Array | None = None) -> RestingPosition:
+    """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), then from the centre.
 
     Raises NotConverged if no start leads to one.
     """
-    return resting_films(system, omega, start)[0]
-
-
-def resting_films(system: System, omega: float, start: Array | None = None) -> tuple[Array, tuple[FilmForce, ...]]:
-    """As resting_position, with the films there; without them where nothing turns and nothing has to be carried."""
     held, clearances = held_rotor(system.rotor, omega), np.array(system.clearances)[:, None]
     loads = held.load.reshape(-1, 2)
     size = np.linalg.norm(loads, axis=1, keepdims=True)
     along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
     if not system.names:
-        return held.shape, ()
+        return _position(system, held, omega, held.shape, ())
     starts = [np.zeros_like(loads), OUTER_START * clearances * along]
     if start is not None:
         starts.insert(0, system.rotor.journals @ start)
@@ -54,15 +68,22 @@ def resting_films(system: System, omega: float, start: Array | None = None) -> t
     for first in starts:
         position, residual, films = _newton(system, held, omega, first)
         if residual is None:
-            return held.shape + held.following @ position.ravel(), films
+            return _position(system, held, omega, held.shape + held.following @ position.ravel(), films)
         left = min(left, residual)
     if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
-        return held.shape, ()
+        return _position(system, held, omega, held.shape, ())
     raise NotConverged(
         f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
         f"{len(starts)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. "
         "Ask for a higher speed, or give the bearing more viscosity, more width or less clearance."
     )
+
+
+def _position(
+    system: System, held: HeldRotor, omega: float, displacements: Array, films: tuple[FilmForce, ...]
+) -> RestingPosition:
+    journals = system.rotor.journals @ displacements
+    return RestingPosition(displacements, journals, ring_speeds(system, held, omega, journals), films)
 
 
 def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) -> Array:

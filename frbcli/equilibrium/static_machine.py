@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm, coefficient_error, films_at_rest, resting_film
-from frbcli.equilibrium.resting import resting_films
+from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
@@ -22,14 +22,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MachineAtRest:
-    """A machine at omega rad/s. static: its films at their viscosities; resting: (n,) displacements in m; films:
-    coefficients and their error; at_rest: the films as they are solved; warm: the heat of the machine, None without;
-    others: the same on other meshes, each with the share of the difference that is the error, see MeshFilms; none
-    without errors."""
+    """A machine at omega rad/s. static: its films at their viscosities; films: coefficients and their error; at_rest:
+    its position and the films as they are solved; warm: the heat of the machine, None without; others: the same on
+    other meshes, each with the share of the difference that is the error, see MeshFilms; none without errors."""
 
     static: StaticFilms
     omega: float
-    resting: Array
     films: tuple[RestingFilm, ...]
     at_rest: FilmsAtRest
     warm: WarmMachine | None = None
@@ -67,32 +65,32 @@ class StaticMachines:
         """The machine at omega rad/s, sought from one near it; with_error: whether errors of the coefficients are
         wanted, else they are NaN. Raises NotConverged."""
         warm, static = None, self._static
-        start = None if near is None else near.resting
+        start = None if near is None else near.at_rest.position.displacements
         if self._heat is not None:
             warm = self._heat.at(omega, None if near is None else near.warm)
             viscosities, clearances = (
                 np.array([getattr(film, name) for film in warm.films]) for name in ("viscosity", "clearance")
             )
-            static, start = static.warm(viscosities, clearances), warm.resting
+            static, start = static.warm(viscosities, clearances), warm.resting.displacements
         others: list[tuple[FilmsAtRest, float]] = []
         if static.on_cells:  # a coarse mesh also brings the journals near to where they rest
             start, others = _on_others(static.others if with_error else static.others[:1], omega, start)
-        resting, near_by = resting_films(static.system, omega, start)
-        found = films_at_rest(static.system, omega, resting, near_by)
+        position = resting_position(static.system, omega, start)
+        found = films_at_rest(static.system, omega, position)
         if with_error and not static.on_cells:
-            _, others = _on_others(static.others, omega, resting)
+            _, others = _on_others(static.others, omega, position.displacements)
         films = tuple(
             resting_film(
                 name,
                 force,
-                found.journals[i] / static.system.clearances[i],
+                position.journals[i] / static.system.clearances[i],
                 coefficient_error(force, [(other.forces[i], share) for other, share in others])
                 if with_error
                 else math.nan,
             )
             for i, (name, force) in enumerate(zip(static.system.names, found.forces, strict=True))
         )
-        return MachineAtRest(static, omega, resting, films, found, warm, tuple(others) if with_error else ())
+        return MachineAtRest(static, omega, films, found, warm, tuple(others) if with_error else ())
 
 
 def _on_others(
@@ -103,9 +101,9 @@ def _on_others(
     found = []
     for mesh in meshes:
         try:
-            resting, near_by = resting_films(mesh.system, omega, start)
-            found.append((films_at_rest(mesh.system, omega, resting, near_by), mesh.share))
-            start = resting
+            position = resting_position(mesh.system, omega, start)
+            found.append((films_at_rest(mesh.system, omega, position), mesh.share))
+            start = position.displacements
         except NotConverged:
             continue
     return start, found

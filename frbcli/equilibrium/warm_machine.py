@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.equilibrium.resting import resting_position, ring_speeds
+from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.errors import Fault, InputError
 from frbcli.film.grid import Array
-from frbcli.rotor.held import held_rotor
 from frbcli.scene.film_faults import require_films
 from frbcli.scene.machine.heat import Heat, heat_of
 from frbcli.scene.machine.system import System, make_system
@@ -46,12 +45,12 @@ class RingTemperature:
 
 @dataclass(frozen=True)
 class WarmMachine:
-    """A machine whose heat balances. system: at its viscosities and clearances; resting: (n,) displacements in m;
+    """A machine whose heat balances. system: at its viscosities and clearances; resting: where it rests;
     steady: what the balance says; films, rings: the same by name; carried, given: W that the oil and the walls take;
     balance: what is left over, relative to the power."""
 
     system: System
-    resting: Array
+    resting: RestingPosition
     steady: SteadyHeat
     films: tuple[FilmTemperature, ...]
     rings: tuple[RingTemperature, ...]
@@ -92,13 +91,12 @@ class WarmMachines:
         def solve(viscosities: Array, clearances: Array) -> FilmHeat:
             nonlocal system, resting
             system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
-            resting = resting_position(system, omega, resting)
-            journals = system.rotor.journals @ resting
-            spins = ring_speeds(system, held_rotor(system.rotor, omega), omega, journals)
-            power, flow = _film_heat(system, journals, np.concatenate([[omega], spins]))
+            resting = resting_position(system, omega, None if resting is None else resting.displacements)
+            bodies = np.concatenate([[omega], resting.ring_speeds])
+            power, flow = _film_heat(system, resting.journals, bodies)
             if self._concentric:
                 flow = self._heat.concentric * clearances**3 / viscosities
-            return FilmHeat(power, flow, np.concatenate([[omega], spins]))
+            return FilmHeat(power, flow, bodies)
 
         begin = self._heat.start if near is None else near.steady.temperatures
         speeds = np.zeros(1 + system.ring_count)
@@ -107,7 +105,7 @@ class WarmMachines:
         assert resting is not None
         return self._machine(system, resting, found)
 
-    def _machine(self, system: System, resting: Array, found: SteadyHeat) -> WarmMachine:
+    def _machine(self, system: System, resting: RestingPosition, found: SteadyHeat) -> WarmMachine:
         t, films = found.temperatures, found.films
         rows = zip(t, found.viscosities, found.clearances, films.power, films.flow, strict=False)
         names = (name or "film" for name in system.names)

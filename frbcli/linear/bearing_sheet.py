@@ -128,7 +128,7 @@ def sommerfeld_chart(
 
 def _states(machine: MachineAtRest) -> list[FilmState]:
     """The states of the films of a machine."""
-    volumes, bodies = machine.static.volumes(), np.concatenate([[machine.omega], machine.at_rest.ring_speeds])
+    volumes, bodies = machine.static.volumes(), np.concatenate([[machine.omega], machine.at_rest.position.ring_speeds])
     warm = (math.nan,) * len(volumes) if machine.warm is None else [film.temperature for film in machine.warm.films]
     return [
         film_state(machine.static, volume, i, bodies, film, temperature)

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.hopf import oscillating
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.stability import stability_points
-from frbcli.linear.stability_point import OSCILLATING
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.scene.shafts.table import shaft_of
@@ -117,8 +117,7 @@ def _eigenvectors(
     """Eigenvalues with positive imaginary part in 1/s, and displacements (n,), as eigenvalues of stability.py."""
     n = rotor.size
     values, vectors = np.linalg.eig(state_matrix(rotor, omega, stiffness, damping))
-    chosen = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
-    return [(complex(values[i]), vectors[:n, i]) for i in chosen]
+    return [(complex(values[i]), vectors[:n, i]) for i in np.flatnonzero(oscillating(values))]
 
 
 def _direction(motion: Amplitudes) -> str:

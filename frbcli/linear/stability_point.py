@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
@@ -18,7 +19,6 @@ from frbcli.rotor.order import fastest_first, ranks
 Array = NDArray[np.float64]
 Eigenvalues = NDArray[np.complex128]
 
-OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 DIVERGENT = 1e-9  # real part over the largest absolute value from which a motion grows without oscillating
 
 
@@ -41,6 +41,11 @@ class StabilityPoint:
     warm: WarmMachine | None = None
 
     @property
+    def value(self) -> float:
+        """Rotor speed in Hz, over which thresholds are sought."""
+        return self.speed_Hz
+
+    @property
     def status(self) -> str:
         """ "resting" | "not-converged"."""
         return "not-converged" if self.problem else "resting"
@@ -52,8 +57,8 @@ class StabilityPoint:
 
     @property
     def oscillating(self) -> Eigenvalues:
-        """See oscillating_eigenvalues."""
-        return oscillating_eigenvalues(self.eigenvalues)
+        """One eigenvalue of each oscillating pair, that with positive imaginary part, ascending in frequency."""
+        return self.eigenvalues[hopf.oscillating(self.eigenvalues)]
 
     @property
     def modes(self) -> Eigenvalues:
@@ -61,7 +66,7 @@ class StabilityPoint:
         decay, the slowest first."""
         size = np.abs(self.eigenvalues)
         divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
-        told: Eigenvalues = self.eigenvalues[(self.eigenvalues.imag > OSCILLATING * size) | divergent]
+        told: Eigenvalues = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
         return told[fastest_first(told)]
 
     @property
@@ -80,6 +85,10 @@ class StabilityPoint:
         """Real part of the critical eigenvalue, 1/s: positive where a whirl grows; NaN without a resting position."""
         return self.critical.real
 
+    def growth_of(self, number: int) -> float:
+        """That of the whirl number 0, 1, ... by falling growth; of the critical eigenvalue where none oscillates."""
+        return hopf.growth_of(self.eigenvalues, number) if len(self.oscillating) else self.growth
+
 
 def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Eigenvalues:
     """(2 n,) eigenvalues in 1/s of the rotor at omega rad/s on bearings of stiffness and damping (films, 2, 2).
@@ -93,16 +102,11 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
     return values[np.lexsort((-values.imag, frequency, values.real, equal))]
 
 
-def oscillating_eigenvalues(values: Eigenvalues) -> Eigenvalues:
-    """One eigenvalue of each oscillating pair, that with positive imaginary part, ascending in frequency."""
-    return values[values.imag > OSCILLATING * np.abs(values)]
-
-
 def critical_eigenvalue(values: Eigenvalues) -> complex:
     """The eigenvalue with the largest real part among those that oscillate, or among all where none does; NaN of
     none."""
-    oscillating = oscillating_eigenvalues(values)
-    candidates = oscillating if len(oscillating) else values
+    whirling = hopf.oscillating(values)
+    candidates = values[whirling] if whirling.any() else values
     return complex(candidates[fastest_first(candidates)[0]]) if len(candidates) else complex(math.nan, math.nan)
 
 
@@ -118,6 +122,6 @@ def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Eigenvalu
 
 def point_at_rest(machine: MachineAtRest, speed: float) -> StabilityPoint:
     """The point at a speed in Hz of a machine that rests."""
-    rings = tuple((machine.at_rest.ring_speeds / (2 * math.pi)).tolist())
+    rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
     values = machine_eigenvalues(machine, machine.at_rest)
     return StabilityPoint(speed, machine.films, values, ring_speeds_Hz=rings, warm=machine.warm)

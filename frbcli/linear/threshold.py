@@ -8,13 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from frbcli.case.schema import Case
+from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import NotConverged
 from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, machine_eigenvalues, point_at_rest
 from frbcli.scene.remedies import advised
 
-THRESHOLD_TOLERANCE = 1e-9  # relative tolerance of the speed: one step of brentq beyond 1e-6
+THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
 AHEAD = 1e-3  # of the speed, for the derivative of the eigenvalue
 
 
@@ -51,7 +52,7 @@ def find_threshold(
         return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
     for place, (below, above) in enumerate(itertools.pairwise(resting)):
         if above.growth > 0.0:
-            threshold, problem = _crossing(case, machines, below.speed_Hz, above.speed_Hz)
+            threshold, problem = _crossing(case, machines, below, above)
             return threshold, problem + _stable_again(resting[place + 1 :])
     return None, f"Stable up to the highest speed: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
 
@@ -75,24 +76,22 @@ def _stable_again(points: Sequence[StabilityPoint]) -> str:
     return f" No motion grows at {len(stable)} higher speeds, from {stable[0]:.4g} to {stable[-1]:.4g} Hz."
 
 
-def _crossing(case: Case, machines: StaticMachines, low: float, high: float) -> tuple[Threshold | None, str]:
-    """The threshold between two speeds in Hz."""
-    from scipy.optimize import brentq  # runs, which need eigenvalues alone, need not wait for its import
-
-    def growth(speed: float) -> float:
-        return _critical(machines, speed).real
-
+def _crossing(
+    case: Case, machines: StaticMachines, low: StabilityPoint, high: StabilityPoint
+) -> tuple[Threshold | None, str]:
+    """The threshold between two points."""
     try:
         with advised(case):
-            speed = brentq(growth, low, high, xtol=THRESHOLD_TOLERANCE * low, rtol=THRESHOLD_TOLERANCE)
-            return _with_error(machines, speed), ""
+            found = hopf.located(lambda speed: _point(machines, speed), low, high, 0, THRESHOLD_TOLERANCE)
+            return _with_error(machines, found.speed_Hz), ""
     except NotConverged as error:
-        return None, f"A threshold lies between {low:.4g} and {high:.4g} Hz, but was not found: {error}"
+        between = f"{low.speed_Hz:.4g} and {high.speed_Hz:.4g} Hz"
+        return None, f"A threshold lies between {between}, but was not found: {error}"
 
 
-def _critical(machines: StaticMachines, speed: float) -> complex:
-    """The critical eigenvalue in 1/s at a speed in Hz."""
-    return point_at_rest(machines.at(2 * math.pi * speed, with_error=False), speed).critical
+def _point(machines: StaticMachines, speed: float) -> StabilityPoint:
+    """The machine at a speed in Hz."""
+    return point_at_rest(machines.at(2 * math.pi * speed, with_error=False), speed)
 
 
 def _with_error(machines: StaticMachines, speed: float) -> Threshold:
@@ -101,7 +100,7 @@ def _with_error(machines: StaticMachines, speed: float) -> Threshold:
     machine = machines.at(2 * math.pi * speed)
     own = point_at_rest(machine, speed).critical
     frequency = own.imag / (2 * math.pi)
-    slope = (_critical(machines, speed * (1.0 + AHEAD)) - own) / (AHEAD * speed)
+    slope = (_point(machines, speed * (1.0 + AHEAD)).critical - own) / (AHEAD * speed)
     known = machine.static.case.bearings == () or bool(machine.others)
     least = (LEAST if machine.static.case.bearings else THRESHOLD_TOLERANCE) if known else math.nan
     speeds, frequencies = [least * speed], [least * frequency]

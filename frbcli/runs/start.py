@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from frbcli.case.schema import Start
-from frbcli.equilibrium.resting import resting_position, ring_speeds
+from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import unbalance_shares
@@ -75,9 +75,8 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
         held = held_rotor(rotor, float(profile.speeds[0]))
         q = held.shape + held.following @ np.outer(system.clearances, start.displacement).ravel()
     elif start.position == "resting":
-        omega = float(profile.speeds[0])
-        q = resting_position(system, omega)
-        v[list(system.spins)] = ring_speeds(system, held_rotor(rotor, omega), omega, rotor.journals @ q)
+        resting = resting_position(system, float(profile.speeds[0]))
+        q, v = resting.displacements, resting.velocities(system)
     return state_at(system, profile, q, v)
 
 

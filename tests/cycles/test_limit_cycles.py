@@ -24,13 +24,12 @@ from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import film_loads, transfer
-from frbcli.equilibrium.resting import resting_position, ring_speeds
+from frbcli.equilibrium.resting import resting_position
 from frbcli.film.cells.motion import turned
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.stability import stability
-from frbcli.rotor.held import held_rotor
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
 from frbcli.runs.start import rotor_data, state_at
@@ -101,7 +100,7 @@ def test_small_cycles_have_the_amplitude_of_the_normal_form(gamma: float) -> Non
     machine, step = machine_of(case), 1e-4 * hopf.speed_Hz
     system = make_system(case, make_plan(case))
     near = resting_curve(system, machine, *(2.0 * math.pi * (hopf.speed_Hz + side * step) for side in (-1.0, 1.0)))
-    slope = (near.points[-1].growth(0) - near.points[0].growth(0)) / (2.0 * step)
+    slope = (near.points[-1].growth_of(0) - near.points[0].growth_of(0)) / (2.0 * step)
     ratios = []
     for cycle in found.branches[0].points[:2]:
         size = 2.0 * np.abs(cycle.harmonics[1]).max()  # the mode's largest displacement is 1
@@ -223,9 +222,8 @@ def test_a_disturbance_above_the_threshold_grows_by_the_eigenvalue(name: str) ->
     system, machine = make_system(case, plan), machine_of(case)
     curve = resting_curve(system, machine, 0.3 * machine.pace, machine.pace)
     omega = 1.01 * curve.hopf[0].equilibrium.omega
-    q, spins, n = resting_position(system, omega), list(system.spins), machine.rotor.size
-    v = np.zeros_like(q)
-    v[spins] = ring_speeds(system, held_rotor(system.rotor), omega, system.rotor.journals @ q)
+    rest, spins, n = resting_position(system, omega), list(system.spins), machine.rotor.size
+    q, v = rest.displacements, rest.velocities(system)
     space, u = state_space(machine), np.concatenate([machine.places @ q[:n], v[n:] / machine.pace])
     loads = film_loads(machine, u[None], np.zeros((1, machine.size)), omega)
     values, states = np.linalg.eig(space.matrix(omega, loads.by_u[0], loads.by_v[0]))

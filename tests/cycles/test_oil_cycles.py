@@ -172,7 +172,7 @@ def test_a_disturbance_at_rest_grows_as_the_slow_motions_say() -> None:
     rest = settled(shooting, omega)
     assert rest is not None
     number = rest.whirls[0]
-    rate, state = complex(rest.rates[number]), rest.states[:, number]
+    rate, state = complex(rest.eigenvalues[number]), rest.states[:, number]
     assert rate.real > 0.0
     assert not rest.stable
     turn, size = 2.0 * math.pi / omega, 0.02 / np.abs(state[:2]).max()
@@ -199,7 +199,7 @@ def test_a_film_that_stays_full_has_the_eigenvalues_of_sommerfeld() -> None:
     np.testing.assert_allclose(rest.displacement[0], point.films[0].displacement, atol=1e-4)
     number = rest.whirls[0]
     expected = point.oscillating[np.argmax(point.oscillating.real)]
-    assert abs(rest.rates[number] - expected) < 2e-4 * abs(expected)
+    assert abs(rest.eigenvalues[number] - expected) < 2e-4 * abs(expected)
     assert rest.growth_of(0) == pytest.approx(expected.real, rel=0.01)
 
 
@@ -231,7 +231,7 @@ def test_films_whose_map_changes_from_period_to_period_are_told(settings: list[s
 def test_shooting_begins_at_rest() -> None:
     """The state of a machine goes into numbers and back."""
     flow, omega = period_map(frbcli.load_case("rigid-two-phase", FED)), 500.0
-    q = resting_position(flow.system, omega)
+    q = resting_position(flow.system, omega).displacements
     rest = settled(Shooting(flow, omega), omega)
     assert rest is not None
     again = flow.unpacked(flow.packed(rest.wet, omega), rest.wet, omega)

@@ -112,7 +112,7 @@ def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:
     rests = [shooting.rest(flow.wet(np.zeros(4), speed), speed) for speed in (1.15, 1.4)]
     (found,) = thresholds(shooting, [rest for rest in rests if rest is not None])
     assert found.rest.omega == pytest.approx(1.3, rel=1e-5)
-    assert found.rest.rates[found.number].imag == pytest.approx(0.3 * 0.5 * 1.3, rel=1e-5)
+    assert found.rest.eigenvalues[found.number].imag == pytest.approx(0.3 * 0.5 * 1.3, rel=1e-5)
     assert found.uncertainty < 1e-5
 
 

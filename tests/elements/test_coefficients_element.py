@@ -18,7 +18,7 @@ import frbcli
 from frbcli.case.machine_keys import machine_fault
 from frbcli.case.reading.load import case_from_dict, load_case_text
 from frbcli.equilibrium.coefficients import coefficients_of
-from frbcli.equilibrium.resting import resting_films
+from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.modes import natural_modes
@@ -417,7 +417,7 @@ def test_a_seal_shifts_the_threshold_as_its_stiffness_in_the_matrices() -> None:
     system = make_system(alone, make_plan(alone), rotor)
     for share, grows in ((1.0 - 1e-6, False), (1.0 + 1e-6, True)):
         omega = share * TURN * threshold.speed_Hz
-        _, films = resting_films(system, omega)
+        films = resting_position(system, omega).films
         found = eigenvalues(
             rotor, omega, *(-np.array([getattr(film, name) for film in films]) for name in
                             ("by_displacement", "by_velocity"))

@@ -211,7 +211,7 @@ def test_two_equal_bearings_rest_and_swing_as_one_that_counts_twice() -> None:
     one = make_system(case, make_plan(case))
     two = system_of(rigid_on_two_bearings(0.0), one.films.bearings * 2, one.films.loop * 2)
     omega = 2 * math.pi * 100.0
-    single, both = resting_position(one, omega), resting_position(two, omega)
+    single, both = (resting_position(each, omega).displacements for each in (one, two))
     np.testing.assert_allclose(two.rotor.journals @ both, [single, single], rtol=1e-9)
     force = evaluate(one.films.loop[0], one.clearances[0], single, np.zeros(2), omega)
     k, d = -force.by_displacement, -force.by_velocity
@@ -228,7 +228,7 @@ def test_unequal_loads_are_shared_by_the_levers() -> None:
     one = make_system(case, make_plan(case))
     rotor = rigid_on_two_bearings(0.01)
     omega = 2 * math.pi * 60.0
-    journals = rotor.journals @ resting_position(system_of(rotor, one.films.bearings * 2, one.films.loop * 2), omega)
+    journals = resting_position(system_of(rotor, one.films.bearings * 2, one.films.loop * 2), omega).journals
     for journal, share in zip(journals, (0.6, 0.4), strict=True):
         carried = evaluate(one.films.loop[0], one.clearances[0], journal, np.zeros(2), omega).force
         np.testing.assert_allclose(carried, [0.0, share * 6.1 * 9.81], atol=1e-7)
@@ -245,7 +245,7 @@ def test_elastic_rotor_on_three_bearings_is_in_equilibrium() -> None:
     load = 30.0 * rng.normal(size=9)
     rotor = LinearRotor(eye, none, none, 1e6 * root @ root.T, load, np.zeros(9), np.zeros(9), journals, np.ones(3), ())
     omega = 2 * math.pi * 40.0
-    q = resting_position(system_of(rotor, one.films.bearings * 3, one.films.loop * 3), omega)
+    q = resting_position(system_of(rotor, one.films.bearings * 3, one.films.loop * 3), omega).displacements
     forces = [
         selection.T @ evaluate(one.films.loop[0], one.clearances[0], selection @ q, np.zeros(2), omega).force
         for selection in journals
@@ -368,7 +368,7 @@ def test_finer_mesh_moves_the_resting_position_little() -> None:
     films = replace(system.films, data=(finer,))
     fine = replace(system, films=films)
     for speed in (10.0, 100.0):
-        coarse, better = (resting_position(s, 2 * math.pi * speed)[[0, 2]] for s in (system, fine))
+        coarse, better = (resting_position(s, 2 * math.pi * speed).displacements[[0, 2]] for s in (system, fine))
         np.testing.assert_allclose(coarse, better, atol=2e-4 * system.clearances[0])
 
 

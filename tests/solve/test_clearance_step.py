@@ -64,7 +64,7 @@ def test_profile_with_stops_is_the_same_profile() -> None:
 def test_a_rotor_comes_to_rest_where_the_new_clearance_has_it(clearance: str) -> None:
     case = load_case("jeffcott", [*RESTING, "speed.duration=1.5s", step_to(clearance)])
     after = make_system(case_at(case, 1.0), make_plan(case))
-    rests = np.hypot(*(after.rotor.journals[0] @ resting_position(after, 2.0 * math.pi * 60.0))) / after.clearances[0]
+    rests = np.hypot(*resting_position(after, 2.0 * math.pi * 60.0).journals[0]) / after.clearances[0]
     status, signals = finish(under_way(case))
     eccentricity, time = signals["eccentricity"], signals["time_s"]
     assert status == FINISHED

@@ -16,13 +16,12 @@ from numpy.typing import NDArray
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
-from frbcli.equilibrium.resting import resting_position, ring_speeds
+from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import InputError
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
-from frbcli.rotor.held import held_rotor
 from frbcli.runs.run import runup
 from frbcli.scene.films import centrifugal_pressures
 from frbcli.scene.machine.system import System, make_system
@@ -91,9 +90,8 @@ def test_a_resting_rotor_and_its_ring_stay_as_they_are(tmp_path: Path) -> None:
     run, system = finished(case, tmp_path), system_of(case)
     omega = 2 * math.pi * 60.0
     rest = resting_position(system, omega)
-    turning = ring_speeds(system, held_rotor(system.rotor), omega, system.rotor.journals @ rest)
-    np.testing.assert_allclose(run["ring_speed_Hz"], turning[0] / (2 * math.pi), rtol=2e-3)
-    for name, place, clearance in zip(("inner", "outer"), system.rotor.journals @ rest, (40e-6, 50e-6), strict=True):
+    np.testing.assert_allclose(run["ring_speed_Hz"], rest.ring_speeds[0] / (2 * math.pi), rtol=2e-3)
+    for name, place, clearance in zip(("inner", "outer"), rest.journals, (40e-6, 50e-6), strict=True):
         np.testing.assert_allclose(run[f"eccentricity_{name}"], np.hypot(*place) / clearance, atol=2e-3)
 
 
@@ -103,7 +101,7 @@ def test_resting_position_carries_the_load() -> None:
     (point,) = stability(case, [100.0]).points
     system = StaticMachines(case).system
     rest = resting_position(system, 200 * math.pi)
-    places = system.rotor.journals @ rest
+    places = rest.journals
     omegas = system.omegas(200 * math.pi, 2 * math.pi * np.array(point.ring_speeds_Hz))
     forces = [system.films.force(i, place, np.zeros(2), float(omegas[i])).force for i, place in enumerate(places)]
     np.testing.assert_allclose(forces[0], [0.0, 3.0 * 9.81], atol=1e-5)

@@ -210,7 +210,7 @@ def test_ring_settles_at_the_steady_temperatures(tmp_path: Path) -> None:
 
 def _outer(warm: object) -> np.ndarray:
     system = warm.system  # type: ignore[attr-defined]
-    return np.asarray(system.rotor.journals[1] @ warm.resting / system.clearances[1])  # type: ignore[attr-defined]
+    return np.asarray(warm.resting.journals[1] / system.clearances[1])  # type: ignore[attr-defined]
 
 
 SIGNALS = 'output.signals=["force", "film-thickness", "power", "torque", "oil-flow"]'

@@ -361,6 +361,6 @@ def _growth(map_: _Map) -> Growth:
         except (NotConverged, Unreachable):
             continue
         known = [point.value * walk.scale for point in walk.resting.points]
-        rates = [max(point.growth(0), -1e9) for point in walk.resting.points]
+        rates = [max(point.growth_of(0), -1e9) for point in walk.resting.points]
         row[:] = np.interp(over, known, rates, left=np.nan)
     return Growth(shares * map_.high, over, rate)

@@ -5,7 +5,6 @@ As in frbcli/linear, but with the rings' speeds as unknowns of their own, and as
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -17,18 +16,16 @@ from numpy.typing import NDArray
 from frbcli.cycles.method.continuation import Place, Strides, Unreachable, corrected, follow, oriented, unit_vector
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
-from frbcli.equilibrium.resting import resting_position, ring_speeds
-from frbcli.rotor.held import held_rotor
+from frbcli.equilibrium import hopf
+from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.rotor.order import first_largest
 from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 STRIDES = Strides(first=0.01, shortest=1e-7, longest=0.04, points=2000)
 SHARP = 1e-12  # relative tolerance of the speed at a Hopf point
-HALVINGS = 30  # of an interval of speeds with several Hopf points
 
 
 @dataclass(frozen=True)
@@ -42,23 +39,13 @@ class Equilibrium:
     value: float
 
     @property
-    def unstable(self) -> int:
-        """Number of oscillating pairs that grow."""
-        return int(np.count_nonzero((self.eigenvalues.real > 0.0) & self._oscillating))
-
-    @property
     def stable(self) -> bool:
         """Whether every motion decays."""
         return bool(np.all(self.eigenvalues.real < 0.0))
 
-    def growth(self, number: int) -> float:
-        """Real part of the oscillating eigenvalue number 0, 1, ... in falling order of the real parts."""
-        real = np.sort(self.eigenvalues.real[self._oscillating])[::-1]
-        return float(real[number]) if number < len(real) else -math.inf
-
-    @property
-    def _oscillating(self) -> NDArray[np.bool_]:
-        return np.asarray(self.eigenvalues.imag > OSCILLATING * np.abs(self.eigenvalues))
+    def growth_of(self, number: int) -> float:
+        """Growth in 1/s of the whirl number 0, 1, ... by falling growth, -inf if there are not as many."""
+        return hopf.growth_of(self.eigenvalues, number)
 
 
 @dataclass(frozen=True)
@@ -146,16 +133,18 @@ def resting_curve(system: System, machine: Machine, slowest: float, fastest: flo
 
 def first_place(system: System, machine: Machine, ask: Callable[[Array], tuple[Array, Array]], omega: float) -> Place:
     """The resting position at omega rad/s as a place of the curve that goes down in speed."""
-    resting = resting_position(system, omega)
-    journals = system.rotor.journals @ resting
-    turning = ring_speeds(system, held_rotor(system.rotor, omega), omega, journals)
-    places = machine.places @ resting[: machine.rotor.size]
-    guess = np.concatenate([places, turning / machine.pace, [omega / machine.pace]])
+    guess = np.append(at_rest(machine, resting_position(system, omega)), omega / machine.pace)
     along = -unit_vector(len(guess))
     found = corrected(ask, guess, along)
     if found is None:
         raise Unreachable
     return oriented(found, along)
+
+
+def at_rest(machine: Machine, position: RestingPosition) -> Array:
+    """(c,) u of a resting position, see machine.py."""
+    places = machine.places @ position.displacements[: machine.rotor.size]
+    return np.concatenate([places, position.ring_speeds / machine.pace])
 
 
 def at_speed(ask: Callable[[Array], tuple[Array, Array]], near: Place, speed: float) -> Place:
@@ -177,33 +166,8 @@ def _equilibrium(machine: Machine, space: StateSpace, place: Place) -> Equilibri
 
 def hopf_points(course: EquilibriumCourse, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
     """The Hopf points between resting positions in the order of their course."""
-    found = []
-    for low, high in itertools.pairwise(points):
-        found += _between(course, low, high, HALVINGS)
-    return tuple(found)
-
-
-def _between(course: EquilibriumCourse, low: Equilibrium, high: Equilibrium, halvings: int) -> list[HopfPoint]:
-    """The Hopf points between two equilibria."""
-    crossing = _crossing(low, high)
-    if crossing == 0 or halvings == 0:
-        return []
-    if crossing == 1:
-        return [_located(course, low, high)]
-    middle = course.solved(low, high, 0.5 * (low.value + high.value))
-    return _between(course, low, middle, halvings - 1) + _between(course, middle, high, halvings - 1)
-
-
-def _crossing(low: Equilibrium, high: Equilibrium) -> int:
-    """How many oscillating pairs cross the imaginary axis between two equilibria, one way or the other: eigenvalues are
-    the same motion where they are nearest to each other."""
-    from scipy.optimize import linear_sum_assignment
-
-    before, after = (at.eigenvalues[at.eigenvalues.imag >= 0.0] for at in (low, high))
-    mine, others = linear_sum_assignment(np.abs(before[:, None] - after[None, :]))
-    turned = (before[mine].real > 0.0) != (after[others].real > 0.0)
-    oscillating = np.abs(before[mine].imag) + np.abs(after[others].imag) > OSCILLATING * np.abs(before[mine])
-    return max(int(np.count_nonzero(turned & oscillating)), abs(high.unstable - low.unstable))
+    found = hopf.hopf_points(course.solved, points, SHARP)
+    return tuple(hopf_at(course.machine(each.here.value), each.here, each.rising) for each in found)
 
 
 def settled(machine: Machine, near: Array, omega: float, value: float) -> Equilibrium:
@@ -215,28 +179,13 @@ def settled(machine: Machine, near: Array, omega: float, value: float) -> Equili
     return replace(_equilibrium(machine, state_space(machine), found), value=value)
 
 
-def _located(course: EquilibriumCourse, low: Equilibrium, high: Equilibrium) -> HopfPoint:
-    from scipy.optimize import brentq
-
-    number = max(low.unstable, high.unstable) - 1
-
-    def growth(value: float) -> float:
-        if value in (low.value, high.value):
-            return (low if value == low.value else high).growth(number)
-        return course.solved(low, high, value).growth(number)
-
-    value = float(brentq(growth, low.value, high.value, xtol=SHARP * high.value, rtol=SHARP))
-    here = course.solved(low, high, value)
-    return hopf_at(course.machine(value), here, high.unstable > low.unstable)
-
-
 def hopf_at(machine: Machine, here: Equilibrium, rising: bool, nu: float | None = None) -> HopfPoint:
     """The Hopf point of an equilibrium. nu: about its frequency in rad/s, else the pair is taken that is nearest to the
     imaginary axis."""
     space = state_space(machine)
     loads = film_loads(machine, here.u[None], np.zeros((1, len(here.u))), here.omega)
     values, vectors = np.linalg.eig(space.matrix(here.omega, loads.by_u[0], loads.by_v[0]))
-    oscillating = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
+    oscillating = np.flatnonzero(hopf.oscillating(values))
     off = values[oscillating].real if nu is None else values[oscillating] - 1j * nu
     own = oscillating[np.argmin(np.abs(off))]
     state = vectors[:, own].astype(complex)

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from frbcli.cycles.branch import FIRST_HARMONICS, STRIDES, Follower, at_speed, largest, resized_like
 from frbcli.cycles.method.balance import packed
 from frbcli.cycles.method.continuation import Place, Strides, corrected, follow, halved_until, next_length, unit_vector
-from frbcli.cycles.method.equilibria import OSCILLATING, Equilibrium
+from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
-from frbcli.rotor.order import fastest_first, first_largest
+from frbcli.equilibrium.hopf import whirls
+from frbcli.rotor.order import first_largest
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -99,9 +100,9 @@ def _critical(machine: Machine, space: StateSpace, y: Array, omega: float) -> tu
     dashpot[: 2 * machine.film_count] = np.repeat(machine.dashpot, 2)
     by_u, by_v = loads.by_u[0] - y[-1] * np.diag(spring), loads.by_v[0] - y[-1] * np.diag(dashpot)
     values, vectors = np.linalg.eig(space.matrix(omega, by_u, by_v))
-    oscillating = np.flatnonzero(values.imag > OSCILLATING * np.abs(values))
-    if not len(oscillating):
+    found = whirls(values)
+    if not len(found):
         return complex(-1.0, 0.0), np.zeros(machine.size, dtype=complex)
-    own = oscillating[fastest_first(values[oscillating])[0]]
+    own = found[0]
     mode = space.read @ vectors[:, own]
     return complex(values[own]), np.asarray(mode / mode[first_largest(mode[: 2 * machine.film_count])])

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.parts.machine import Machine
+from frbcli.equilibrium.linearised import first_order
 
 Array = NDArray[np.float64]
 
@@ -40,12 +41,11 @@ def state_space(machine: Machine) -> StateSpace:
     n, rings = rotor.size, machine.ring_count
     size = 2 * n + rings
     still, by_speed = np.zeros((size, size)), np.zeros((size, size))
-    still[:n, n : 2 * n] = np.eye(n)
-    solved = np.linalg.solve(rotor.mass, np.hstack([rotor.stiffness, rotor.damping, rotor.gyroscopic, machine.pulls]))
-    still[n : 2 * n, :n], still[n : 2 * n, n : 2 * n] = -solved[:, :n], -solved[:, n : 2 * n]
-    by_speed[n : 2 * n, n : 2 * n] = -solved[:, 2 * n : 3 * n]
+    still[: 2 * n, : 2 * n] = first_order(rotor.mass, rotor.damping, rotor.stiffness)
+    solved = np.linalg.solve(rotor.mass, np.hstack([rotor.gyroscopic, machine.pulls]))
+    by_speed[n : 2 * n, n : 2 * n] = -solved[:, :n]
     given, read, read_rate = np.zeros((size, c)), np.zeros((c, size)), np.zeros((c, size))
-    given[n : 2 * n, :films] = solved[:, 3 * n :]
+    given[n : 2 * n, :films] = solved[:, n:]
     read[:films, :n] = read_rate[:films, n : 2 * n] = machine.places
     given[2 * n :, films:] = np.diag(1.0 / machine.inertia)
     read[films:, 2 * n :] = np.eye(rings)

@@ -126,7 +126,8 @@ def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[RestThresho
 
 def _rest(shooting: Shooting, rest: Rest) -> RestingPoint:
     speed, spins = hertz(rest.omega), list(shooting.flow.system.spins)
-    return RestingPoint(speed, speed, rest.displacement, rest.wet.v[spins] / (2.0 * math.pi), rest.rates, rest.stable)
+    turning = rest.wet.v[spins] / (2.0 * math.pi)
+    return RestingPoint(speed, speed, rest.displacement, turning, rest.eigenvalues, rest.stable)
 
 
 def _hopf(begin: RestThreshold, branch: int | None, first: Shot | None) -> SpecialPoint:
@@ -141,7 +142,7 @@ def _hopf(begin: RestThreshold, branch: int | None, first: Shot | None) -> Speci
         branch=branch,
         value=hertz(rest.omega),
         speed_Hz=hertz(rest.omega),
-        frequency_Hz=hertz(float(rest.rates[begin.number].imag)),
+        frequency_Hz=hertz(float(rest.eigenvalues[begin.number].imag)),
         eccentricity_max=np.hypot(*rest.displacement.T),
         criticality=criticality,
         uncertainty_Hz=hertz(begin.uncertainty),
@@ -156,8 +157,8 @@ def _points(shooting: Shooting, begin: RestThreshold, shots: Sequence[Shot]) -> 
 def _born(shooting: Shooting, begin: RestThreshold) -> CyclePoint:
     rest, number = begin.rest, begin.number
     speed, spins = hertz(rest.omega), list(shooting.flow.system.spins)
-    nu = float(rest.rates[number].imag)
-    values = np.exp(np.delete(rest.rates, number) * 2.0 * math.pi / nu)
+    nu = float(rest.eigenvalues[number].imag)
+    values = np.exp(np.delete(rest.eigenvalues, number) * 2.0 * math.pi / nu)
     harmonics = np.zeros((SAMPLES // 4, *rest.displacement.shape), dtype=complex)
     harmonics[0] = rest.displacement
     return CyclePoint(
@@ -167,7 +168,7 @@ def _born(shooting: Shooting, begin: RestThreshold) -> CyclePoint:
         eccentricity_max=np.hypot(*rest.displacement.T),
         ring_speeds_Hz=rest.wet.v[spins] / (2.0 * math.pi),
         torque_N_m=math.nan,
-        stable=bool(np.all(np.delete(rest.rates, number).real < SLOWLY * nu)),
+        stable=bool(np.all(np.delete(rest.eigenvalues, number).real < SLOWLY * nu)),
         multipliers=np.concatenate([[1.0 + 0.0j], values]),
         harmonics=harmonics,
     )

@@ -17,21 +17,21 @@ import numpy as np
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.shooting.period_map import wet_at
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, PLACES, Rest, Shooting
-from frbcli.equilibrium.resting import resting_position, ring_speeds
+from frbcli.equilibrium import hopf
+from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.film.parabola import parabola_roots
-from frbcli.rotor.held import held_rotor
 
 RESTS = 15  # resting positions of a diagram
-HALVES, NEAR = 8, 0.02  # evaluations that bring a Hopf point between two speeds so far apart, relative
+NEAR = 0.02  # relative error of the speed about which a Hopf point is sought
 FITTED, AROUND = 12, 0.04  # rates that a parabola goes through, within this of its zero, relative
 WIDER = 2.0  # times the disturbance of the differences, once more: how much its size changes the rates
 
 
 @dataclass(frozen=True)
 class RestThreshold:
-    """A Hopf point. rest: the resting position there; number: of the rate that crosses zero; uncertainty: of its
-    speed in rad/s, NaN where it is not known."""
+    """A Hopf point. rest: the resting position there; number: of the eigenvalue that crosses the imaginary axis;
+    uncertainty: of its speed in rad/s, NaN where it is not known."""
 
     rest: Rest
     number: int
@@ -54,10 +54,8 @@ def settled(shooting: Shooting, omega: float) -> Rest | None:
     """The resting position next to that of films whose oil is at rest, too; None if none is found."""
     system = shooting.flow.system
     try:
-        q = resting_position(system, omega)
-        v = np.zeros_like(q)
-        v[list(system.spins)] = ring_speeds(system, held_rotor(system.rotor, omega), omega, system.rotor.journals @ q)
-        return shooting.rest(wet_at(shooting.flow, q, v, omega), omega)
+        found = resting_position(system, omega)
+        return shooting.rest(wet_at(shooting.flow, found.displacements, found.velocities(system), omega), omega)
     except (NotConverged, Unreachable):
         return None
 
@@ -65,34 +63,33 @@ def settled(shooting: Shooting, omega: float) -> Rest | None:
 def thresholds(shooting: Shooting, rests: list[Rest]) -> list[RestThreshold]:
     """The Hopf points between resting positions, of whirls that begin or cease to grow, others may grow beside them."""
     return [
-        located(shooting, low, high, mode)
+        located(shooting, low, high, number)
         for low, high in itertools.pairwise(rests)
-        for mode in range(min(low.growing, high.growing), max(low.growing, high.growing))
+        for number in range(min(low.growing, high.growing), max(low.growing, high.growing))
     ]
 
 
-def located(shooting: Shooting, low: Rest, high: Rest, mode: int = 0) -> RestThreshold:
-    """The Hopf point between two resting positions of the whirl that grows fastest but for `mode` others."""
-    for _ in range(HALVES):
-        if abs(high.omega - low.omega) < NEAR * high.omega:
-            break
-        rest = shooting.rest(low.wet, 0.5 * (low.omega + high.omega))
+def located(shooting: Shooting, low: Rest, high: Rest, number: int = 0) -> RestThreshold:
+    """The Hopf point between two resting positions of the whirl `number`, from 0, by falling growth."""
+
+    def at(omega: float) -> Rest:
+        rest = shooting.rest(low.wet, omega)
         if rest is None:
-            break
-        if (rest.growth_of(mode) > 0.0) == (low.growth_of(mode) > 0.0):
-            low = rest
-        else:
-            high = rest
-    share = low.growth_of(mode) / (low.growth_of(mode) - high.growth_of(mode))
-    middle = low.omega + share * (high.omega - low.omega)
-    fit = _fitted(shooting, low, middle, mode)
-    rest = shooting.rest(low.wet, fit.zero)
+            raise Unreachable
+        return rest
+
+    try:
+        near = hopf.located(at, low, high, number, NEAR)
+    except Unreachable:
+        near = min(low, high, key=lambda one: abs(one.growth_of(number)))
+    fit = _fitted(shooting, near, number)
+    rest = shooting.rest(near.wet, fit.zero)
     if rest is None:
-        return _threshold(min(low, high, key=lambda one: abs(one.growth_of(mode))), math.nan)
+        return _threshold(near, math.nan)
     wider = shooting.rest(rest.wet, fit.zero, WIDER * AT_REST_DIFFERENCE)
     if wider is None:
         return _threshold(rest, math.nan)
-    bent = abs(wider.growth_of(mode) - rest.growth_of(mode)) / (WIDER**2 - 1.0) / abs(fit.slope)
+    bent = abs(wider.growth_of(number) - rest.growth_of(number)) / (WIDER**2 - 1.0) / abs(fit.slope)
     return _threshold(rest, math.hypot(fit.uncertainty, bent))
 
 
@@ -110,17 +107,18 @@ class _Fit:
     uncertainty: float = math.nan
 
 
-def _fitted(shooting: Shooting, near: Rest, middle: float, mode: int) -> _Fit:
-    """The parabola through the rates of a whirl about a speed.
+def _fitted(shooting: Shooting, near: Rest, number: int) -> _Fit:
+    """The parabola through the rates of a whirl about the speed of a resting position.
 
     The cells lie in different places from one speed to the next: else what they leave changes little between them."""
     places = [Shooting(shooting.flow.lying(place), shooting.unit) for place in PLACES]
+    middle = near.omega
     off, rates = [], []
     for share, one in zip(np.linspace(-1.0, 1.0, FITTED), itertools.cycle([shooting, *places]), strict=False):
         rest = one.rest(near.wet, middle * (1.0 + AROUND * float(share)))
-        if rest is not None and math.isfinite(rest.growth_of(mode)):
+        if rest is not None and math.isfinite(rest.growth_of(number)):
             off.append(float(share))
-            rates.append(rest.growth_of(mode))
+            rates.append(rest.growth_of(number))
     if len(off) > FITTED // 2:
         curve = np.polynomial.Polynomial.fit(off, rates, 2, domain=[-1.0, 1.0])
         c, b, a = curve.coef.tolist()

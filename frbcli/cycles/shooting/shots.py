@@ -30,7 +30,8 @@ from frbcli.cycles.shooting.fixed_point import (
     slow_space,
 )
 from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
-from frbcli.rotor.order import fastest_first, largest_first
+from frbcli.equilibrium import hopf
+from frbcli.rotor.order import largest_first
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -38,6 +39,7 @@ Complex = NDArray[np.complex128]
 PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3
+SLOWEST = 0.05  # frequency over the speed above which a slow motion at rest is a whirl
 REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
 AT_REST_DIFFERENCE = 2e-2  # by which states are disturbed at rest: the kinks blur less, and the gap is wide
 DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are told apart by their sum
@@ -90,42 +92,44 @@ class Shot:
 
 @dataclass(frozen=True)
 class Rest:
-    """A resting position. x, wet: its state; omega: rad/s; displacement: (F, 2); rates: (k,) 1/s by which slow motions
-    grow, and their states (N, k)."""
+    """A resting position. x, wet: its state; omega: rad/s; displacement: (F, 2); eigenvalues: (k,) 1/s of slow
+    motions, and their states (N, k)."""
 
     x: Array
     wet: Wet
     omega: float
     displacement: Array
-    rates: Complex
+    eigenvalues: Complex
     states: Complex
 
     @property
+    def value(self) -> float:
+        """Speed of the rotor in rad/s."""
+        return self.omega
+
+    @property
     def whirls(self) -> NDArray[np.int64]:
-        """Numbers of the rates that oscillate, by falling growth."""
-        oscillating = np.flatnonzero(self.rates.imag > 0.05 * self.omega)
-        return oscillating[fastest_first(self.rates[oscillating])]
+        """Numbers of the eigenvalues of whirls, by falling growth."""
+        return hopf.whirls(self.eigenvalues, SLOWEST * self.omega)
 
     @property
     def growing(self) -> int:
         """How many whirls grow."""
-        return int(np.count_nonzero(self.rates[self.whirls].real > 0.0))
+        return int(np.count_nonzero(self.eigenvalues[self.whirls].real > 0.0))
 
     @property
     def nearest_to_neutral(self) -> int:
-        """Number of the whirl that grows or decays most slowly."""
-        whirls = self.whirls
-        return int(whirls[np.argmin(np.abs(self.rates[whirls].real))])
+        """Number of the eigenvalue of the whirl that grows or decays most slowly."""
+        return int(self.whirls[np.argmin(np.abs(self.eigenvalues[self.whirls].real))])
 
-    def growth_of(self, mode: int) -> float:
-        """Real part in 1/s of the whirl that grows fastest but for `mode` others, -inf without one."""
-        whirls = self.whirls
-        return float(self.rates[whirls[mode]].real) if mode < len(whirls) else -math.inf
+    def growth_of(self, number: int) -> float:
+        """Growth in 1/s of the whirl number 0, 1, ... by falling growth, -inf if there are not as many."""
+        return hopf.growth_of(self.eigenvalues, number, SLOWEST * self.omega)
 
     @property
     def stable(self) -> bool:
         """Whether every slow motion decays."""
-        return bool(np.all(self.rates.real < 0.0))
+        return bool(np.all(self.eigenvalues.real < 0.0))
 
 
 class Shooting:
@@ -195,8 +199,8 @@ class Shooting:
         return None
 
     def from_rest(self, rest: Rest, number: int, length: float) -> Shot | None:
-        """The cycle of a small size beside a Hopf point; number: of the rate that crosses zero there."""
-        mode, nu, size = rest.states[:, number], rest.rates[number].imag, len(rest.x)
+        """The cycle of a small size beside a Hopf point; number: of the eigenvalue that crosses there."""
+        mode, nu, size = rest.states[:, number], rest.eigenvalues[number].imag, len(rest.x)
         steps = round(STEPS_PER_REVOLUTION * rest.omega / nu)
         along, across = mode.real / np.linalg.norm(mode.real), -mode.imag
         across = across - along * (along @ across)
