@@ -6,6 +6,7 @@ whole bearing, both symmetric halves.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
@@ -140,8 +141,17 @@ class RingFilm(FilmGeometry):
 class Ring(Model):
     """The floating ring itself."""
 
-    mass: Mass = Field(description="of one ring")
-    inertia: RingInertia = Field(description="about the axis of rotation")
+    given_mass: Mass | None = Field(
+        default=None, alias="mass",
+        description="of one ring; from its material, which is then given, width and diameters if not given",
+    )
+    given_inertia: RingInertia | None = Field(
+        default=None, alias="inertia",
+        description="about the axis of rotation; m (D_i^2 + D_o^2) / 8 of its mass and diameters if not given",
+    )
+    width: Length | None = Field(
+        default=None, description="axial, for a mass that is not given; that of the wider film if not given"
+    )
     spin: Literal["free", "blocked"] = Field(
         default="free", description="whether the films turn the ring; a blocked one floats without turning"
     )
@@ -165,7 +175,7 @@ class FloatingRingBearing(BearingWalls):
     kind: Literal["floating-ring"] = Field(description="a ring between two films")
     name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
-    ring: Ring = Field(description="mass and inertia of the ring")
+    ring: Ring = Field(description="mass and inertia of the ring, or what they follow from")
     inner: RingFilm = Field(description="film between journal and ring")
     outer: RingFilm = Field(description="film between ring and shell; its diameter is the outer one of the ring")
     centrifugal_pressure: bool = Field(
@@ -176,6 +186,26 @@ class FloatingRingBearing(BearingWalls):
         description="feed holes of the inner film in the ring: at given pressure, or coupled to the outer film: "
         "oil that leaves one film enters the other",
     )
+
+    @property
+    def ring_mass(self) -> float:
+        """Mass of the ring in kg: as given, or rho pi/4 (D_o^2 - D_i^2) B of a cylinder without feed holes."""
+        if self.ring.given_mass is not None:
+            return self.ring.given_mass
+        area = 0.25 * math.pi * (self.outer.diameter**2 - self.inner.diameter**2)
+        return self.ring.solid.density * area * self.ring_width
+
+    @property
+    def ring_inertia(self) -> float:
+        """Inertia of the ring about its axis in kg m^2: as given, or m (D_i^2 + D_o^2) / 8 of a hollow cylinder."""
+        if self.ring.given_inertia is not None:
+            return self.ring.given_inertia
+        return 0.125 * self.ring_mass * (self.inner.diameter**2 + self.outer.diameter**2)
+
+    @property
+    def ring_width(self) -> float:
+        """Axial width of the ring in m: as given, or that of the wider film."""
+        return max(self.inner.width, self.outer.width) if self.ring.width is None else self.ring.width
 
 
 FilmBearing = SingleFilmBearing | FloatingRingBearing

@@ -143,7 +143,7 @@ def test_turbocharger_with_everything() -> None:
     first, second = case.bearings
     assert isinstance(first, FloatingRingBearing)
     assert (first.name, second.name) == ("compressor", "2")
-    assert (first.ring.mass, first.inner.supply.kind) == (0.075, "bores")
+    assert (first.ring_mass, first.inner.supply.kind) == (0.075, "bores")
     assert case.film.two_phase.steepness == 0.95
     assert case.motion is not None
     assert case.motion.speed == 20.0

@@ -33,7 +33,7 @@ def test_bearings_carry_the_weight_and_outer_films_their_rings(name: str) -> Non
     assert found.mass is not None
     assert inner == pytest.approx(9.81 * found.mass, rel=1e-9)
     outer = sum(film.load for film in found.films if "outer" in film.film)
-    rings = sum(bearing.ring.mass for bearing in case.bearings)  # type: ignore[union-attr]
+    rings = sum(bearing.ring_mass for bearing in case.bearings)  # type: ignore[union-attr]
     assert outer - inner == pytest.approx(9.81 * rings, rel=1e-9)
     solid = sum(0.25 * math.pi * (s.diameter**2 - s.inner_diameter**2) * s.length * s.density for s in case.shaft)
     assert found.mass == pytest.approx(solid + sum(disk.mass for disk in case.disks), rel=1e-9)

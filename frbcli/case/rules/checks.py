@@ -79,6 +79,12 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     if inner and outer and inner >= outer:
         problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
         yield Breach((*path, "inner", "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
+    ring = bearing.get("ring")
+    if isinstance(ring, dict) and not {"mass", "material"} & ring.keys():
+        remedy = 'Add e.g. mass = "30 g", or material = "brass", from which it follows.'
+        yield Breach((*path, "ring", "mass"), "is missing.", remedy)
+    if isinstance(ring, dict) and {"mass", "width"} <= ring.keys():
+        yield Breach((*path, "ring", "width"), "has no effect: the mass is given.", "Remove one of the two.")
 
 
 def _names(what: str, named: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:

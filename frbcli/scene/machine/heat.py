@@ -130,7 +130,7 @@ class _Builder:
 
     def _floating(self, bearing: FloatingRingBearing, film: int) -> None:
         ring, inner, outer = bearing.ring, bearing.inner, bearing.outer
-        solid, half = ring.solid, 0.5 * ring.mass * ring.solid.heat_capacity
+        solid, half = ring.solid, 0.5 * bearing.ring_mass * ring.solid.heat_capacity
         inside, outside = (self._node(f"{bearing.name} ring {side}".lstrip(), half) for side in ("inner", "outer"))
         resistance = math.log(outer.diameter / inner.diameter) / (2.0 * math.pi * solid.conductivity * inner.width)
         self._links.append((inside, outside, 1.0 / resistance, -1))

@@ -24,11 +24,11 @@ def make_rotor(case: Case) -> LinearRotor:
         journal = shaft.journal(bearing.name)
         if isinstance(bearing, FloatingRingBearing):
             ring = f"ring_{bearing.name}".rstrip("_")
-            bodies.append(point_mass(ring, count * bearing.ring.mass, case.rotor.gravity))
+            bodies.append(point_mass(ring, count * bearing.ring_mass, case.rotor.gravity))
             films += [Link(journal, ring, count=count), Link(ring, count=count)]
         else:
             films.append(Link(journal, count=count))
-    bodies += [spin(bearing.ring.inertia) for bearing in turning_rings(case)]
+    bodies += [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
     parts = []
     for element in case.elements:
         kind = kind_of(element)

@@ -180,6 +180,8 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
         decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
     for bearing in rings(case):
+        if computed := _computed(bearing):
+            decide(f"{bearing.name} ring".strip(), *computed)
         if coupled(bearing):
             decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
     if len(places) == 1 and not case.film.bearing_model:
@@ -189,6 +191,19 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     if case.heat is not None:
         gap = "follows the temperatures" if case.heat.clearance == "follows" else "does not follow it"
         decide("heat", "lumped", f"set in the case; viscosity follows the temperature of each film, the gap {gap}")
+
+
+def _computed(bearing: FloatingRingBearing) -> tuple[str, str] | None:
+    """Mass and inertia of a ring that the case does not give, with what they follow from; None where it gives both."""
+    ring, found, reasons = bearing.ring, [], []
+    if ring.given_mass is None:
+        found.append(f"mass {1e3 * bearing.ring_mass:.4g} g")
+        width = display(bearing.ring_width, "m")
+        reasons.append(f"a cylinder of {ring.material}, {width} wide, between both diameters; feed holes are left in")
+    if ring.given_inertia is None:
+        found.append(f"inertia {1e6 * bearing.ring_inertia:.4g} kg*mm^2")
+        reasons.append("of a hollow cylinder of its mass, m (D_i^2 + D_o^2) / 8")
+    return (", ".join(found), "; ".join(reasons)) if found else None
 
 
 def _cavitations(case: Case) -> tuple[tuple[str, str, bool], ...]:
