@@ -16,6 +16,7 @@ from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, m
 from frbcli.scene.remedies import advised
 
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
+STABLE, UNSTABLE = "Stable up to the highest speed", "Unstable from the lowest speed on"  # begin a note
 AHEAD = 1e-3  # of the speed, for the derivative of the eigenvalue
 
 
@@ -47,14 +48,14 @@ def find_threshold(
     if len(resting) == 1:
         return None, _one_speed(slowest, len(sweep))
     if slowest.growth > 0.0:
-        unstable = "Unstable from the lowest speed on: a threshold, if there is one, lies below"
+        unstable = f"{UNSTABLE}: a threshold, if there is one, lies below"
         beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
         return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
     for place, (below, above) in enumerate(itertools.pairwise(resting)):
         if above.growth > 0.0:
             threshold, problem = _crossing(case, machines, below, above)
             return threshold, problem + _stable_again(resting[place + 1 :])
-    return None, f"Stable up to the highest speed: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
+    return None, f"{STABLE}: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
 
 
 def _one_speed(point: StabilityPoint, tried: int) -> str:

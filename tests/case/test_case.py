@@ -492,7 +492,7 @@ def test_json_schema_describes_the_file() -> None:
     assert {branch["type"] for branch in width["anyOf"]} == {"number", "string"}
     assert "in m" in width["anyOf"][0]["description"]
     assert len(schema["properties"]["bearing"]["anyOf"]) == 2
-    assert set(schema["$defs"]["SpeedProfile"]["required"]) == {"from", "to", "duration"}
+    assert set(schema["$defs"]["SpeedRamp"]["required"]) == {"from", "to", "duration"}
 
 
 def test_examples_of_the_schema_are_valid() -> None:

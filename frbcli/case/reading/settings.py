@@ -11,6 +11,7 @@ from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.errors import Fault
 
 DEEPEST_KEY = 8
+ALL = "*"  # in place of an index: every table of an array
 
 _INDEX = re.compile(r"[0-9]{1,4}")
 
@@ -18,8 +19,9 @@ _INDEX = re.compile(r"[0-9]{1,4}")
 def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any], Path]:
     """`data` with one `key.path=value` set, and the path that was set; `data` itself stays. Raises TomlFault.
 
-    The value is TOML where it can be ("3", "true", "{ kind = 'none' }"), else text ("40 um"). Indices lead into arrays
-    of tables: "bearing.0.width"; index 0 of a single table is the table itself.
+    The value is TOML where it can be ("3", "true", "{ kind = 'none' }"), else text ("40 um"). An index, or a name,
+    leads into an array of tables: "bearing.0.width", "bearing.front.width"; "bearing.*.width" sets the key in all.
+    Index 0, the name, or * of a single table are the table itself.
     """
     key, equals, value = setting.partition("=")
     parts = _parts(key)
@@ -72,15 +74,21 @@ def _insert(table: dict[str, Any], parts: list[str], value: Any, above: Path) ->
         return path
     inner = table.get(head, {})
     if isinstance(inner, list):
-        index = _index(inner, rest, path)
         table[head] = inner = list(inner)
+        if rest[0] == ALL and len(rest) > 1 and inner:
+            for number, one in enumerate(inner):
+                inner[number] = dict(one)
+                _insert(inner[number], rest[1:], value, (*path, number))
+            return path
+        index = _index(inner, rest, path)
         inner[index] = dict(inner[index])
         return _insert(inner[index], rest[1:], value, (*path, index))
     if not isinstance(inner, dict):
         whole = ".".join(map(str, path))
         raise _refuse(f"{whole}.{'.'.join(rest)}", f"is set inside {whole}, which is not a table.", f"Set {whole}.")
     table[head] = inner = dict(inner)
-    return _insert(inner, rest[1:] if rest[0] == "0" and len(rest) > 1 else rest, value, path)
+    itself = rest[0] in ("0", ALL) or (rest[0] not in inner and rest[0] == inner.get("name"))
+    return _insert(inner, rest[1:] if itself and len(rest) > 1 else rest, value, path)
 
 
 def _index(tables: list[Any], rest: list[str], path: Path) -> int:
@@ -90,8 +98,13 @@ def _index(tables: list[Any], rest: list[str], path: Path) -> int:
         if isinstance(tables[index], dict):
             return index
     whole = ".".join(map(str, path))
+    names = [str(table["name"]) for table in tables if isinstance(table, dict) and "name" in table]
+    if len(rest) > 1 and names.count(rest[0]) == 1 and len(names) == len(tables):
+        return names.index(rest[0])
     problem = f"does not say which of the {len(tables)} tables of {whole} is meant."
-    raise _refuse(f"{whole}.{'.'.join(rest)}", problem, f"Count from 0, e.g. {whole}.0.{rest[-1]}.")
+    by_name = f", or name it: {whole}.{names[0]}.{rest[-1]}" if names else ""
+    remedy = f"Count from 0, e.g. {whole}.0.{rest[-1]}{by_name}; {whole}.*.{rest[-1]} is all of them."
+    raise _refuse(f"{whole}.{'.'.join(rest)}", problem, remedy)
 
 
 def _refuse(key: str, problem: str, remedy: str) -> TomlFault:

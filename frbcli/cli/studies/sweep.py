@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,16 +14,20 @@ from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, here
 from frbcli.cli.pictures.picture_options import picture_options
 from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.quantities import SPEED_OPTION
 from frbcli.cli.runs.live import live_lines
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.cli.studies.gathered import gathered
+from frbcli.cli.studies.scatter import of_machines
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from frbcli.studies.sweep.distributions import Distribution
     from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
+LONGEST_REASON = 100  # letters
 LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
 
 
@@ -35,10 +40,47 @@ class Pool:
     scheduler: str
 
 
+@dataclass(frozen=True)
+class Kept:
+    """What is kept of the results, see the options of the command."""
+
+    no_runs: bool
+    table_format: str
+    picture: bool
+
+
+@dataclass(frozen=True)
+class Machines:
+    """How machines are sampled whose numbers scatter, see the options of the command."""
+
+    samples: int
+    correlations: tuple[str, ...]
+    seed: int
+    below: float | None
+
+    def points(self, distributions: Sequence[Distribution], others: object) -> Sequence[Mapping[str, str]]:
+        """The machines. others: keys with several values, or a list of points, beside which nothing can scatter."""
+        from frbcli.studies.sweep.distributions import read_correlation, samples
+
+        if others:
+            problem, remedy = "gives several values beside keys that scatter.", "Sweep each of its values by itself."
+            raise _fault("--set", "", problem, remedy)
+        correlations = dict(map(read_correlation, self.correlations))
+        return samples(distributions, self.samples, correlations, self.seed)
+
+
 @click.command()
 @click.argument("source", metavar="CASE", type=INPUT)
 @click.option("--set", "settings", multiple=True, metavar="KEY=V1,V2",
-              help="Values of a key; several keys make a grid. One value holds for all. Repeatable.")  # fmt: skip
+              help="Values of a key, or LOW..HIGH UNIT / COUNT; several keys make a grid, KEY=V1,V2;KEY=V1,V2 change "
+              "together. One value holds for all. Repeatable.")  # fmt: skip
+@click.option("--samples", type=int, default=64, show_default=True, metavar="N",
+              help="Machines, a power of 2, of keys that scatter: KEY=normal(MEAN, DEVIATION), uniform(LOW, HIGH) or "
+              "truncated(MEAN, DEVIATION, LOW, HIGH).")  # fmt: skip
+@click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R", help="Of two of them. Repeatable.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Of the scrambled Sobol sequence of the machines.")
+@click.option("--below", type=SPEED_OPTION, metavar="SPEED",
+              help="The share of machines that whirl below this speed. [the highest of the case]")  # fmt: skip
 @click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
               help="Points one by one: keys in the first line, values below.")  # fmt: skip
 @click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
@@ -51,17 +93,18 @@ class Pool:
 @click.option("--scheduler", default="", metavar="ADDRESS", help="Of the dask cluster, e.g. tcp://10.0.0.1:8786.")
 @picture_options
 @output_options
+@gathered("kept", Kept)
 @gathered("pool", Pool)
+@gathered("machines", Machines)
 def command(
     source: Path,
     settings: tuple[str, ...],
     list_file: Path | None,
     output: Path | None,
     stability: bool,
-    no_runs: bool,
-    table_format: str,
-    picture: bool,
+    kept: Kept,
     pool: Pool,
+    machines: Machines,
     terminal: Terminal,
 ) -> int:
     """Compute CASE at many points: one table, one picture, all runs.
@@ -71,25 +114,47 @@ def command(
     from frbcli.case.reading.load import load_case
     from frbcli.studies.sweep.sweep import Workers, check_table_format, sweep, write_table
 
-    fixed, axes = _axes(settings)
+    fixed, distributions = _scattered(settings)
+    fixed, axes = _axes(fixed)
     case = load_case(source, fixed)
-    points = _points(axes, list_file)
-    check_table_format(table_format)
+    points = machines.points(distributions, axes or list_file) if distributions else _points(axes, list_file)
+    check_table_format(kept.table_format)
     folder = output or here(case.name, "-sweep")
-    table, target = folder / f"sweep.{table_format}", folder / "sweep.png"
-    _check_places(table, target if picture else None)
+    table, target = folder / f"sweep.{kept.table_format}", folder / "sweep.png"
+    _check_places(table, target if kept.picture else None)
     method = "stability" if stability else "runup"
     with live_lines(terminal) as show:
         observe = _progress(terminal, show)
         workers = Workers(pool.backend, pool.jobs, pool.scheduler)
-        found = sweep(case, points, folder, method, not no_runs, workers, observe)
+        found = sweep(case, points, folder, method, not kept.no_runs, workers, observe)
     _report(found, terminal)
-    write_table(found, table, table_format)
+    write_table(found, table, kept.table_format)
     terminal.result(f"table: {table}")
-    drawn = _picture(found, target, terminal) if picture else None
-    documents = [_document(point) for point in found.points]
-    terminal.emit({"command": "sweep", "case": case.name, "points": documents, "table": table, "picture": drawn})
+    document: dict[str, Any] = {"command": "sweep", "case": case.name, "points": list(map(_document, found.points))}
+    if distributions and any(point.status != "interrupted" for point in found.points):
+        document["scatter"], drawn = of_machines(found, machines.below, target if kept.picture else None, terminal)
+    else:
+        drawn = _picture(found, target, terminal) if kept.picture else None
+    terminal.emit({**document, "table": table, "picture": drawn})
     return _exit_code(found)
+
+
+def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
+    """Other settings, and the distributions of the keys that scatter."""
+    from frbcli.studies.sweep.distributions import read_distribution
+
+    others: list[str] = []
+    found: dict[str, Distribution] = {}
+    for setting in settings:
+        key, _, text = setting.partition("=")
+        distribution = read_distribution(key.strip(), text)
+        if distribution is None:
+            others.append(setting)
+        elif key.strip() in found:
+            raise _fault("--set", setting, "sets a key a second time.", "Give it one distribution.")
+        else:
+            found[key.strip()] = distribution
+    return others, list(found.values())
 
 
 def _check_places(table: Path, picture: Path | None) -> None:
@@ -100,35 +165,42 @@ def _check_places(table: Path, picture: Path | None) -> None:
         check_outputs((table, TABLES[table.suffix[1:]]), picture=picture)
 
 
-def _axes(settings: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, ...]]]:
-    """Settings of one value, which hold for all points, and the values of the other keys."""
-    from frbcli.studies.sweep.points import split_values
+def _axes(settings: Sequence[str]) -> tuple[list[str], list[dict[str, tuple[str, ...]]]]:
+    """Settings of one value, which hold for all points, and the values of the other keys, those together that are
+    linked."""
+    from frbcli.studies.sweep.points import LINK, read_values, split_values
 
     fixed: list[str] = []
-    axes: dict[str, tuple[str, ...]] = {}
+    axes: list[dict[str, tuple[str, ...]]] = []
+    seen: set[str] = set()
     for setting in settings:
-        key, equals, text = setting.partition("=")
-        values = split_values(text)
-        if not equals or len(values) < 2:
-            fixed.append(setting)
-        elif key.strip() in axes:
-            raise _fault("--set", setting, "sets a key a second time.", "Write all its values in one --set.")
-        elif not all(values):
-            raise _fault("--set", setting, "has an empty value.", "Write e.g. --set key=v1,v2.")
-        else:
-            axes[key.strip()] = values
+        together: dict[str, tuple[str, ...]] = {}
+        for part in split_values(setting, LINK):
+            key, equals, text = part.partition("=")
+            values = read_values(text)
+            if not equals or len(values) < 2:
+                fixed.append(part)
+                continue
+            if key.strip() in seen:
+                raise _fault("--set", setting, "sets a key a second time.", "Write all its values in one --set.")
+            if not all(values):
+                raise _fault("--set", setting, "has an empty value.", "Write e.g. --set key=v1,v2.")
+            seen.add(key.strip())
+            together[key.strip()] = values
+        if together:
+            axes.append(together)
     return fixed, axes
 
 
-def _points(axes: Mapping[str, Sequence[str]], list_file: Path | None) -> Sequence[Mapping[str, str]]:
-    from frbcli.studies.sweep.points import grid, product, read_list
+def _points(axes: Sequence[Mapping[str, Sequence[str]]], list_file: Path | None) -> Sequence[Mapping[str, str]]:
+    from frbcli.studies.sweep.points import linked, product, read_list
 
-    if list_file is None:
-        if not axes:
-            raise _fault("--set", "", "gives no key several values.", "Write e.g. --set key=v1,v2, or --list FILE.")
-        return grid(axes)
-    listed = read_list(list_file)
-    return product(listed, grid(axes)) if axes else listed
+    if list_file is None and not axes:
+        raise _fault("--set", "", "gives no key several values.", "Write e.g. --set key=v1,v2, or --list FILE.")
+    points: Sequence[Mapping[str, str]] = [{}] if list_file is None else read_list(list_file)
+    for together in axes:
+        points = product(points, linked(together))
+    return points
 
 
 def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[SweepPoint, int, int], None]:
@@ -157,9 +229,11 @@ def _result(point: SweepPoint) -> str:
 
 def _report(found: Sweep, terminal: Terminal) -> None:
     event = "threshold" if found.method == "stability" else "onset"
-    columns = ("", *found.keys, event, "frequency", "status")
+    columns = ("", *found.keys, event, "frequency", "status", *(["reason"] if any(map(_reason, found.points)) else []))
     title = found.case.title or found.case.name
-    terminal.table(title, columns, [_cells(point, found.keys, event) for point in found.points[:LONGEST_TABLE]])
+    with_reason = "reason" in columns
+    rows = [_cells(point, found.keys, event, with_reason) for point in found.points[:LONGEST_TABLE]]
+    terminal.table(title, columns, rows)
     if len(found.points) > LONGEST_TABLE:
         terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
     failed = [point for point in found.points if point.status != "finished"]
@@ -171,10 +245,17 @@ def _report(found: Sweep, terminal: Terminal) -> None:
         )
 
 
-def _cells(point: SweepPoint, keys: Sequence[str], kind: str) -> tuple[str, ...]:
+def _cells(point: SweepPoint, keys: Sequence[str], kind: str, with_reason: bool) -> tuple[str, ...]:
     event = point.first(kind)
     speed, frequency = ("-", "-") if event is None else (_hertz(event["speed_Hz"]), _hertz(event["frequency_Hz"]))
-    return (str(point.number), *(point.settings.get(key, "") for key in keys), speed, frequency, point.status)
+    reason = [_reason(point)] if with_reason else []
+    return (str(point.number), *(point.settings.get(key, "") for key in keys), speed, frequency, point.status, *reason)
+
+
+def _reason(point: SweepPoint) -> str:
+    """Why a point has no result, no longer than a cell of a table; its file has the whole."""
+    event = point.first("threshold") or point.first("onset")
+    return "" if event is not None else textwrap.shorten(point.message, LONGEST_REASON, placeholder=" ...")
 
 
 def _hertz(value: float | None) -> str:

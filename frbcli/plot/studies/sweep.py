@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,15 +22,18 @@ _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\
 
 @dataclass(frozen=True)
 class _Scale:
-    """The values of a key, ascending. texts: as written; unit: of all of them, None if they are no numbers in one."""
+    """The values of a key, ascending. texts: as written; unit: of all of them, None if they are no numbers in one;
+    others: keys that change with it."""
 
     key: str
     texts: tuple[str, ...]
     unit: str | None
+    others: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
-        return f"{self.key} in {self.unit}" if self.unit else self.key
+        own = f"{self.key} in {self.unit}" if self.unit else self.key
+        return f"{own}, with it {', '.join(self.others)}" if self.others else own
 
     @property
     def ticks(self) -> list[str]:
@@ -104,9 +107,24 @@ def _draw_map(figure: Figure, axes: Axes, sweep: Sweep, across: _Scale, up: _Sca
 
 
 def _scales(sweep: Sweep) -> list[_Scale]:
-    """The keys that have several values."""
+    """The keys that have several values; of linked ones, which change together, the first."""
     values = {key: list(dict.fromkeys(point.settings.get(key, "") for point in sweep.points)) for key in sweep.keys}
-    return [_scale(key, texts) for key, texts in values.items() if len(texts) > 1]
+    scales: list[_Scale] = []
+    for key, texts in values.items():
+        if len(texts) < 2:
+            continue
+        leading = next((place for place, scale in enumerate(scales) if _linked(sweep, scale.key, key)), None)
+        if leading is None:
+            scales.append(_scale(key, texts))
+        else:
+            scales[leading] = replace(scales[leading], others=(*scales[leading].others, key))
+    return scales
+
+
+def _linked(sweep: Sweep, key: str, other: str) -> bool:
+    """Whether each value of a key goes with one of another, and the other way round."""
+    pairs = {(point.settings.get(key, ""), point.settings.get(other, "")) for point in sweep.points}
+    return len({one for one, _ in pairs}) == len({two for _, two in pairs}) == len(pairs)
 
 
 def _scale(key: str, texts: list[str]) -> _Scale:

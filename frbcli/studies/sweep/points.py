@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import csv
 import itertools
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+
+import numpy as np
 
 from frbcli.errors import Fault, InputError
 
@@ -14,10 +17,44 @@ Settings = dict[str, str]  # key of the case -> value as text, as `--set` takes 
 SOURCE = "sweep"
 MOST_POINTS = 100_000
 OPENING, CLOSING, QUOTES = "([{", ")]}", "\"'"
+LINK = ";"  # between keys of one setting that change together
+MOST_IN_RANGE = 10_000
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_RANGE = re.compile(rf"({NUMBER})\s*(.*?)\s*\.\.\s*({NUMBER})\s*(.*?)\s*/\s*(\d+)")
 
 
-def split_values(text: str) -> tuple[str, ...]:
-    """What stands between the commas of `text`; commas in quotes and brackets do not separate values."""
+def read_values(text: str) -> tuple[str, ...]:
+    """The values of a key, as `split_values`, with ranges written out: "10..20 um / 6" is six values from 10 um to 20
+    um. Raises InputError for a range of one value."""
+    return tuple(value for written in split_values(text) for value in _written_out(written))
+
+
+def _written_out(value: str) -> tuple[str, ...]:
+    found = _RANGE.fullmatch(value)
+    if found is None:
+        return (value,)
+    low, low_unit, high, high_unit, count = found.groups()
+    if low_unit and low_unit != high_unit:
+        raise InputError(SOURCE, (_fault("--set", f"{value}: has two units.", f"Write {low}..{high} {low_unit} / 6."),))
+    if not 2 <= int(count) <= MOST_IN_RANGE:
+        problem = f"{value}: is not a range of 2 to {MOST_IN_RANGE} values."
+        raise InputError(SOURCE, (_fault("--set", problem, f"Write e.g. {low}..{high} {high_unit} / 6."),))
+    return tuple(f"{number:.10g} {high_unit}".rstrip() for number in np.linspace(float(low), float(high), int(count)))
+
+
+def linked(axes: Mapping[str, Sequence[str]]) -> tuple[Settings, ...]:
+    """The points of keys that change together: the first values of all, the second ones, and so on. Raises InputError
+    if they have different numbers of values."""
+    counts = {key: len(values) for key, values in axes.items()}
+    if len(set(counts.values())) > 1:
+        told = ", ".join(f"{key} has {count}" for key, count in counts.items())
+        problem = f"are linked, and have different numbers of values: {told}."
+        raise InputError(SOURCE, (_fault(", ".join(axes), problem, "Give each as many values."),))
+    return tuple(dict(zip(axes, values, strict=True)) for values in zip(*axes.values(), strict=True))
+
+
+def split_values(text: str, mark: str = ",") -> tuple[str, ...]:
+    """What stands between the commas, or other marks, of `text`; those in quotes and brackets do not separate."""
     values, depth, quote = [""], 0, ""
     for letter in text:
         if quote:
@@ -25,7 +62,7 @@ def split_values(text: str) -> tuple[str, ...]:
         elif letter in QUOTES:
             quote = letter
         depth += 0 if quote else (letter in OPENING) - (letter in CLOSING)
-        if letter == "," and not quote and depth == 0:
+        if letter == mark and not quote and depth == 0:
             values.append("")
         else:
             values[-1] += letter

@@ -21,7 +21,8 @@ METHODS = ("runup", "stability")
 FINISHED, INTERRUPTED = "finished", "interrupted"
 INPUT_ERROR, NOT_CONVERGED, ERROR = "input-error", "not-converged", "error"
 UNDECIDED = (INPUT_ERROR, ERROR, INTERRUPTED)  # a sweep that goes on tries these again
-THRESHOLD = "threshold"
+THRESHOLD, ONSET = "threshold", "onset"
+NO_WHIRL = "No whirl up to"  # begins a message
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,8 @@ class SweepPoint:
 
     number: from 1; settings: key -> value as text; status: that of its run, or "input-error" (no case, or a file that
     cannot be written), "error" (a bug, or its process died), "interrupted" (not computed yet); message: why, where the
-    status is not "finished", and for a point without a threshold on which side it lies; events: as in a run, or the
-    one of kind "threshold" of the linear stability; cost: as in a run; run: its file, None if not kept.
+    status is not "finished", or on which side of the speeds a missing onset or threshold lies; events: as in a run, or
+    the one of kind "threshold" of the linear stability; cost: as in a run; run: its file, None if not kept.
     """
 
     number: int
@@ -83,6 +84,8 @@ def _run(task: Task) -> SweepPoint:
     with _run_file(task.run) as path:
         run = runup(task.case, path, resume=True)
     message = "" if run.status == FINISHED else f"{run.status} at {run.t_end_s:.4g} s"
+    if run.status == FINISHED and not any(event["kind"] == ONSET for event in run.events):
+        message = f"{NO_WHIRL} {max(map(abs, (task.case.speed.start, task.case.speed.end))):.4g} Hz."
     point = SweepPoint(task.number, task.settings, run.status, message, tuple(run.events), run.cost)
     return replace(point, run=task.run)
 

@@ -26,7 +26,8 @@ DIED = "its process ended: it was killed, or there was too little memory."
 @dataclass(frozen=True)
 class Workers:
     """backend: "loky" for processes of this machine, "dask" for a cluster; jobs: how many processes, -1 for one on each
-    core; scheduler: address of the cluster's, e.g. "tcp://10.0.0.1:8786"."""
+    core; scheduler: address of the cluster's, e.g. "tcp://10.0.0.1:8786", or nothing for a dask cluster of `jobs`
+    processes of this machine."""
 
     backend: str = "loky"
     jobs: int = -1
@@ -37,8 +38,6 @@ def check_workers(workers: Workers) -> None:
     """Raises InputError if there can be no such workers."""
     if workers.backend not in BACKENDS:
         raise _refuse("--backend", workers.backend, "is not a backend.", f"There are: {', '.join(BACKENDS)}.")
-    if workers.backend == "dask" and not workers.scheduler:
-        raise _refuse("--scheduler", "", "is missing.", "Write e.g. --scheduler tcp://10.0.0.1:8786.")
     if workers.backend == "dask" and find_spec("distributed") is None:
         remedy = "Install it: pip install frbcli[cluster]"
         raise _refuse("--backend", "dask", "needs the library dask.distributed.", remedy)
@@ -47,7 +46,7 @@ def check_workers(workers: Workers) -> None:
     if workers.jobs != -1 and workers.jobs < 1:
         raise _refuse("--jobs", str(workers.jobs), "is not a number of processes.", "Write 1 or more.")
     cores = joblib.cpu_count()
-    if workers.backend == "loky" and workers.jobs > MOST_PER_CORE * cores:
+    if not workers.scheduler and workers.jobs > MOST_PER_CORE * cores:
         problem = f"are more processes than this machine can run: it has {cores} cores."
         raise _refuse("--jobs", str(workers.jobs), problem, f"Write {cores}, or leave --jobs out.")
 
@@ -111,6 +110,12 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
     from distributed import Client, KilledWorker
 
     connect: Any = Client  # without types where it is installed
+    if not workers.scheduler:
+        count = joblib.cpu_count() if workers.jobs == -1 else workers.jobs
+        local = connect(n_workers=count, threads_per_worker=1, dashboard_address=None, set_as_default=False)
+        with local, joblib.parallel_config("dask", client=local):
+            yield (KilledWorker,)
+        return
     try:
         client = connect(workers.scheduler, timeout=CONNECT_WITHIN_s, set_as_default=False)
     except (OSError, ValueError) as error:
