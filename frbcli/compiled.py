@@ -17,7 +17,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 from llvmlite import ir
-from numba import njit
+from numba import njit, types
 from numba.core import config
 from numba.core.ccallback import CFunc
 from numba.core.sigutils import normalize_signature
@@ -80,23 +80,22 @@ def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> 
     return made
 
 
-def address_of(function: Any) -> float:
-    """Of a function made by c_function, as a number. Those of today's machines are below 2^53, so exact."""
-    address = float(function.address)
-    if int(address) != function.address:
-        raise MemoryError("an address of a compiled function does not fit into a number")
-    return address
+def address_of(function: Any) -> int:
+    """Address of a C function made by c_function."""
+    return int(function.address)
 
 
 def call_of(numbers: int) -> Callable[..., Any]:
-    """Code that calls an address with some whole numbers and then with the data of arrays."""
+    """Code that calls an address with some whole numbers and then with the data of arrays or records."""
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         pointer = ir.DoubleType().as_pointer()
         given = list(arguments[1 : 1 + numbers])
         kinds = [value.type for value in given]
         for kind, array in zip(signature.args[1 + numbers :], arguments[1 + numbers :], strict=True):
-            given.append(context.make_array(kind)(context, builder, array).data)
+            a_record = isinstance(kind, types.Record)
+            data = array if a_record else context.make_array(kind)(context, builder, array).data
+            given.append(builder.bitcast(data, pointer))
             kinds.append(pointer)
         function = ir.FunctionType(ir.VoidType(), kinds)
         builder.call(builder.inttoptr(arguments[0], function.as_pointer()), given)

@@ -14,7 +14,6 @@ from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.nearest import did_you_mean
 from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import make_law
@@ -41,7 +40,7 @@ PUBLISHED_FILM = Decision(
 
 @dataclass(frozen=True)
 class KinematicPlan:
-    """What will be modelled. section: of the film, copied section.copies times; rectangle: the bearing of the accurate
+    """What will be modelled. section: of the film, copied section.copies times; rectangle: that of the accurate
     modal film, None where grooves or bores are cut out; cells: (around, along); steps: per period; rate: reference
     speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning: rad/s of the surface that
     the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11)."""
@@ -49,7 +48,7 @@ class KinematicPlan:
     test: str
     cavitation: str
     section: Section
-    rectangle: RectangularBearing | None
+    rectangle: Section | None
     cells: tuple[int, int]
     steps: int
     rate: float

@@ -16,9 +16,9 @@ from frbcli.bearing_tests.steady_film import settled
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.motion import Motion
+from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
 from frbcli.film.parabola import share_within
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.section_faults import no_inflow
 
@@ -93,7 +93,7 @@ def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int
     return solved_force(case, plan, motion, cells)
 
 
-def _in_a_table(bearing: RectangularBearing, target: Array, omega: float, starts: list[Array]) -> list[Array]:
+def _in_a_table(bearing: Section, target: Array, omega: float, starts: list[Array]) -> list[Array]:
     """The resting position in the tabulated half-Sommerfeld film, to begin from, if there is one."""
     film, c, still = make_film(bearing, "finite", "half-sommerfeld", TABLE_MESH), bearing.clearance, np.zeros(2)
     for start in starts:

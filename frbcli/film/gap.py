@@ -98,9 +98,22 @@ class Section:
         return 12.0 * self.viscosity * (self.radius / self.clearance) ** 2
 
     @property
+    def force_scale(self) -> float:
+        """R b times pressure_scale times the number of sections, N s, see (3.13)."""
+        return self.copies * self.radius * self.width * self.pressure_scale
+
+    @property
     def aspect(self) -> float:
         """(R/b)^2 of (3.9)."""
         return (self.radius / self.width) ** 2
+
+
+def whole_width(section: Section) -> Section:
+    """The section over the whole width of the bearing, unless a groove divides it: films made of rectangles are solved
+    on it, without a plane of symmetry."""
+    if section.far == "groove":
+        return section
+    return replace(section, width=section.bearing_width, copies=1, far=section.near)
 
 
 def ends_at_ambient(section: Section) -> Section:

@@ -7,8 +7,7 @@ from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores
 from frbcli.case.supplies.supply import MIDDLE
-from frbcli.film.gap import LobedShell, Section
-from frbcli.film.rectangles.bearing import RectangularBearing, rectangular
+from frbcli.film.gap import LobedShell, Section, whole_width
 
 
 def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = None) -> Section:
@@ -48,6 +47,6 @@ def _lobes(bearing: FilmGeometry) -> LobedShell | None:
     return None if given is None else LobedShell(given.count, given.preload, given.position, given.offset)
 
 
-def film_rectangle(section: Section) -> RectangularBearing | None:
-    """The same as a rectangular gap for the modal film; None if it is none."""
-    return None if section.grooves or section.holes or section.lobes else rectangular(section)
+def film_rectangle(section: Section) -> Section | None:
+    """The section over the whole width, as the modal film is solved on it; None if openings or lobes interrupt it."""
+    return None if section.grooves or section.holes or section.lobes else whole_width(section)

@@ -19,27 +19,15 @@ from numba.extending import overload
 from frbcli.compiled import Array, compiled
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.data import (
-    AMBIENT,
-    CAVITY,
-    CENTRIFUGAL,
-    FAR_PRESSURE,
-    FILM,
-    FLOW_SCALE,
-    FORCE_SCALE,
     GIVEN_PRESSURE,
-    INNER,
-    OUTER,
-    PARAMETERS,
-    PRESSURE_SCALE,
-    RESISTANCE,
     VolumeFilms,
 )
 from frbcli.film.kinds.cells import CellEnds
 from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.film.state import OIL, RATE
-from frbcli.solve.films.cells import GRID_X, GRID_Y, oil_fraction
+from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.films.forces import drag_integral
-from frbcli.solve.films.steps import have_cells
+from frbcli.solve.films.kinds import CELLS, by_kind, kind_of
 from frbcli.solve.stage.contact import feel
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
 from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData
@@ -116,11 +104,11 @@ class Taken(NamedTuple):
 
 
 def carry_heat(
-    heat: Any, films: Any, work: Any, turning: Array, film: Array, bodies: Array, wet: Array, taken: Taken,
+    heat: Any, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Array, taken: Taken,
     clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
-    """After an accepted step: temperatures, viscosities and clearances move on. RUNNING, or OVERHEATED. film: the rows
-    of stage.py in the last stage, with its speeds `bodies` of rotor and rings."""
+    """Temperatures, viscosities and clearances move on after an accepted step. Returns RUNNING or OVERHEATED. journal:
+    the rows of stage/equations.py in the last stage; bodies: its speeds of rotor and rings."""
     raise NotImplementedError
 
 
@@ -130,16 +118,16 @@ def write_heat(heat: Any, out_heat: Array, first: int, last: int) -> None:
 
 
 @overload(carry_heat, inline="always")
-def _carry_heat(heat, films, work, turning, film, bodies, wet, taken, clearances, drag):  # type: ignore[no-untyped-def]
+def _carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
-        return lambda heat, films, work, turning, film, bodies, wet, taken, clearances, drag: RUNNING
-    if have_cells(films):
-        return lambda heat, films, work, turning, film, bodies, wet, taken, clearances, drag: _carry(
-            heat, films, work, turning, film, bodies, wet, taken, clearances, drag
+        return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: RUNNING
+    if kind_of(films) == CELLS:
+        return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: _carry(
+            heat, films, work, turning, journal, bodies, wet, taken, clearances, drag
         )
     # Only what tabulated films need is handed on: a call with the arrays of all films takes as long as their heat does.
-    return lambda heat, films, work, turning, film, bodies, wet, taken, clearances, drag: _carry(
-        heat, 0, 0, turning, film, bodies, 0, taken, clearances, drag
+    return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: _carry(
+        heat, 0, 0, turning, journal, bodies, 0, taken, clearances, drag
     )
 
 
@@ -152,7 +140,7 @@ def _write_heat(heat, out_heat, first, last):  # type: ignore[no-untyped-def]
 
 @compiled()
 def _carry(
-    heat: LumpedHeat, films: Any, work: Any, turning: Array, film: Array, bodies: Array, wet: Any, taken: Taken,
+    heat: LumpedHeat, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Any, taken: Taken,
     clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
     """carry_heat of LumpedHeat: P = K slip^2 + (e x F) omega/2 - F . e', see docs/heat.md."""
@@ -164,15 +152,15 @@ def _carry(
         state[BOOKS + b] = bodies[b]
     for f in range(count):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
-        v_x, v_y, total = film[U, x], film[U, y], film[OMEGA, x]
-        e_x, e_y = film[X_0, x] + g * v_x, film[X_0, y] + g * v_y
+        v_x, v_y, total = journal[U, x], journal[U, y], journal[OMEGA, x]
+        e_x, e_y = journal[X_0, x] + g * v_x, journal[X_0, y] + g * v_y
         slip = 0.0
         for b in range(bodies.shape[0]):
             slip += turning[f, SLIP, b] * bodies[b]
         d_x, d_y, r_x, r_y, _, _, _, _, _, _ = feel(e_x / c, e_y / c, v_x / c, v_y / c, contact_at, contact_stiffness)
-        moved = e_x * film[FORCE, y] - e_y * film[FORCE, x]
+        moved = e_x * journal[FORCE, y] - e_y * journal[FORCE, x]
         now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, factor) * slip * slip
-        now[POWER, f] += 0.5 * moved * total - film[FORCE, x] * v_x - film[FORCE, y] * v_y
+        now[POWER, f] += 0.5 * moved * total - journal[FORCE, x] * v_x - journal[FORCE, y] * v_y
         if numbers[BY_FORMULA] != 0.0:
             now[FLOW, f] = made[FORMULA, f] * c * c * c / now[ETA, f]
         else:
@@ -247,13 +235,6 @@ def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
     raise NotImplementedError
 
 
-@overload(keep_oil, inline="always")
-def _keep_oil(films, wet, f, narrower):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        return lambda films, wet, f, narrower: None
-    return lambda films, wet, f, narrower: _scale_oil(wet, f, narrower)
-
-
 @compiled()
 def _scale_oil(wet: Array, f: int, factor: float) -> None:
     """keep_oil of films on cells."""
@@ -269,21 +250,14 @@ def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> No
     raise NotImplementedError
 
 
-@overload(oil_share, inline="always")
-def _oil_share(films, work, f):  # type: ignore[no-untyped-def]
-    if have_cells(films):
-        return lambda films, work, f: oil_fraction(films.cells[f], work.states[f])
-    return lambda films, work, f: 1.0
-
-
 @overload(leaving, inline="always")
 def _leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
-    if have_cells(films):
+    if kind_of(films) == CELLS:
         return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: (
             ends.units[f]
             * side_flow(
-                films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[f, GRID_X],
-                work.grids[f, GRID_Y], ends.far_open[f] != 0,
+                films.films[f], films.ring[f], films.cells[f], work.states[f],
+                work.grids[f].x, work.grids[f].y, ends.far_open[f] != 0,
             )
         )  # fmt: skip
     if isinstance(ends, types.UniTuple):
@@ -299,31 +273,47 @@ def _leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[n
     return several
 
 
-@overload(set_scale, inline="always")
-def _set_scale(ends, films, f, now, reference):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        return lambda ends, films, f, now, reference: None
-    return lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference)
-
-
 @compiled()
 def _scale_cells(ends: CellEnds, films: VolumeFilms, f: int, now: Array, reference: float) -> None:
     """Scaled pressures are those in Pa over 12 eta / psi^2: what is given in Pa falls with the scale, forces rise."""
     scale = now[SCALE, f]
-    for place in (CAVITY, AMBIENT, FAR_PRESSURE, CENTRIFUGAL):
-        films.numbers[f, place] = ends.numbers[f, place] / scale
-    films.numbers[f, FORCE_SCALE] = ends.numbers[f, FORCE_SCALE] * scale
+    film, made = films.films[f], ends.films[f]
+    film.scales.cavitation, film.scales.ambient = made.scales.cavitation / scale, made.scales.ambient / scale
+    film.far.pressure, film.centrifugal = made.far.pressure / scale, made.centrifugal / scale
+    film.force_scale = made.force_scale * scale
     for p in range(ends.exponents.shape[1]):
         if ends.exponents[f, p] != 0.0:
-            films.numbers[f, PARAMETERS + p] = ends.numbers[f, PARAMETERS + p] * scale ** ends.exponents[f, p]
+            film.parameters[p] = made.parameters[p] * scale ** ends.exponents[f, p]
     for i in range(films.cells.shape[2]):
         for j in range(films.cells.shape[3]):
             films.cells[f, GIVEN_PRESSURE, i, j] = ends.given[f, i, j] / scale
     for q in range(films.feed_holes.shape[0]):
-        if int(films.feed_holes[q, FILM]) == f:
-            films.feed_holes[q, PRESSURE_SCALE] = ends.feed_holes[q, PRESSURE_SCALE] * scale
-            films.feed_holes[q, FLOW_SCALE] = ends.feed_holes[q, FLOW_SCALE] * now[CLEARANCE, f] / reference
+        hole, at_first = films.feed_holes[q], ends.feed_holes[q]
+        if hole.film == f:
+            hole.pressure_scale = at_first.pressure_scale * scale
+            hole.flow_scale = at_first.flow_scale * now[CLEARANCE, f] / reference
     for k in range(films.channels.shape[0]):  # filled with the oil of the outer film, or of a groove
-        hole = int(films.channels[k, OUTER if films.channels[k, OUTER] >= 0.0 else INNER])
-        if int(films.feed_holes[hole, FILM]) == f:
-            films.channels[k, RESISTANCE] = ends.resistance[k] * now[ETA, f]
+        channel = films.channels[k]
+        filled_from = channel.outer if channel.outer >= 0 else channel.inner
+        if films.feed_holes[filled_from].film == f:
+            channel.resistance = ends.resistance[k] * now[ETA, f]
+
+
+by_kind(
+    keep_oil,
+    inline=True,
+    others=lambda films, wet, f, narrower: None,
+    cells=lambda films, wet, f, narrower: _scale_oil(wet, f, narrower),
+)
+by_kind(
+    oil_share,
+    inline=True,
+    others=lambda films, work, f: 1.0,
+    cells=lambda films, work, f: oil_fraction(films.cells[f], work.states[f]),
+)
+by_kind(
+    set_scale,
+    inline=True,
+    others=lambda ends, films, f, now, reference: None,
+    cells=lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference),
+)

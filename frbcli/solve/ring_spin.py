@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import Array, Indices, compiled
-from frbcli.solve.films.cells import GRID_SPEED, GRID_TURN
+from frbcli.film.cells.data import Records
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.scratch import Scratch
 from frbcli.solve.stage.contact import feel
@@ -31,7 +31,7 @@ def make_rings(count: int) -> Rings:
 
 
 @compiled(inline=True)
-def set_speeds(turning: Array, bodies: Array, angles: Array, film: Array, grids: Array) -> None:
+def set_speeds(turning: Array, bodies: Array, angles: Array, journal: Array, grids: Records) -> None:
     """OMEGA of each film, and how its grid stands, by speeds and angles of the rotor and the rings."""
     for f in range(turning.shape[0]):
         total, speed, angle = 0.0, 0.0, 0.0
@@ -39,9 +39,9 @@ def set_speeds(turning: Array, bodies: Array, angles: Array, film: Array, grids:
             total += turning[f, SUM, b] * bodies[b]
             speed += turning[f, GRID, b] * bodies[b]
             angle += turning[f, GRID, b] * angles[b]
-        film[OMEGA, 2 * f] = film[OMEGA, 2 * f + 1] = total
+        journal[OMEGA, 2 * f] = journal[OMEGA, 2 * f + 1] = total
         if grids.shape[0] > f:
-            grids[f, GRID_TURN], grids[f, GRID_SPEED] = angle, speed
+            grids[f].turn, grids[f].speed = angle, speed
 
 
 @compiled(inline=True)
@@ -69,7 +69,7 @@ def spin_up(
     middle between them, at both in the same sense. How Couette's term of a ring falls with its own speed is taken in by
     Newton's method: a ring of little inertia follows it at once, and plain iterations would go to and fro.
     """
-    count, clearances, film, at = rotor.spins.shape[0], rotor.clearances, scratch.film, scratch.at
+    count, clearances, journal, at = rotor.spins.shape[0], rotor.clearances, scratch.journal, scratch.at
     bodies, angles, torque, held = rings
     if count == 0:
         return 0.0
@@ -77,7 +77,7 @@ def spin_up(
         torque[r] = held[r] = 0.0
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
-        e_x, e_y = film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]
+        e_x, e_y = journal[X_0, x] + g * journal[U, x], journal[X_0, y] + g * journal[U, y]
         slip = 0.0
         for b in range(bodies.shape[0]):
             slip += rotor.turning[f, SLIP, b] * bodies[b]
@@ -86,7 +86,7 @@ def spin_up(
         )
         resistance = rotor.drag[f] * drag_integral(films, work, f, d_x, d_y, rotor.torque_terms[1])
         couette = -resistance * slip
-        poiseuille = -0.5 * (e_x * film[FORCE, y] - e_y * film[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
+        poiseuille = -0.5 * (e_x * journal[FORCE, y] - e_y * journal[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
         inside, outside = rotor.ring_of[f, 0], rotor.ring_of[f, 1]
         if inside >= 0:
             torque[inside] += couette + poiseuille

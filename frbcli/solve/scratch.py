@@ -16,7 +16,7 @@ from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
 
 class Scratch(NamedTuple):
     """selection (m, n): the journals' displacements from the rotor's; products, loads, spread, compliance, elimination:
-    see prepare of inverse.py; at (STAGE_ROWS, n), film (JOURNAL_ROWS, m): rows of stage.py; stage_v, stage_a
+    see prepare of inverse.py; at (STAGE_ROWS, n), journal (JOURNAL_ROWS, m): rows of stage.py; stage_v, stage_a
     (n, stages)."""
 
     selection: Array
@@ -26,7 +26,7 @@ class Scratch(NamedTuple):
     compliance: Array
     elimination: Array
     at: Array
-    film: Array
+    journal: Array
     stage_v: Array
     stage_a: Array
 

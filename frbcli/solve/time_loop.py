@@ -118,7 +118,7 @@ def _solve_stage(
     clearances, turning, spins, grids = rotor.clearances, rotor.turning, rotor.spins, work.grids
     weights, moments = tableau.stage, tableau.times
     g, m, allowed = weights[1, 1] * step, 2 * clearances.shape[0], NEWTON_SHARE * control.tolerance
-    selection, products, loads, spread, compliance, elimination, at, film, stage_v, stage_a = scratch
+    selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
     newton, past, rings = own.newton, own.past, own.rings
     t_s = t + moments[s] * step
     acceleration, speed, angle = rotation(
@@ -127,30 +127,30 @@ def _solve_stage(
     if outdated(numbers, g, speed, rotor.has_gyroscopic, rotor.follows_speed):
         prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
     predict(weights, s, step, q, v, stage_v, stage_a, at)
-    start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, film)
-    guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), film)
+    start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, journal)
+    guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), journal)
     guess_speeds(spins, s, g, speed, angle, at, stage_a, rings.bodies, rings.angles)
-    set_speeds(turning, rings.bodies, rings.angles, film, grids)
+    set_speeds(turning, rings.bodies, rings.angles, journal, grids)
     begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
                 moments[s] / moments[s - 1] if s > 1 else 1.0)
     lag = begin_lag(numbers, g, speed, at) if rotor.has_gyroscopic else 0.0
     for iteration in range(most_iterations(films)):
-        forces(films, work, clearances, control, g, s, iteration, film)
+        forces(films, work, clearances, control, g, s, iteration, journal)
         numbers[SOLVES] += m // 2
-        share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, film, newton)
+        share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, journal, newton)
         if left == math.inf:
             return False, speed
         left = left_over(films, work, left, moved, unsettled, allowed)
         if share == 1.0:
-            late = accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
+            late = accelerate(s, g, lag, products, spread, selection, at, journal, stage_v, stage_a)
             left = max(left, g * late / _smallest(clearances))
             if spins.shape[0] > 0:
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
-                set_speeds(turning, rings.bodies, rings.angles, film, grids)
+                set_speeds(turning, rings.bodies, rings.angles, journal, grids)
             if control.linearised or left < allowed:
                 past[HISTORY + s - 1, 0] = t_s
                 for i in range(m):
-                    past[HISTORY + s - 1, 1 + i] = film[U, i]
+                    past[HISTORY + s - 1, 1 + i] = journal[U, i]
                 return True, speed
     return False, speed
 
@@ -164,7 +164,7 @@ def _advance(
     work, own, scratch = space.work, space.own, space.scratch
     numbers, q, v, a, past_now, wet, flows, errors = state
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
-    clearances, weights, film = rotor.clearances, tableau.stage, scratch.film
+    clearances, weights, journal = rotor.clearances, tableau.stage, scratch.journal
     stage_v, stage_a, q_new = scratch.stage_v, scratch.stage_a, own.q_new
     out_q, out_v, out_oil, out_heat = output
     gamma, order = weights[1, 1], float(tableau.error_order)
@@ -196,7 +196,8 @@ def _advance(
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
         taken = Taken(step, g, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness)
-        hot = carry_heat(heat, films, work, rotor.turning, film, own.rings.bodies, wet, taken, clearances, rotor.drag)
+        bodies = own.rings.bodies
+        hot = carry_heat(heat, films, work, rotor.turning, journal, bodies, wet, taken, clearances, rotor.drag)
         write_heat(heat, out_heat, before, written)
         numbers[STEP_DONE] = step
         move_on(q, v, a, q_new, stage_v, stage_a)

@@ -9,15 +9,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS, compiled
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.published.data import LEFT
 from frbcli.film.state import NOW
-from frbcli.solve.films.cells import GRID_X, GRID_Y
 from frbcli.solve.films.forces import drag_integral
-from frbcli.solve.films.steps import have_cells, have_elements
+from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Array, Control, LoopOutput, RotorData, State
 from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import Space, _advance, make_space
@@ -51,16 +49,15 @@ def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) ->
     raise NotImplementedError
 
 
-@overload(oil_leaving, jit_options=AS_KERNELS)
-def _oil_leaving(films, work, flows, f, far_open):  # type: ignore[no-untyped-def]
-    if have_elements(films):
-        return lambda films, work, flows, f, far_open: flows[NOW, f, LEFT]
-    if have_cells(films):
-        return lambda films, work, flows, f, far_open: side_flow(
-            films.numbers[f], films.ring[f], films.cells[f], work.states[f], work.grids[f, GRID_X],
-            work.grids[f, GRID_Y], far_open[f] != 0.0,
-        )  # fmt: skip
-    return lambda films, work, flows, f, far_open: 0.0
+by_kind(
+    oil_leaving,
+    others=lambda films, work, flows, f, far_open: 0.0,
+    cells=lambda films, work, flows, f, far_open: side_flow(
+        films.films[f], films.ring[f], films.cells[f], work.states[f], work.grids[f].x, work.grids[f].y,
+        far_open[f] != 0.0,
+    ),
+    elements=lambda films, work, flows, f, far_open: flows[NOW, f, LEFT],
+)  # fmt: skip
 
 
 @compiled()

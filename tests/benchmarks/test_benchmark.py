@@ -24,7 +24,7 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, BilinearForm, ElementQuad2, LinearForm, MeshQuad
 
 from frbcli.case.reading.load import load_case
-from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.gap import Section
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.machine.system import System, make_system
@@ -48,9 +48,9 @@ def report(text: str) -> None:
 class NaiveFilm:
     """Half-Sommerfeld forces from forms assembled and a sparse system solved at every call; the mesh is made once."""
 
-    def __init__(self, bearing: RectangularBearing) -> None:
+    def __init__(self, bearing: Section) -> None:
         self.scale = bearing.force_scale
-        self.aspect = (0.5 * bearing.diameter / bearing.section_width) ** 2
+        self.aspect = bearing.aspect
         ring, width = np.linspace(0.0, 2 * math.pi, AROUND + 1), np.linspace(0.0, 1.0, AXIAL + 1)
         self.basis = Basis(MeshQuad.init_tensor(ring, width), ElementQuad2(), intorder=4)
         phi, z = self.basis.doflocs

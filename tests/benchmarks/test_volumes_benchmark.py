@@ -14,6 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from films import rectangular
 from numba import njit
 from test_benchmark import NaiveFilm, report
 from volume_films import AMBIENT, CLEARANCE, RADIUS, ROTATION, VISCOSITY, WIDTH, section_of
@@ -29,7 +30,6 @@ from frbcli.film.cells.data import COS, GAP, SIN, volume_films
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.rectangles.bearing import RectangularBearing
 
 pytestmark = [pytest.mark.nightly, pytest.mark.timing]
 
@@ -57,7 +57,7 @@ def circle(  # type: ignore[no-untyped-def]
 ):
     """Euler steps of a whirl with eps 0.6; returns the number of iterations."""
     m, k = w.shape
-    numbers, ring, cells = films.numbers[0], films.ring[0], films.cells[0]
+    own, ring, cells = films.films[0], films.ring[0], films.cells[0]
     law = np.empty(LAW_NUMBERS)
     iterations = 0
     for n in range(count):
@@ -76,8 +76,8 @@ def circle(  # type: ignore[no-untyped-def]
                     largest = max(largest, abs(fields[i, j, k]))
             if largest < SETTLED:
                 break
-        follow_law(numbers, 0.0, 0.0, 0.0, 0.0, omega, law)
-        cell_states(numbers, cells, law, 0.0, w, states)
+        follow_law(own, 0.0, 0.0, 0.0, 0.0, omega, law)
+        cell_states(own, cells, law, 0.0, w, states)
         for i in range(m):
             gap = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
             for j in range(k):
@@ -120,7 +120,7 @@ def iteration_seconds(along: int) -> float:
 
 
 def test_iteration_of_the_two_phase_film_against_the_naive_way() -> None:
-    bearing = RectangularBearing(WIDTH, 2.0 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, grooved=True)
+    bearing = rectangular(WIDTH, 2.0 * RADIUS, CLEARANCE, VISCOSITY, AMBIENT, AMBIENT, groove=2)
     naive_film = NaiveFilm(bearing)
     d, v = np.array(ROTATION.d), np.zeros(2)
     naive = seconds(lambda: [naive_film.force(d, v, ROTATION.omega) for _ in range(5)], 5)

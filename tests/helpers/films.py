@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from frbcli.film.gap import AxialGroove, Section, whole_width
 from frbcli.film.grid import Mesh
 from frbcli.film.kinds.tables import TableFilms
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.linear import LinearRotor
@@ -19,9 +19,24 @@ from frbcli.scene.machine.system import System
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
 
 CLEARANCE, RADIUS, VISCOSITY, AMBIENT = 40e-6, 12.5e-3, 10e-3, 1e5
-GROOVED = RectangularBearing(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, 2, AMBIENT, AMBIENT, grooved=True)
-PLAIN = replace(GROOVED, sections=1, grooved=False)
-SUPPLIED = replace(GROOVED, groove_pressure=1e5)
+
+
+def rectangular(
+    width: float, diameter: float, clearance: float, viscosity: float, ambient_pressure: float,
+    cavitation_pressure: float, *, groove: int = 0, far_pressure: float = 0.0, grooves: tuple[AxialGroove, ...] = (),
+) -> Section:  # fmt: skip
+    """The section of a bearing over its whole width in an oil bath, or between its end and a circumferential groove,
+    on `groove` sides of which a section lies."""
+    copies, far = (groove, "groove") if groove else (1, "oil-bath")
+    return whole_width(Section(
+        0.5 * diameter, width / copies, width, clearance, viscosity, ambient_pressure, cavitation_pressure, copies,
+        "oil-bath", far, far_pressure, grooves,
+    ))  # fmt: skip
+
+
+GROOVED = rectangular(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, AMBIENT, AMBIENT, groove=2)
+PLAIN = rectangular(20e-3, 2 * RADIUS, CLEARANCE, VISCOSITY, AMBIENT, AMBIENT)
+SUPPLIED = replace(GROOVED, far_pressure=1e5)
 
 # Every kind of film: name -> bearing, theory, cavitation
 KINDS = {
@@ -36,7 +51,7 @@ EQUAL_PRESSURES = [name for name in KINDS if "2 bar" not in name]
 
 
 @functools.cache
-def film_of(bearing: RectangularBearing, theory: str, cavitation: str, mesh: Mesh = DEFAULT_MESH) -> FilmData:
+def film_of(bearing: Section, theory: str, cavitation: str, mesh: Mesh = DEFAULT_MESH) -> FilmData:
     """The film, made once per test process."""
     return make_film(bearing, theory, cavitation, mesh)
 
@@ -52,13 +67,13 @@ def polar(radius: float, angle: float) -> np.ndarray:
     return radius * np.array([math.cos(angle), math.sin(angle)])
 
 
-def sommerfeld_number(bearing: RectangularBearing, force_N: float, omega: float) -> float:
+def sommerfeld_number(bearing: Section, force_N: float, omega: float) -> float:
     """So = psi^2 F / (D B eta omega), (3.14)."""
-    psi = bearing.clearance / (0.5 * bearing.diameter)
-    return psi**2 * force_N / (bearing.diameter * bearing.width * bearing.viscosity * omega)
+    psi = bearing.clearance / bearing.radius
+    return psi**2 * force_N / (2.0 * bearing.radius * bearing.bearing_width * bearing.viscosity * omega)
 
 
-def system_of(rotor: LinearRotor, bearings: tuple[RectangularBearing, ...], films: tuple[FilmData, ...]) -> System:
+def system_of(rotor: LinearRotor, bearings: tuple[Section, ...], films: tuple[FilmData, ...]) -> System:
     """A rotor on single films in shells at rest."""
     count = len(films)
     return System(

@@ -6,12 +6,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from films import system_of
+from films import rectangular, system_of
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from frbcli.film.grid import Mesh
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
@@ -26,9 +25,9 @@ from frbcli.solve.time_loop import advance
 Array = NDArray[np.float64]
 
 MESH = Mesh(6, 96)
-BEARING = RectangularBearing(
-    width=20e-3, diameter=25e-3, clearance=35e-6, viscosity=12e-3, sections=2,
-    ambient_pressure=1e5, cavitation_pressure=1e5, grooved=True,
+BEARING = rectangular(
+    width=20e-3, diameter=25e-3, clearance=35e-6, viscosity=12e-3, ambient_pressure=1e5, cavitation_pressure=1e5,
+    groove=2,
 )  # fmt: skip
 SHORT_FILM = make_film(BEARING, "short", "half-sommerfeld", MESH)
 NO_FILM = SHORT_FILM._replace(force_scale=0.0)

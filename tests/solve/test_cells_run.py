@@ -16,7 +16,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.states import whirl_share
-from frbcli.film.cells.data import SETTLED, VolumeFilms
+from frbcli.film.cells.data import VolumeFilms
 from frbcli.results.store import read_run
 from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect
@@ -146,7 +146,7 @@ def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str, grid:
         """Displacements over the clearance, and film solves per step."""
         plan, system = planned(case, tolerance=tolerance)
         assert isinstance(system.films.loop, VolumeFilms)
-        system.films.loop.numbers[:, SETTLED] = settled
+        system.films.loop.films["settled"] = settled
         film, first = system.films.volumes[0], first_state(case.start, system, run_up_profile(case))
         q, last = run(case, plan, system)
         if system.remembers:

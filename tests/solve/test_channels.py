@@ -20,7 +20,7 @@ from frbcli.errors import InputError
 from frbcli.film.cells.balance.balances import CHANNELS_NET
 from frbcli.film.cells.channels.channel import Channel, channel_resistance
 from frbcli.film.cells.channels.data import with_channels
-from frbcli.film.cells.data import FLOW_SCALE, UNKNOWN, volume_films
+from frbcli.film.cells.data import UNKNOWN, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
@@ -35,7 +35,6 @@ from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.cosimulation.micro_step import _solve_films
-from frbcli.solve.films.cells import GRID_SPEED, GRID_TURN
 from frbcli.solve.films.steps import begin_stage, make_work
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
 from frbcli.solve.state import RUNNING, State, make_output
@@ -102,7 +101,7 @@ def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> N
     feed_holes = system.films.loop.feed_holes  # type: ignore[union-attr]
     sizes = [film.section.copies * film.section.radius * film.section.width * film.section.clearance
              for film in system.films.volumes]  # fmt: skip
-    assert feed_holes[0, FLOW_SCALE] == sizes[0]
+    assert feed_holes[0].flow_scale == sizes[0]
     brought = np.array(sizes) * last.flows[PASSED, :, CHANNELS_NET]
     if supply:
         assert brought[0] > 0.0
@@ -205,7 +204,7 @@ def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> No
 
     def solved(u: Array) -> tuple[Array, Array]:
         work = make_work(system.films.loop, state.wet, 2)
-        work.grids[:, GRID_TURN], work.grids[:, GRID_SPEED] = turn, 150.0  # turn and speed of the ring
+        work.grids["turn"], work.grids["speed"] = turn, 150.0  # turn and speed of the ring
         begin(system.films.loop, work, state.wet, state.flows, weights, g)
         film = np.zeros((JOURNAL_ROWS, 4))
         film[U], film[X_0] = u, place

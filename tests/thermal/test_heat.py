@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from films import rectangular
 from paths import DATA
 
 from frbcli.bearing_tests.kinematic import rotation, squeeze
@@ -21,7 +22,7 @@ from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.gap import Section
 from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow
 from frbcli.film.rectangles.film import make_film
 from frbcli.linear.stability import stability
@@ -350,10 +351,10 @@ def test_scaled_film_is_the_film_of_that_viscosity_and_clearance(settings: list[
 # --- what leaves a film ----------------------------------------------------------------------------------------------
 
 
-def rectangle(**changes: object) -> RectangularBearing:
-    values = {"width": 20e-3, "diameter": 25e-3, "clearance": 35e-6, "viscosity": 12e-3, "sections": 1,
+def rectangle(**changes: object) -> Section:
+    values = {"width": 20e-3, "diameter": 25e-3, "clearance": 35e-6, "viscosity": 12e-3,
               "ambient_pressure": 1e5, "cavitation_pressure": 1e5}  # fmt: skip
-    return RectangularBearing(**(values | changes))  # type: ignore[arg-type]
+    return rectangular(**(values | changes))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.2, 0.5, 0.8, 0.95])
@@ -366,7 +367,7 @@ def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) ->
     omega, d = 900.0, np.array([0.6, -0.8]) * eccentricity
     motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
     solution = FilmSolver(film).steady(motion)
-    bearing = rectangle(sections=2, grooved=True, groove_pressure=pressure - 1e5)
+    bearing = rectangle(groove=2, far_pressure=pressure - 1e5)
     flow = make_end_flow(bearing, make_film(bearing, "finite", "half-sommerfeld", make_plan(case).mesh))
     assert isinstance(flow, TableEndFlow)
     w = 0.5 * omega * np.array([d[1], -d[0]])

@@ -13,18 +13,12 @@ from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.film.cells.data import (
     ALONG,
     AROUND,
-    ASPECT,
     COS,
     FACE_COS,
     FACE_GAP,
     FACE_SIN,
-    FAR_BEND,
-    FAR_PRESSURE,
-    FAR_RISE,
     GAP,
     LENGTH,
-    NEAR_BEND,
-    NEAR_RISE,
     SIN,
     volume_films,
 )
@@ -64,17 +58,17 @@ def _by_pressure(film, d: tuple[float, float], p: np.ndarray) -> tuple[float, fl
     """Sums over all faces of a section of flow times the fall of the pressure, and over the edges of what flows in
     times the pressure there, scaled."""
     data = volume_films([film])
-    numbers, ring, cells = data.numbers[0], data.ring[0], data.cells[0]
+    own, ring, cells = data.films[0], data.ring[0], data.cells[0]
     face = (ring[FACE_GAP] + d[0] * ring[FACE_SIN] - d[1] * ring[FACE_COS])[:, None]
     gap = ring[GAP] + d[0] * ring[SIN] - d[1] * ring[COS]
     dissipated = (face**3 * cells[AROUND] * (np.roll(p, -1, axis=0) - p) ** 2).sum()
     dissipated += (gap[:, None] ** 3 * cells[ALONG][:, :-1] * np.diff(p, axis=1) ** 2).sum()
     pumped = 0.0
     for last, beyond, rise, bend, edge in (
-        (p[:, 0], p[:, 1], numbers[NEAR_RISE], numbers[NEAR_BEND], 0.0),
-        (p[:, -1], p[:, -2], numbers[FAR_RISE], numbers[FAR_BEND], numbers[FAR_PRESSURE]),
+        (p[:, 0], p[:, 1], own.near.rise, own.near.bend, 0.0),
+        (p[:, -1], p[:, -2], own.far.rise, own.far.bend, own.far.pressure),
     ):
-        out = gap**3 * numbers[ASPECT] * ring[LENGTH] * rise * (last - edge + bend * (last - beyond))
+        out = gap**3 * own.aspect * ring[LENGTH] * rise * (last - edge + bend * (last - beyond))
         dissipated += (out * (last - edge)).sum()
         pumped -= edge * out.sum()
     return float(dissipated), float(pumped)

@@ -64,8 +64,8 @@ def compiled_cell(law: type[Law]) -> Any:
     return jitted(law.cell, force_inline=True)
 
 
-def addresses(law: Law) -> tuple[float, float]:
-    """Of follow and cells of a law, as numbers of a film."""
+def addresses(law: Law) -> tuple[int, int]:
+    """Addresses of follow and cells of a law."""
     kind: Any = type(law)
     follow, cells = (address_of(function) for function in compiled_law(kind))
     return follow, cells

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,41 +18,43 @@ from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 
+Records = NDArray[np.record]
 TIGHTLY = 1e-4  # settled, where nothing is said of it
 
 ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
 CLOSED, GIVEN, FREE = range(3)
+# Of forces: how they clip the pressure at p_cav.
+NO_CLIP, BY_CELLS, BETWEEN_MIDDLES = range(3)
 
-# Numbers of one film. FOLLOW_AT, CELLS_AT: addresses of its compiled law; SOLVER_AT: of ring_solver; CENTRIFUGAL: by
-# which given pressures fall with the square of the grid's speed, in s; CLIPS: 1 where forces clip the pressure at p_cav
-# cell by cell, 2 where between the middles of cells; BORED: 1 where flows around take the gaps of both cells, as beside
-# bores; SETTLED: share of its pace that its balances may be off by in the mean; from PARAMETERS on: those of its law,
-# of a centred journal at 1 rad/s.
-(
-    ASPECT,
-    REFERENCE,
-    CAVITY,
-    AMBIENT,
-    FOLLOW_AT,
-    CELLS_AT,
-    SOLVER_AT,
-    CLIPS,
-    REMEMBERS,
-    NEAR,
-    FAR,
-    FAR_PRESSURE,
-    NEAR_RISE,
-    NEAR_BEND,
-    FAR_RISE,
-    FAR_BEND,
-    FORCE_SCALE,
-    CENTRIFUGAL,
-    BORED,
-    SETTLED,
-    PARAMETERS,
-) = range(21)
-SCALES_END = AMBIENT + 1  # REFERENCE, CAVITY and AMBIENT stand beside each other, as Scales has them
-FILM_NUMBERS = PARAMETERS + LARGEST_PARAMETERS
+
+def record(*fields: tuple[Any, ...]) -> Any:
+    """A record whose fields Python and the kernels read by name."""
+    return np.dtype((np.record, np.dtype(list(fields), align=True)))
+
+
+SCALES = record(("reference", "f8"), ("cavitation", "f8"), ("ambient", "f8"))  # see Scales
+# An end of a section: CLOSED, GIVEN or FREE; the slope of the pressure there, see EndSlope; the pressure in a groove.
+END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"))
+# One film. follow_at, cells_at: addresses of its compiled law; solver_at: of ring_solver; remembers: whether it keeps
+# its oil; bored: whether flows around take the gaps of both cells, as beside bores; centrifugal: by which given
+# pressures fall with the square of the grid's speed, in s; settled: share of its pace that its balances may be off by
+# in the mean; parameters: of its law, of a centred journal at 1 rad/s.
+FILM = record(
+    ("aspect", "f8"),
+    ("scales", SCALES),
+    ("force_scale", "f8"),
+    ("near", END),
+    ("far", END),
+    ("centrifugal", "f8"),
+    ("settled", "f8"),
+    ("follow_at", "i8"),
+    ("cells_at", "i8"),
+    ("solver_at", "i8"),
+    ("clips", "i8"),
+    ("remembers", "?"),
+    ("bored", "?"),
+    ("parameters", "f8", (LARGEST_PARAMETERS,)),
+)
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
 # length of the cell; what a unit of pressure on it pushes the journal by.
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
@@ -79,27 +81,31 @@ SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS =
     EDGE_GAP,
     CELL_LAYERS,
 ) = range(16)
-# Numbers of a feed hole: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s,
-# and a pressure of 1 in Pa; the sum of its cells' conductances.
-FILM, SLOT, FLOW_SCALE, PRESSURE_SCALE, CONDUCTANCE, FEED_HOLE_NUMBERS = range(6)
-# Numbers of a channel: its feed holes in the inner and in the outer film, the latter -1 in a groove; its resistance in
+# A feed hole: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s, and a
+# pressure of 1 in Pa; the sum of its cells' conductances.
+FEED_HOLES = record(
+    ("film", "i8"), ("slot", "i8"), ("flow_scale", "f8"), ("pressure_scale", "f8"), ("conductance", "f8")
+)  # fmt: skip
+# A channel: its feed holes in the inner and in the outer film, the latter -1 in a groove; its resistance in
 # Pa s / m^3; gauge pressure of the groove in Pa; by what the pressure rises from the inner to the outer end with the
 # square of the ring's speed, in Pa s^2 (4.27).
-INNER, OUTER, RESISTANCE, GROOVE_PRESSURE, CHANNEL_CENTRIFUGAL, CHANNEL_NUMBERS = range(6)
+CHANNEL = record(
+    ("inner", "i8"), ("outer", "i8"), ("resistance", "f8"), ("groove_pressure", "f8"), ("centrifugal", "f8")
+)  # fmt: skip
 
 
 class VolumeFilms(NamedTuple):
-    """Films of equal numbers of cells m x k. numbers: (films, FILM_NUMBERS); ring: (films, RING_ROWS, m); width:
-    (films, 1, k) sizes of the cells along the axis; cells: (films, CELL_LAYERS, m, k). Of coupled
-    channels: channels (channels, CHANNEL_NUMBERS), feed_holes (holes, FEED_HOLE_NUMBERS) and their cells,
-    feed_hole_cells (holes, n, 2), filled up with -1."""
+    """Films of equal numbers of cells m x k. films: (films,) records FILM; ring: (films, RING_ROWS, m); width:
+    (films, 1, k) sizes of the cells along the axis; cells: (films, CELL_LAYERS, m, k). Coupled channels have records
+    CHANNEL, channels (channels,), and FEED_HOLES, feed_holes (holes,), whose cells are feed_hole_cells (holes, n, 2),
+    filled up with -1."""
 
-    numbers: Array
+    films: Records
     ring: Array
     width: Array
     cells: Array
-    channels: Array
-    feed_holes: Array
+    channels: Records
+    feed_holes: Records
     feed_hole_cells: NDArray[np.int64]
 
 
@@ -108,52 +114,42 @@ def volume_films(
     centrifugal: Sequence[float] = (),
     settled: float = TIGHTLY,
 ) -> VolumeFilms:
-    """The films as arrays; all have grids of the same shape. centrifugal: in s; settled: see SETTLED."""
+    """The films as arrays; all have grids of the same shape. centrifugal, settled: see FILM."""
     m, k = films[0].grid.shape
     data = VolumeFilms(
-        np.zeros((len(films), FILM_NUMBERS)),
+        np.zeros(len(films), FILM),
         np.zeros((len(films), RING_ROWS, m)),
         np.zeros((len(films), 1, k)),
         np.zeros((len(films), CELL_LAYERS, m, k)),
-        np.zeros((0, CHANNEL_NUMBERS)),
-        np.zeros((0, FEED_HOLE_NUMBERS)),
+        np.zeros(0, CHANNEL),
+        np.zeros(0, FEED_HOLES),
         np.zeros((0, 0, 2), dtype=np.int64),
     )
     for index, film in enumerate(films):
-        _fill(film, data.numbers[index], data.ring[index], data.width[index], data.cells[index])
-        data.numbers[index, CENTRIFUGAL] = centrifugal[index] if centrifugal else 0.0
-        data.numbers[index, SETTLED] = settled
+        _describe(film, data.films[index])
+        _fill(film, data.ring[index], data.width[index], data.cells[index])
+        data.films[index].centrifugal = centrifugal[index] if centrifugal else 0.0
+        data.films[index].settled = settled
     return data
 
 
-def _fill(film: VolumeFilm, numbers: Array, ring: Array, width: Array, cells: Array) -> None:
-    section, grid, scales, law = film.section, film.grid, film.scales, film.law
-    follow_at, cells_at = addresses(law)
-    near, far = end_slopes(grid.z)
-    centred = (0.0, 0.0)
-    values = {
-        ASPECT: section.aspect,
-        REFERENCE: scales.reference,
-        CAVITY: scales.cavitation,
-        AMBIENT: scales.ambient,
-        FOLLOW_AT: follow_at,
-        CELLS_AT: cells_at,
-        SOLVER_AT: ring_solver(grid.shape[1]),
-        CLIPS: float(law.clips) + float(film.clips_between),
-        REMEMBERS: float(law.keeps_oil),
-        NEAR: ENDS[section.near],
-        FAR: ENDS[section.far],
-        FAR_PRESSURE: section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0,
-        NEAR_RISE: near.rise,
-        NEAR_BEND: near.bend,
-        FAR_RISE: far.rise,
-        FAR_BEND: far.bend,
-        BORED: float(grid.has_bores),
-        FORCE_SCALE: section.copies * section.radius * section.width * section.pressure_scale,
-    }
-    for place, value in values.items():
-        numbers[place] = value
-    numbers[PARAMETERS:] = given_parameters(law)
+def _describe(film: VolumeFilm, own: np.record) -> None:
+    """own <- the record FILM of a film."""
+    section, scales, law = film.section, film.scales, film.law
+    own.aspect, own.force_scale = section.aspect, section.force_scale
+    own.scales.reference, own.scales.cavitation, own.scales.ambient = scales
+    for end, edge, slope in zip((own.near, own.far), (section.near, section.far), end_slopes(film.grid.z), strict=True):
+        end.kind, end.rise, end.bend = ENDS[edge], *slope
+    own.far.pressure = section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0
+    own.follow_at, own.cells_at = addresses(law)
+    own.solver_at = ring_solver(film.grid.shape[1])
+    own.clips = (BETWEEN_MIDDLES if film.clips_between else BY_CELLS) if law.clips else NO_CLIP
+    own.remembers, own.bored = law.keeps_oil, film.grid.has_bores
+    own.parameters[:] = given_parameters(law)
+
+
+def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:
+    section, grid, centred = film.section, film.grid, (0.0, 0.0)
     face = grid.phi[1:]
     ring[SIN], ring[COS], ring[GAP] = (
         np.sin(grid.centre),

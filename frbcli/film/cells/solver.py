@@ -68,7 +68,7 @@ class FilmSolver:
     def __init__(self, film: VolumeFilm) -> None:
         self.film = film
         data, (m, k) = volume_films([film]), film.grid.shape
-        self._parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
+        self._parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
@@ -157,10 +157,10 @@ class FilmSolver:
 
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""
-        numbers, ring, width, cells = self._parts
+        film, ring, width, cells = self._parts
         at = GridMotion(float(motion.d[0]), float(motion.d[1]), float(motion.omega))
         balances(
-            numbers, ring, width, cells, self._states, at, past, self._stencil, self._fields, self._flows
+            film, ring, width, cells, self._states, at, past, self._stencil, self._fields, self._flows
         )  # fmt: skip
 
     def _passed(self, motion: Motion) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ from frbcli.compiled import Indices
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
-from frbcli.film.cells.data import CENTRIFUGAL, GIVEN_PRESSURE, REMEMBERS, RESISTANCE, SHEARED, VolumeFilms
+from frbcli.film.cells.data import GIVEN_PRESSURE, SHEARED, Records, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm, refilled
 from frbcli.film.cells.loads import CavitationFactor, force, loads
 from frbcli.film.cells.mesh.grid import run_grid
@@ -33,15 +33,15 @@ AROUND = 360  # angles at which the gap of lobes is looked at
 
 class CellEnds(NamedTuple):
     """Films on cells as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1 over
-    the clearance; numbers, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
+    the clearance; films, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
     (channels,) over the viscosity; exponents (F, p): by which the parameters of the laws follow the scale of the
     pressures."""
 
     far_open: Indices
     units: Array
-    numbers: Array
+    films: Records
     given: Array
-    feed_holes: Array
+    feed_holes: Records
     resistance: Array
     exponents: Array
 
@@ -84,7 +84,7 @@ class CellFilms(Films):
     @property
     def remembering(self) -> tuple[bool, ...]:
         """See Films.remembering."""
-        return tuple(bool(number != 0.0) for number in self.data.numbers[:, REMEMBERS])
+        return tuple(bool(film.remembers) for film in self.data.films)
 
     @property
     def sheared(self) -> Array:
@@ -196,10 +196,10 @@ class CellFilms(Films):
         return CellEnds(
             far_open=np.array([opens_far(film) for film in self.own], dtype=np.int64),
             units=self._areas,
-            numbers=self.data.numbers.copy(),
+            films=self.data.films.copy(),
             given=self.data.cells[:, GIVEN_PRESSURE].copy(),
             feed_holes=self.data.feed_holes.copy(),
-            resistance=self.data.channels[:, RESISTANCE] / self.viscosity,
+            resistance=self.data.channels["resistance"] / self.viscosity,
             exponents=self.exponents,
         )
 
@@ -236,7 +236,7 @@ class CellFilms(Films):
         """See Films.changeable."""
         data = self.data
         own = data._replace(
-            numbers=data.numbers.copy(),
+            films=data.films.copy(),
             cells=data.cells.copy(),
             feed_holes=data.feed_holes.copy(),
             channels=data.channels.copy(),
@@ -250,7 +250,7 @@ class CellFilms(Films):
         found: list[FilmData] = []
         for i, film in enumerate(self.own):
             openings, drop = film.section.holes, 0.0
-            centrifugal = float(self.data.numbers[i, CENTRIFUGAL])
+            centrifugal = float(self.data.films[i].centrifugal)
             if openings and ring_shares[i] > 0.0 and centrifugal > 0.0 and openings[0].pressure > 0.0:
                 drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
             found.append(mean_film(film, len(openings), drop))

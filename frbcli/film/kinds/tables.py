@@ -10,10 +10,10 @@ from typing import Any, Self
 
 import numpy as np
 
+from frbcli.film.gap import Section
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.contract import FINER, Compared, Films, couette_power
 from frbcli.film.penalty_table.film import SourceFilm
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
@@ -22,11 +22,11 @@ from frbcli.film.rectangles.untabulated import direct_force
 
 @dataclass(frozen=True)
 class TableFilms(Films):
-    """data: of each film; bearings: their dimensions; scales: None, or by what the velocities of each film have to be
-    multiplied for its table, see Films.scaled."""
+    """data: of each film; sections: over the whole width, see whole_width of gap.py; scales: None, or by what the
+    velocities of each film have to be multiplied for its table, see Films.scaled."""
 
     data: tuple[FilmData, ...]
-    bearings: tuple[RectangularBearing, ...]
+    sections: tuple[Section, ...]
     scales: tuple[float, ...] | None = field(default=None, kw_only=True)
 
     @property
@@ -45,7 +45,7 @@ class TableFilms(Films):
     @cached_property
     def end_flows(self) -> tuple[EndFlow, ...]:
         """See Films.end_flows."""
-        return tuple(make_end_flow(bearing, film) for bearing, film in zip(self.bearings, self.data, strict=True))
+        return tuple(make_end_flow(section, film) for section, film in zip(self.sections, self.data, strict=True))
 
     def heat_ends(self) -> Any:
         """See Films.heat_ends."""
@@ -82,16 +82,16 @@ class RectangleFilms(TableFilms):
         finer = Mesh(FINER * self.mesh.axial, FINER * self.mesh.circumferential)
         # Films between axial grooves have no table: the same film on the finer mesh is the reference.
         fine = [
-            make_film(bearing, self.theory, law, finer) if bearing.grooves else None
-            for bearing, law in zip(self.bearings, self.laws, strict=True)
+            make_film(section, self.theory, law, finer) if section.grooves else None
+            for section, law in zip(self.sections, self.laws, strict=True)
         ]
 
         def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
-            bearing, better = self.bearings[i], fine[i]
+            section, better = self.sections[i], fine[i]
             if better is None:
-                exact = direct_force(bearing, self.laws[i], finer, place, rate, total)
+                exact = direct_force(section, self.laws[i], finer, place, rate, total)
             else:
-                exact = evaluate(better, bearing.clearance, place, rate, total).force
+                exact = evaluate(better, section.clearance, place, rate, total).force
             return exact, self.force(i, place, rate, total).force
 
         return forces

@@ -17,9 +17,8 @@ import numpy as np
 from numba.extending import overload
 
 from frbcli.compiled import compiled
-from frbcli.film.gap import LARGEST_ECCENTRICITY, groove_pressure
+from frbcli.film.gap import LARGEST_ECCENTRICITY, Section, groove_pressure
 from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.chain import (
     DECAY,
     GROOVE,
@@ -75,32 +74,33 @@ def end_slopes(modes: AxialModes) -> Array:
     return slopes
 
 
-def make_end_flow(bearing: RectangularBearing, film: FilmData) -> EndFlow:
+def make_end_flow(section: Section, film: FilmData) -> EndFlow:
     """The flow through the ends of a bearing with this film, half-Sommerfeld or Sommerfeld."""
-    radius, width = 0.5 * bearing.diameter, bearing.section_width
+    radius, width = section.radius, section.width
     if isinstance(film, ChainFilm):
         modes = axial_modes(axial_vertices(MESH.axial))
         kept = film.table.shape[2] - SHAPES
         slopes, loads = end_slopes(modes), modes.loads
         rest = PARABOLA - float(np.sum((slopes * loads / modes.eigenvalues)[:kept]))
         signs = np.sign(film.table[0, 0, LOAD, :kept]) * np.sign(loads[:kept])  # each mode may have either sign
-        corner = _corner(bearing, modes, slopes, kept)
+        corner = _corner(section, modes, slopes, kept)
         return ChainEndFlow(
             2.0 * radius**3 / width, film, signs * slopes[:kept], -rest * (width / radius) ** 2, corner
         )
-    ends = bearing.sections if bearing.grooved else 2  # a groove at one end leaves one
+    ends = section.copies if section.far == "groove" else 2  # a groove at one end leaves one
     short = isinstance(film, ShortFilm | SuppliedShortFilm)
     table, ring = _slope_table(radius / width, short)
-    return TableEndFlow(ends * radius**3 / width, bearing.groove_pressure / bearing.pressure_scale, table, ring)
+    return TableEndFlow(ends * radius**3 / width, section.far_pressure / section.pressure_scale, table, ring)
 
 
-def _corner(bearing: RectangularBearing, modes: AxialModes, slopes: Array, kept: int) -> float:
+def _corner(section: Section, modes: AxialModes, slopes: Array, kept: int) -> float:
     """Integral of dP/dz at an end beside one edge of a groove, of the modes beyond those kept: the pressure that they
     have in the groove decays with sqrt(lambda) R/b, before the gap changes."""
-    groove = bearing.grooves[0]
-    pressure = groove_pressure(groove, np.minimum(modes.nodes, 1.0 - modes.nodes) * bearing.width, bearing.width)
-    decay = np.sqrt(modes.eigenvalues) * 0.5 * bearing.diameter / bearing.width
-    return float(np.sum((slopes * modes.project(pressure) / decay)[kept:])) / bearing.pressure_scale
+    groove = section.grooves[0]
+    width = section.bearing_width
+    pressure = groove_pressure(groove, np.minimum(modes.nodes, 1.0 - modes.nodes) * width, width)
+    decay = np.sqrt(modes.eigenvalues) * section.radius / width
+    return float(np.sum((slopes * modes.project(pressure) / decay)[kept:])) / section.pressure_scale
 
 
 def _slope_table(radius_to_width: float, short: bool) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""From the dimensions of a bearing made of rectangles to its film, and the force of such a film in SI units."""
+"""The film of a section that is made of rectangles, and the force of such a film in SI units."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ import numpy as np
 
 from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.gap import groove_pressure
+from frbcli.film.gap import Section, groove_pressure
 from frbcli.film.grid import Array, Mesh
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
 from frbcli.film.rectangles.fields import FieldsFilm, field_grid, field_table
 from frbcli.film.rectangles.film_force import FilmData, film_force
@@ -24,17 +23,18 @@ EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
 _force_table, _field_table = lru_cache(maxsize=8)(force_table), lru_cache(maxsize=8)(field_table)
 
 
-def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: Mesh) -> FilmData:
-    """The film of a bearing. theory: "short" | "finite"; cavitation: a law that is closed."""
+def make_film(section: Section, theory: str, cavitation: str, mesh: Mesh) -> FilmData:
+    """The film of a section over the whole width, see whole_width. theory: "short" | "finite"; cavitation: a closed
+    law."""
     clipped = law_named(cavitation).clips
-    sigma = bearing.groove_pressure / bearing.pressure_scale
-    level = (bearing.cavitation_pressure - bearing.ambient_pressure) / bearing.pressure_scale
-    if bearing.grooves:
-        return _grooved_film(bearing, clipped, level, mesh)
-    limit = EQUAL_PRESSURES * bearing.ambient_pressure / bearing.pressure_scale
+    sigma = section.far_pressure / section.pressure_scale
+    level = (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale
+    if section.grooves:
+        return _grooved_film(section, clipped, level, mesh)
+    limit = EQUAL_PRESSURES * section.ambient_pressure / section.pressure_scale
     # Without cavitation the hydrostatic pressure carries nothing: it is the same all around.
     equal = not clipped or (abs(sigma) <= limit and abs(level) <= limit)
-    scale, radius_to_width = bearing.force_scale, 0.5 * bearing.diameter / bearing.section_width
+    scale, radius_to_width = section.force_scale, section.radius / section.width
     if theory == "short":
         slenderness = radius_to_width**-2
         if equal:
@@ -45,15 +45,15 @@ def make_film(bearing: RectangularBearing, theory: str, cavitation: str, mesh: M
     return FieldsFilm(scale, sigma, level, _field_table(mesh, radius_to_width), field_grid(mesh))
 
 
-def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh: Mesh) -> ChainFilm:
+def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> ChainFilm:
     """The film between axial grooves, finite length; all grooves have the same pressure."""
-    scale, pressure = bearing.pressure_scale, bearing.grooves[0]
+    scale, pressure = section.pressure_scale, section.grooves[0]
 
     def profile(z: Array) -> Array:
-        distance = np.minimum(z, 1.0 - z) * bearing.width
-        return groove_pressure(pressure, distance, bearing.width) / scale
+        distance = np.minimum(z, 1.0 - z) * section.bearing_width
+        return groove_pressure(pressure, distance, section.bearing_width) / scale
 
-    grooves = sorted(bearing.grooves, key=lambda groove: groove.position)
+    grooves = sorted(section.grooves, key=lambda groove: groove.position)
     ends = np.array([groove.position + 0.5 * groove.opening for groove in grooves])
     starts = np.array([groove.position - 0.5 * groove.opening for groove in grooves])
     edges = np.column_stack([ends, np.append(starts[1:], starts[0] + 2 * np.pi)])
@@ -63,15 +63,15 @@ def _grooved_film(bearing: RectangularBearing, clipped: bool, level: float, mesh
     mean = float(np.mean(profile(middles)))
     across = np.array([np.sum(np.cos(starts) - np.cos(ends)), np.sum(np.sin(starts) - np.sin(ends))])
     constant = (mean - (level if clipped else 0.0)) * across
-    radius_to_width = 0.5 * bearing.diameter / bearing.width
+    radius_to_width = section.radius / section.bearing_width
     table = chain_table(mesh, radius_to_width, profile, constant)
     clip_level = level if clipped else 0.0
-    return ChainFilm(bearing.force_scale, int(clipped), clip_level, table, grid)
+    return ChainFilm(section.force_scale, int(clipped), clip_level, table, grid)
 
 
 @dataclass(frozen=True)
 class FilmForce:
-    """Force on the journal by a whole bearing, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
+    """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
     field: (m, k) the unknown of a film on cells, from which a film near by is sought."""
 
     force: Array

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.gap import Section
 from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.parabola import summit
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
 from frbcli.film.rectangles.table import ring_contraction
@@ -46,8 +46,8 @@ class _Motion:
     w_t: float
 
 
-def _motion(bearing: RectangularBearing, displacement: Array, velocity: Array, omega: float) -> _Motion:
-    d, v = np.asarray(displacement) / bearing.clearance, np.asarray(velocity) / bearing.clearance
+def _motion(section: Section, displacement: Array, velocity: Array, omega: float) -> _Motion:
+    d, v = np.asarray(displacement) / section.clearance, np.asarray(velocity) / section.clearance
     eccentricity = math.hypot(d[0], d[1])
     along = np.array([1.0, 0.0]) if eccentricity == 0.0 else d / eccentricity
     across = np.array([-along[1], along[0]])
@@ -56,12 +56,12 @@ def _motion(bearing: RectangularBearing, displacement: Array, velocity: Array, o
 
 
 def direct_force(
-    bearing: RectangularBearing, cavitation: str, mesh: Mesh, displacement: Array, velocity: Array, omega: float
+    section: Section, cavitation: str, mesh: Mesh, displacement: Array, velocity: Array, omega: float
 ) -> Array:
     """(2,) force in N on the journal by the whole bearing; displacement in m, velocity in m/s, omega in rad/s."""
-    motion = _motion(bearing, displacement, velocity, omega)
-    pressure = section_pressure(bearing, mesh, motion.eccentricity, motion.w_r, motion.w_t)
-    level = (bearing.cavitation_pressure - bearing.ambient_pressure) / bearing.pressure_scale
+    motion = _motion(section, displacement, velocity, omega)
+    pressure = section_pressure(section, mesh, motion.eccentricity, motion.w_r, motion.w_t)
+    level = (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale
     if not law_named(cavitation).clips:  # any level below all pressures: a constant pressure carries nothing
         level = float(pressure.values.min())
     weights, lengths = force_weights(pressure.vertices), element_lengths(pressure.vertices)
@@ -70,20 +70,20 @@ def direct_force(
         part = np.zeros((1, 2))
         clipped_line(np.ascontiguousarray(line[None]), level, pressure.vertices, lengths, weights, part)
         total += share * part[0]
-    force: Array = bearing.force_scale * (total[0] * motion.along + total[1] * motion.across)
+    force: Array = section.force_scale * (total[0] * motion.along + total[1] * motion.across)
     return force
 
 
 def section_pressure(
-    bearing: RectangularBearing, mesh: Mesh, eccentricity: float, w_r: float, w_t: float
+    section: Section, mesh: Mesh, eccentricity: float, w_r: float, w_t: float
 ) -> SectionPressure:
     """Solve one section in the frame of the line of centres for the velocity (w_r, w_t) in 1/s."""
     modes = _modes(mesh.axial)
     vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
-    decays = (0.5 * bearing.diameter / bearing.section_width) ** 2 * modes.eigenvalues
+    decays = (section.radius / section.width) ** 2 * modes.eigenvalues
     points, weights = np.polynomial.legendre.leggauss(LINES)
     z = 0.5 * (points + 1.0)
-    sigma = bearing.groove_pressure / bearing.pressure_scale
+    sigma = section.far_pressure / section.pressure_scale
     values, shapes = np.zeros((2 * len(vertices), LINES)) + sigma * z, modes.at(z)
     for first in range(0, len(decays), MODES_AT_ONCE):
         some = slice(first, first + MODES_AT_ONCE)
@@ -99,12 +99,12 @@ def _modes(elements: int) -> AxialModes:
 
 
 def largest_pressure(
-    bearing: RectangularBearing, mesh: Mesh, displacement: Array, velocity: Array, omega: float
+    section: Section, mesh: Mesh, displacement: Array, velocity: Array, omega: float
 ) -> float:
     """Largest pressure in the film, Pa absolute: parabola through the largest nodal value and its neighbours, each
     way."""
-    motion = _motion(bearing, displacement, velocity, omega)
-    field = section_pressure(bearing, mesh, motion.eccentricity, motion.w_r, motion.w_t)
+    motion = _motion(section, displacement, velocity, omega)
+    field = section_pressure(section, mesh, motion.eccentricity, motion.w_r, motion.w_t)
     n = len(field.vertices)
     angles = np.empty(2 * n)
     angles[::2] = field.vertices
@@ -114,8 +114,8 @@ def largest_pressure(
     gain = _highest(np.unwrap(angles[ring]), field.values[ring, j]) - field.values[i, j]
     if 0 < j < LINES - 1:
         gain += _highest(field.z[j - 1 : j + 2], field.values[i, j - 1 : j + 2]) - field.values[i, j]
-    highest = float((field.values[i, j] + gain) * bearing.pressure_scale + bearing.ambient_pressure)
-    return max(highest, bearing.ambient_pressure + bearing.groove_pressure)
+    highest = float((field.values[i, j] + gain) * section.pressure_scale + section.ambient_pressure)
+    return max(highest, section.ambient_pressure + section.far_pressure)
 
 
 def _highest(x: Array, y: Array) -> float:

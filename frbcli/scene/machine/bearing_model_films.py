@@ -12,7 +12,7 @@ from frbcli.film.bearing_model.checks import fingerprint, model_film, problem_of
 from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.gap import Section
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.models import chosen_model
 from frbcli.scene.keys import film_keys
@@ -21,20 +21,20 @@ from frbcli.scene.section import film_rectangle, film_section
 RECORD = "bearing_model"  # among the versions of a run
 
 
-def bearing_film(case: Case, bearing: RectangularBearing) -> BearingModelFilm:
-    """The film of a bearing, by the chosen model."""
+def bearing_film(case: Case, section: Section) -> BearingModelFilm:
+    """The film of a section over the whole width, by the chosen model."""
     model = chosen_model(case)
     assert model is not None
     dimensions = BearingDimensions(
-        width=bearing.width,
-        diameter=bearing.diameter,
-        clearance=bearing.clearance,
-        viscosity=bearing.viscosity,
-        sections=bearing.sections,
-        section_width=bearing.section_width,
-        ambient_pressure=bearing.ambient_pressure,
-        cavitation_pressure=bearing.cavitation_pressure,
-        supply_pressure=bearing.ambient_pressure + bearing.groove_pressure,
+        width=section.bearing_width,
+        diameter=2.0 * section.radius,
+        clearance=section.clearance,
+        viscosity=section.viscosity,
+        sections=section.copies,
+        section_width=section.width,
+        ambient_pressure=section.ambient_pressure,
+        cavitation_pressure=section.cavitation_pressure,
+        supply_pressure=section.ambient_pressure + section.far_pressure,
     )
     return model_film(model, dimensions, values_of(model, case.film))
 

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.gap import Section
+from frbcli.film.gap import Section, whole_width
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
@@ -24,7 +24,6 @@ from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms, TableFilms
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.published.data import element_film
 from frbcli.film.published.film import PublishedFilm
-from frbcli.film.rectangles.bearing import RectangularBearing, rectangular
 from frbcli.film.rectangles.film import make_film
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import FilmPlace, centrifugal_pressures, film_places, make_law, volume_film
@@ -105,9 +104,9 @@ def published_film(case: Case, section: Section, elements: tuple[int, int]) -> P
 def _solutions(case: Case, plan: Plan, _: float | None) -> Films:
     places = [place.geometry for place in film_places(case)]
     solved = tuple(source_film(case, geometry, plan.mesh) for geometry in places)
-    bearings = tuple(rectangular_bearing(case, geometry) for geometry in places)
+    sections = tuple(whole_section(case, geometry) for geometry in places)
     data = tuple(film.film() for film in solved)
-    return SolutionFilms(_clearances(case), data, bearings, solved=solved, mesh=plan.mesh)
+    return SolutionFilms(_clearances(case), data, sections, solved=solved, mesh=plan.mesh)
 
 
 def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
@@ -119,18 +118,18 @@ def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
 
 
 def _models(case: Case, _: Plan, __: float | None) -> Films:
-    bearings = tuple(rectangular_bearing(case, place.geometry) for place in film_places(case))
-    return TableFilms(_clearances(case), tuple(bearing_film(case, bearing) for bearing in bearings), bearings)
+    sections = tuple(whole_section(case, place.geometry) for place in film_places(case))
+    return TableFilms(_clearances(case), tuple(bearing_film(case, section) for section in sections), sections)
 
 
 def _rectangles(case: Case, plan: Plan, _: float | None) -> Films:
-    bearings = tuple(rectangular_bearing(case, place.geometry) for place in film_places(case))
+    sections = tuple(whole_section(case, place.geometry) for place in film_places(case))
     laws, meshes = case.cavitations, tuple(mesh for _, mesh in plan.films)
-    films = zip(bearings, laws, meshes, strict=True)
-    data = tuple(make_film(bearing, plan.theory, law, mesh) for bearing, law, mesh in films)
-    return RectangleFilms(_clearances(case), data, bearings, laws=laws, theory=plan.theory, mesh=plan.mesh)
+    films = zip(sections, laws, meshes, strict=True)
+    data = tuple(make_film(section, plan.theory, law, mesh) for section, law, mesh in films)
+    return RectangleFilms(_clearances(case), data, sections, laws=laws, theory=plan.theory, mesh=plan.mesh)
 
 
-def rectangular_bearing(case: Case, film: FilmGeometry) -> RectangularBearing:
-    """A bearing whose gap is made of rectangles."""
-    return rectangular(film_section(case, film))
+def whole_section(case: Case, film: FilmGeometry) -> Section:
+    """The section of a film over the whole width, see whole_width of film/gap.py."""
+    return whole_width(film_section(case, film))

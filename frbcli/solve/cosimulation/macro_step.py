@@ -111,7 +111,7 @@ def _responses(rotor: RotorData, selection: Array) -> Array:
 
 
 @compiled()
-def _extrapolate(past: Array, t: float, lagrange: Array, given: Array, film: Array) -> None:
+def _extrapolate(past: Array, t: float, lagrange: Array, given: Array, journal: Array) -> None:
     """given (m + rings,) <- forces of the films and torques on the rings at the time t by the parabola; FORCE too."""
     parabola(past[:, 0], t, lagrange)
     first = past.shape[1] - given.shape[0]
@@ -119,8 +119,8 @@ def _extrapolate(past: Array, t: float, lagrange: Array, given: Array, film: Arr
         given[k] = 0.0
         for p in range(HISTORY):
             given[k] += lagrange[p] * past[p, first + k]
-    for k in range(film.shape[1]):
-        film[FORCE, k] = given[k]
+    for k in range(journal.shape[1]):
+        journal[FORCE, k] = given[k]
 
 
 @compiled()
@@ -133,16 +133,16 @@ def _recall(past: Array, told: Told) -> None:
 
 
 @compiled()
-def _remember(past: Array, t_new: float, motion: Array, film: Array, torque: Array, given: Array) -> None:
+def _remember(past: Array, t_new: float, motion: Array, journal: Array, torque: Array, given: Array) -> None:
     """past moves on to t_new; given <- what the extrapolated forces and torques were off by."""
-    told, m = motion.shape[0], film.shape[1]
+    told, m = motion.shape[0], journal.shape[1]
     for k in range(past.shape[1]):
         past[0, k], past[1, k] = past[1, k], past[2, k]
     past[2, 0] = t_new
     for k in range(told):
         past[2, 1 + k] = motion[k]
     for k in range(given.shape[0]):
-        past[2, 1 + told + k] = film[FORCE, k] if k < m else torque[k - m]
+        past[2, 1 + told + k] = journal[FORCE, k] if k < m else torque[k - m]
         given[k] = past[2, 1 + told + k] - given[k]
 
 
@@ -180,8 +180,8 @@ def _ask_for_torques(
 ) -> None:
     """The torques on the rings with the journals where they are now, see _tell for the motion."""
     if rotor.spins.shape[0] > 0:
-        for k in range(aside.film.shape[1]):
-            aside.film[X_0, k], aside.film[U, k] = motion[k], 0.0
+        for k in range(aside.journal.shape[1]):
+            aside.journal[X_0, k], aside.journal[U, k] = motion[k], 0.0
         spin_up(films, work, rotor, 0, 0.0, control, aside, rings)
 
 
@@ -214,7 +214,7 @@ def _advance(
     tolerance, stiffness = control.tolerance, control.contact_stiffness
     stages = moments.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    selection, products, loads, spread, compliance, elimination, at, film, stage_v, stage_a = scratch
+    selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
     responses, given, told = exchange.responses, exchange.given, exchange.told
     turning, aside = exchange.rings, exchange.aside
     lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
@@ -232,11 +232,11 @@ def _advance(
             if outdated(numbers, g, speed, gyroscopic, rotor.follows_speed):
                 prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
             predict(weights, s, step, q, v, stage_v, stage_a, at)
-            start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, film)
-            _extrapolate(past, t_s, lagrange, given, film)
+            start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, journal)
+            _extrapolate(past, t_s, lagrange, given, journal)
             lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
-                accelerate(s, g, lag, products, spread, selection, at, film, stage_v, stage_a)
+                accelerate(s, g, lag, products, spread, selection, at, journal, stage_v, stage_a)
             _turn_rings(spins, rotor.mass, s, g, given, at, stage_v, stage_a)
         error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance
         if not error <= 1.0:  # not a number counts as too large
@@ -251,14 +251,14 @@ def _advance(
         largest = _tell(selection, spins, clearances, q_new, stage_v[:, stages - 1], told.motions[2])
         if not largest < limit:  # the films cannot be asked there any more
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
-        if not films_follow(films, work, rotor, tableau, control, state, piece, told, film, turning):
+        if not films_follow(films, work, rotor, tableau, control, state, piece, told, journal, turning):
             return STUCK, written
         _ask_for_torques(films, work, rotor, control, aside, told.motions[2], turning)
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         write_oil(films, work, out_oil, before, written)
         move_on(q, v, a, q_new, stage_v, stage_a)
-        _remember(past, t_new, told.motions[2], film, turning.torque, given)
+        _remember(past, t_new, told.motions[2], journal, turning.torque, given)
         off = _amend(responses, compliance, clearances, given, a)
         done += 1
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)

@@ -40,16 +40,18 @@ class Told(NamedTuple):
 
 
 @compiled()
-def _move_journals(told: Told, t: float, g: float, film: Array, bodies: Array, angles: Array, lagrange: Array) -> None:
+def _move_journals(
+    told: Told, t: float, g: float, journal: Array, bodies: Array, angles: Array, lagrange: Array
+) -> None:
     """U of the journals at the time t and X_0, g U short of where they are; speeds and angles of the rings."""
-    motions, m, rings = told.motions, film.shape[1], bodies.shape[0] - 1
+    motions, m, rings = told.motions, journal.shape[1], bodies.shape[0] - 1
     parabola(told.times, t, lagrange)
     for k in range(m):
         place, rate = 0.0, 0.0
         for p in range(3):
             place += lagrange[p] * motions[p, k]
             rate += lagrange[p] * motions[p, m + k]
-        film[U, k], film[X_0, k] = rate, place - g * rate
+        journal[U, k], journal[X_0, k] = rate, place - g * rate
     for r in range(rings):
         angles[1 + r], bodies[1 + r] = 0.0, 0.0
         for p in range(3):
@@ -58,13 +60,13 @@ def _move_journals(told: Told, t: float, g: float, film: Array, bodies: Array, a
 
 
 @compiled()
-def _solve_films(films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, film: Array) -> int:
+def _solve_films(films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, journal: Array) -> int:
     """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
     for iteration in range(NEWTON_LIMIT):
-        forces(films, work, clearances, control, g, s, iteration, film)
+        forces(films, work, clearances, control, g, s, iteration, journal)
         unsettled = 0
         for f in range(clearances.shape[0]):
-            if not math.isfinite(film[FORCE, 2 * f] + film[FORCE, 2 * f + 1]):
+            if not math.isfinite(journal[FORCE, 2 * f] + journal[FORCE, 2 * f + 1]):
                 return 0
             unsettled += move_film(films, work, f, 0.0, 0.0, 1.0, g)
         if unsettled == 0:
@@ -90,7 +92,7 @@ def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
 @compiled(makes_arrays=True)
 def films_follow(
     films: Any, work: Any, rotor: RotorData, tableau: Tableau, control: Control, state: State, piece: int, told: Told,
-    film: Array, rings: Rings,
+    journal: Array, rings: Rings,
 ) -> bool:  # fmt: skip
     """Take the films through a macro step; FORCE is then theirs. Returns whether that succeeded."""
     times, speeds, profile_angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
@@ -109,11 +111,11 @@ def films_follow(
         for s in range(1, stages):
             reach = moments[s] * step if remembers else step
             _, bodies[0], angles[0] = rotation(times, speeds, profile_angles, piece, t + reach)
-            _move_journals(told, t + reach, g, film, bodies, angles, lagrange)
-            set_speeds(turning, bodies, angles, film, work.grids)
+            _move_journals(told, t + reach, g, journal, bodies, angles, lagrange)
+            set_speeds(turning, bodies, angles, journal, work.grids)
             lag = moments[s] / moments[s - 1] if moments[s - 1] > 0.0 else 1.0
             begin_stage(films, work, state.wet, state.flows, weights, s, step, g, reach / numbers[STEP_DONE], lag)
-            iterations = _solve_films(films, work, clearances, control, g, s, film)
+            iterations = _solve_films(films, work, clearances, control, g, s, journal)
             numbers[SOLVES] += iterations * clearances.shape[0]
             if iterations == 0:
                 solved = False

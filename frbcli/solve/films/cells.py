@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from frbcli.compiled import Array, compiled
-from frbcli.film.cavitation.compiled import EMPTY, LAW_NUMBERS
+from frbcli.film.cavitation.compiled import EMPTY
 from frbcli.film.cells.balance.balances import (
     BY_ITSELF,
     BY_X,
@@ -27,35 +29,22 @@ from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE_
 from frbcli.film.cells.channels.flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
     AREA,
-    CENTRIFUGAL,
     COS,
     GAP,
-    REMEMBERS,
-    SETTLED,
     SHEARED,
     SIN,
-    SOLVER_AT,
     UNKNOWN,
+    Records,
     VolumeFilms,
 )
 from frbcli.film.cells.elimination.ring_solver import solve_ring_at
 from frbcli.film.cells.film import ABOVE_KINK
-from frbcli.solve.stage.equations import FilmMotion, lagrange
+from frbcli.solve.films.cell_steps import oil_fraction
+from frbcli.solve.stage.equations import FilmMotion
 
-# How a film's grid stands, where the journal is in it, whether its cells balance (see OPEN), how far the journals were
-# moved last and over the time before, the stage, and from LAW on its law as follow_law has it.
-(
-    GRID_TURN,
-    GRID_SPEED,
-    GRID_X,
-    GRID_Y,
-    BALANCE,
-    MOVED,
-    RATIO,
-    STAGE,
-    LAW,
-) = range(9)
-GRIDS = LAW + LAW_NUMBERS
+# Layers of fields: the elimination takes the first ones; then two of them keep what the journal's velocities did to the
+# cells when the film was last linearised.
+KEPT_BY_X, KEPT_BY_Y = range(2)
 # The cells balance as they are, and follow the journal by older derivatives, or by those of now; or they will balance
 # after the correction that is under way; or they are to be asked again.
 HELD, SOLVED, AHEAD, OPEN = range(4)
@@ -72,91 +61,61 @@ NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
 @compiled()
-def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights: Array, s: int, ahead: float) -> None:
-    """w of stage s: by the straight line through the step before, and once that serves as a third point by parabolas,
-    through both steps and the first stage, later through the last stage in place of the step before.
-
-    w, first: of the last and of the first stage, the latter is kept here; weights: of the method; ahead: how far the
-    stage lies from the start of the step, over the step before.
-    """
-    m, k = w.shape
-    if s == 1:
-        for i in range(m):
-            for j in range(k):
-                w[i, j] = start[i, j] + ahead * (start[i, j] - before[i, j])
-        return
-    at = at_first = at_last = 0.0
-    for p in range(weights.shape[1]):  # numba's own sum and copy take seconds to compile
-        at, at_first, at_last = at + weights[s, p], at_first + weights[1, p], at_last + weights[s - 1, p]
-    if s == 2:
-        a, b, c = lagrange(-at / ahead, 0.0, at_first, at)
-        for i in range(m):
-            for j in range(k):
-                first[i, j] = w[i, j]
-                w[i, j] = a * before[i, j] + b * start[i, j] + c * w[i, j]
-        return
-    a, b, c = lagrange(0.0, at_first, at_last, at)
-    for i in range(m):
-        for j in range(k):
-            w[i, j] = a * start[i, j] + b * first[i, j] + c * w[i, j]
-
-
-@compiled()
-def cell_numbers(
+def cell_response(
     films: VolumeFilms, work: Any, f: int, motion: FilmMotion, g: float, s: int, iteration: int
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
-    """film_numbers of film_forces.py for a film with cells."""
-    numbers, ring, width, cells = films.numbers[f], films.ring[f], films.width[f], films.cells[f]
+    """The response, see film_response of forces.py, of a film with cells."""
+    film, ring, width, cells = films.films[f], films.ring[f], films.width[f], films.cells[f]
     w, past, states, fields = work.w[f], work.past[f], work.states[f], work.fields[f]
     stencil, grid, slopes, flows = work.stencil, work.grids[f], work.slopes[f], work.stage_flows[s, f]
-    grid[STAGE] = s
+    grid.stage = s
     d_x, d_y, v_x, v_y, omega = motion
-    turn, spin = grid[GRID_TURN], grid[GRID_SPEED]
+    turn, spin = grid.turn, grid.speed
     cosine, sine = math.cos(turn), math.sin(turn)
     x, y = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
-    grid[GRID_X], grid[GRID_Y] = x, y
+    grid.x, grid.y = x, y
     against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
     v_f, v_g = cosine * against_x + sine * against_y, cosine * against_y - sine * against_x
-    remembers = numbers[REMEMBERS] != 0.0
+    remembers = film.remembers
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
-        follow_law(numbers, d_x, d_y, v_x, v_y, omega, grid[LAW:])
-    drop, rate = numbers[CENTRIFUGAL] * spin * spin, 1.0 / g if remembers else 0.0
-    cell_states(numbers, cells, grid[LAW:], drop, w, states)
+        follow_law(film, d_x, d_y, v_x, v_y, omega, grid.law)
+    drop, rate = film.centrifugal * spin * spin, 1.0 / g if remembers else 0.0
+    cell_states(film, cells, grid.law, drop, w, states)
     if iteration == 0:
         hold(states, omega - 2.0 * spin)
     against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
-    balances(numbers, ring, width, cells, states, against, past, stencil, fields, flows)
+    balances(film, ring, width, cells, states, against, past, stencil, fields, flows)
     slots = fields.shape[2] - fields.shape[1] - SIDES
     if slots > 0:
         exchange(cells, states, work.channel[f], stencil, fields, flows)
     mean, largest = imbalance(cells, fields)
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
-    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (numbers[SETTLED] * pace)
+    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
     balanced = left < 1.0
     if balanced and remembers:
         store_rates(ring, cells, states, x, y, g, past, fields, work.stage_oil[s, f])
-    if balanced and iteration > 0 and grid[RATIO] < SLOW:
-        grid[BALANCE] = HELD
+    if balanced and iteration > 0 and grid.ratio < SLOW:
+        grid.balance = HELD
         m, k = w.shape
         for i in range(m):  # the journal takes the film along as it did before
             for j in range(k):
                 fields[i, j, k + BY_ITSELF] = 0.0
-                fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, 0], fields[i, j, 1]
-        f_x, f_y, _, _, _, _ = film_loads(numbers, ring, cells, states, fields)
+                fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y]
+        f_x, f_y, _, _, _, _ = film_loads(film, ring, cells, states, fields)
     else:
         # Films that share oil have to balance as they are: what passes between them is known for that alone.
         soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and iteration < PLAIN and slots == 0
-        grid[BALANCE] = SOLVED if balanced else AHEAD if soon else OPEN
+        grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
         if slots > 0:
             ask_of_channels(cells, fields)
-        solve_ring_at(numbers[SOLVER_AT], stencil, work.blocks, fields)
-        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(numbers, ring, cells, states, fields)
+        solve_ring_at(film.solver_at, stencil, work.blocks, fields)
+        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(film, ring, cells, states, fields)
         m, k = w.shape
         for i in range(m):
             for j in range(k):
-                fields[i, j, 0], fields[i, j, 1] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
+                fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
     xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
     # back from the grid's directions: Q^T B Q
     a, b, p, q = cosine * xx - sine * yx, cosine * xy - sine * yy, sine * xx + cosine * yx, sine * xy + cosine * yy
@@ -176,7 +135,7 @@ def cell_numbers(
 
 @compiled()
 def move_cells(
-    w: Array, states: Array, fields: Array, grid: Array, u_x: float, u_y: float, g: float, changes: Array,
+    w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float, g: float, changes: Array,
 ) -> int:  # fmt: skip
     """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
     pressures, changes (slots,); 1 if the film is to be asked again.
@@ -189,11 +148,11 @@ def move_cells(
     begins with p_cav, as its neighbours and the forces take it. Else a spurious peak of the pressure opens a free end.
     """
     m, k = w.shape
-    empty = grid[LAW + EMPTY]
-    c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
+    empty = grid.law[EMPTY]
+    c, s = math.cos(grid.turn), math.sin(grid.turn)
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
-    grid[GRID_X] += g * x
-    grid[GRID_Y] += g * y
+    grid.x += g * x
+    grid.y += g * y
     for i in range(m):
         for j in range(k):
             before = w[i, j]
@@ -204,7 +163,7 @@ def move_cells(
                 w[i, j] = 0.5 * empty
             if w[i, j] > 0.0 and states[PRESSURE_SLOPE, i, j] == 0.0:
                 w[i, j] = ABOVE_KINK
-    return 1 if grid[BALANCE] == OPEN else 0
+    return 1 if grid.balance == OPEN else 0
 
 
 @compiled()
@@ -218,9 +177,9 @@ def store_ahead(
     """
     m, k = rates.shape
     past, states, fields, grid = work.past[f], work.states[f], work.fields[f], work.grids[f]
-    c, s = math.cos(grid[GRID_TURN]), math.sin(grid[GRID_TURN])
+    c, s = math.cos(grid.turn), math.sin(grid.turn)
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
-    d_x, d_y = grid[GRID_X] - g * x, grid[GRID_Y] - g * y
+    d_x, d_y = grid.x - g * x, grid.y - g * y
     gained = 0.0
     for i in range(m):
         h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
@@ -235,7 +194,7 @@ def store_ahead(
 
 
 @compiled()
-def left_of_cells(grids: Array, smooth: float, moved: float) -> float:
+def left_of_cells(grids: Records, smooth: float, moved: float) -> float:
     """What a correction of the journals by `moved` may leave of their error.
 
     Behind films that have all been linearised where they were, that is `smooth`, as without cells. One that balanced
@@ -243,32 +202,20 @@ def left_of_cells(grids: Array, smooth: float, moved: float) -> float:
     """
     left = KEPT * smooth
     for f in range(grids.shape[0]):
-        held = grids[f, BALANCE] == HELD
-        before = max(grids[f, MOVED] if held else moved, 1e-300)
-        grids[f, RATIO] = min((moved if held else smooth) / before, 1.0)
-        grids[f, MOVED] = moved
-        if grids[f, BALANCE] == OPEN:
+        held = grids[f].balance == HELD
+        before = max(grids[f].moved if held else moved, 1e-300)
+        grids[f].ratio = min((moved if held else smooth) / before, 1.0)
+        grids[f].moved = moved
+        if grids[f].balance == OPEN:
             left = math.inf
         elif held:
-            left = max(left, moved * grids[f, RATIO])
+            left = max(left, moved * grids[f].ratio)
     return left
 
 
 @compiled()
-def oil_fraction(cells: Array, states: Array) -> float:
-    """The mean oil fraction of a film, (4.46)."""
-    m, k = states.shape[1], states.shape[2]
-    area, oil = 0.0, 0.0
-    for i in range(m):
-        for j in range(k):
-            area += cells[SHEARED, i, j]
-            oil += cells[SHEARED, i, j] * states[FRACTION, i, j]
-    return oil / area
-
-
-@compiled()
 def sheared(ring: Array, cells: Array, states: Array, d_x: float, d_y: float, factor: int) -> float:
-    """drag_integral of films.py for a film with cells."""
+    """drag_integral of forces.py for a film with cells."""
     if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
         return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
     m, k = states.shape[1], states.shape[2]

@@ -23,33 +23,34 @@ from frbcli.film.cells.channels.flow import (
     mean_changes,
     push_of_channel,
 )
-from frbcli.film.cells.data import FILM, SLOT, VolumeFilms
-from frbcli.solve.films.cells import GRID_SPEED, GRID_TURN, LAW
+from frbcli.film.cells.data import Records, VolumeFilms
 
 
 @compiled()
-def set_laws(films: VolumeFilms, grids: Array, x_0: Array, u: Array, omega: Array, clearances: Array, g: float) -> None:
+def set_laws(
+    films: VolumeFilms, grids: Records, x_0: Array, u: Array, omega: Array, clearances: Array, g: float
+) -> None:
     """The parameters of the films' laws where the journals are guessed to be."""
     for f in range(clearances.shape[0]):
         d_x = (x_0[2 * f] + g * u[2 * f]) / clearances[f]
         d_y = (x_0[2 * f + 1] + g * u[2 * f + 1]) / clearances[f]
         v_x, v_y = u[2 * f] / clearances[f], u[2 * f + 1] / clearances[f]
-        follow_law(films.numbers[f], d_x, d_y, v_x, v_y, omega[2 * f], grids[f, LAW:])
+        follow_law(films.films[f], d_x, d_y, v_x, v_y, omega[2 * f], grids[f].law)
 
 
 @compiled(makes_arrays=True)
-def set_pressures(films: VolumeFilms, grids: Array, w: Array, channel: Array) -> None:
+def set_pressures(films: VolumeFilms, grids: Records, w: Array, channel: Array) -> None:
     """channel (films, m, k) <- the channels' pressures over the cells of their feed holes, by the films as they are."""
     count = films.feed_holes.shape[0]
     means = np.empty(count)
     for q in range(count):
-        f = int(films.feed_holes[q, FILM])
+        f = films.feed_holes[q].film
         means[q] = feed_hole_pressure(
-            films.numbers[f], films.cells[f], grids[f, LAW:], w[f], films.feed_holes[q], films.feed_hole_cells[q]
+            films.films[f], films.cells[f], grids[f].law, w[f], films.feed_holes[q], films.feed_hole_cells[q]
         )
-    channel_pressures(films.channels, films.feed_holes, grids[:, GRID_SPEED], means)
+    channel_pressures(films.channels, films.feed_holes, grids["speed"], means)
     for q in range(count):
-        f = int(films.feed_holes[q, FILM])
+        f = films.feed_holes[q].film
         for n in range(films.feed_hole_cells.shape[1]):
             i, j = films.feed_hole_cells[q, n, 0], films.feed_hole_cells[q, n, 1]
             if i >= 0:
@@ -69,18 +70,18 @@ def join(
     count, journals = films.feed_holes.shape[0], cross.shape[0]
     matrix, own = np.zeros((count, count)), np.empty(SIDES + changes.shape[1])
     for q in range(count):
-        f = int(films.feed_holes[q, FILM])
+        f = films.feed_holes[q].film
         mean_changes(films.cells[f], states[f], fields[f], films.feed_holes[q], films.feed_hole_cells[q], own)
         for column in range(1 + journals):
             answers[q, column] = 0.0
         answers[q, 0] = own[BY_ITSELF]
-        c, s = math.cos(grids[f, GRID_TURN]), math.sin(grids[f, GRID_TURN])
+        c, s = math.cos(grids[f].turn), math.sin(grids[f].turn)
         x, y = (c * own[1] - s * own[2]) / clearances[f], (s * own[1] + c * own[2]) / clearances[f]
         answers[q, 1 + 2 * f] = follows_x[2 * f] * x + follows_x[2 * f + 1] * y
         answers[q, 2 + 2 * f] = follows_y[2 * f] * x + follows_y[2 * f + 1] * y
         for other in range(count):
-            if int(films.feed_holes[other, FILM]) == f:
-                matrix[q, other] = own[SIDES + int(films.feed_holes[other, SLOT])]
+            if films.feed_holes[other].film == f:
+                matrix[q, other] = own[SIDES + films.feed_holes[other].slot]
     follow_means(films.channels, films.feed_holes, matrix)
     follow_means(films.channels, films.feed_holes, answers)
     for q in range(count):
@@ -92,10 +93,10 @@ def join(
         for j in range(journals):
             cross[i, j] = 0.0
     for q in range(count):
-        f, slot = int(films.feed_holes[q, FILM]), int(films.feed_holes[q, SLOT])
+        f, slot = films.feed_holes[q].film, films.feed_holes[q].slot
         changes[f, slot] = answers[q, 0]
-        x, y = push_of_channel(films.numbers[f], films.ring[f], films.cells[f], states[f], fields[f], slot)
-        c, s = math.cos(grids[f, GRID_TURN]), math.sin(grids[f, GRID_TURN])
+        x, y = push_of_channel(films.films[f], films.ring[f], films.cells[f], states[f], fields[f], slot)
+        c, s = math.cos(grids[f].turn), math.sin(grids[f].turn)
         push_x, push_y = c * x - s * y, s * x + c * y
         force[2 * f] += push_x * answers[q, 0]
         force[2 * f + 1] += push_y * answers[q, 0]
@@ -111,4 +112,4 @@ def follow_journals(films: VolumeFilms, answers: Array, correction: Array, share
         total = answers[q, 0]
         for j in range(correction.shape[0]):
             total += share * answers[q, 1 + j] * correction[j]
-        changes[int(films.feed_holes[q, FILM]), int(films.feed_holes[q, SLOT])] = total
+        changes[films.feed_holes[q].film, films.feed_holes[q].slot] = total

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
+from frbcli.film.cells.data import Records, record
 from frbcli.film.published.data import CAME, HELD, LEFT, RIGHTS, ElementFilm, Room, make_room
 from frbcli.film.published.moving import (
     force,
@@ -29,7 +30,7 @@ from frbcli.film.published.moving import (
     solve,
 )
 from frbcli.film.state import NOW, OIL, PASSED, RATE, W_BEFORE, W
-from frbcli.solve.films.cells import GRIDS
+from frbcli.solve.films.grid import GRID
 from frbcli.solve.stage.equations import CORRECTION, U
 from frbcli.solve.state import Array
 
@@ -48,28 +49,44 @@ ENOUGH = 2e-3  # the same where the journal does not move any more
 # its journal no more.
 LEFT_OVER, LEFT_WHERE_HELD = 0.2, 0.02
 
-# Notes on a stage: motion that the film feels, with omega_J + omega_S; corrections that were kept, and those since the
-# residual was smallest; its size there, its share of its terms there and now; whether that is here; share of the last
-# correction that was applied, and what is to be kept of that; how the film is held at the best point; the journal's
-# velocity there; sizes of the last residuals.
-(D_X, D_Y, V_X, V_Y, SPEED, CORRECTIONS, SINCE, SMALLEST, LEAST, TERMS, IS_BEST, SHARE, KEPT, HOLD, BEST_U) = range(15)
-SIZES = BEST_U + 2
-NOTES = SIZES + MEMORY
-FREE, TO_HOLD, RETURNED, ASKED = range(4)  # of HOLD: it moves, is to be held, has gone back there, has told its force
+# Notes on a stage: motion that the film feels, speed being omega_J + omega_S; corrections that were kept, and those
+# since the residual was smallest; its size there, its share of its terms there (least) and now (terms); whether that is
+# here; share of the last correction that was applied, and what is to be kept of that; how the film is held at the best
+# point; the journal's velocity there; sizes of the last residuals.
+NOTES = record(
+    ("d_x", "f8"),
+    ("d_y", "f8"),
+    ("v_x", "f8"),
+    ("v_y", "f8"),
+    ("speed", "f8"),
+    ("corrections", "i8"),
+    ("since", "i8"),
+    ("smallest", "f8"),
+    ("least", "f8"),
+    ("terms", "f8"),
+    ("is_best", "?"),
+    ("share", "f8"),
+    ("kept", "f8"),
+    ("hold", "i8"),
+    ("best_u", "f8", (2,)),
+    ("sizes", "f8", (MEMORY,)),
+)
+# How a film is held (notes.hold): it moves, is to be held, has gone back there, has told its force.
+FREE, TO_HOLD, RETURNED, ASKED = range(4)
 HERE, CHANGE, BEST = range(3)  # unknowns of the stage, their last correction, and where the residual was smallest
 
 
 class ElementWork(NamedTuple):
     """Scratch of the time loop. w (3, nodes): HERE, CHANGE, BEST; past (e, 9) of theta_t; thetas, rates (stages, e, 9):
-    oil fraction and rate; notes (NOTES,). grids, cross: see NoCells of films.py."""
+    oil fraction and rate; notes (1,) record NOTES. grids, cross: see NoCells of steps.py."""
 
     room: Room
     w: Array
     past: Array
     thetas: Array
     rates: Array
-    notes: Array
-    grids: Array
+    notes: Records
+    grids: Records
     cross: Array
 
 
@@ -82,14 +99,14 @@ def make_element_work(film: ElementFilm, stages: int) -> ElementWork:
         np.zeros(points),
         np.zeros((stages, *points)),
         np.zeros((stages, *points)),
-        np.zeros(NOTES),
-        np.zeros((0, GRIDS)),
+        np.zeros(1, NOTES),
+        np.zeros(0, GRID),
         np.zeros((0, 0)),
     )
 
 
 def begin_elements(films, work, wet, flows, weights, s, step, g, ahead, lag):  # type: ignore[no-untyped-def]
-    """begin_stage of films.py."""
+    """begin_stage of steps.py."""
     now, before, nodes, w, guess = wet[W, 0], wet[W_BEFORE, 0], films.elements.nodes, work.w[HERE], work.w[CHANGE]
     if s == 1:
         for e in range(nodes.shape[0]):
@@ -119,40 +136,42 @@ def _keep_rates(film: ElementFilm, work: ElementWork, s: int, g: float) -> None:
 
 
 @compiled(internal=True)
-def element_numbers(
+def element_response(
     film: ElementFilm, work: ElementWork, d_x: float, d_y: float, v_x: float, v_y: float, omega: float, g: float,
     iteration: int,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """film_numbers of film_forces.py. Where the last correction is to be shortened, or the film to be held, the numbers
-    are of no meaning: step_back then takes the correction back."""
-    notes = work.notes
+    """The response of a film in the published form, see film_response of forces.py. The numbers have no meaning where
+    the last correction is to be shortened or the film to be held: step_back then takes the correction back."""
+    notes = work.notes[0]
     f_x, f_y, xx, xy, yx, yy = math.nan, math.nan, 0.0, 0.0, 0.0, 0.0
     if iteration == 0:
-        notes[:] = 0.0
-        notes[SMALLEST] = notes[LEAST] = math.inf
-        notes[KEPT] = 1.0
-    notes[D_X], notes[D_Y], notes[V_X], notes[V_Y], notes[SPEED] = d_x, d_y, v_x, v_y, omega
-    if notes[HOLD] == RETURNED:
-        notes[HOLD] = ASKED
+        notes.corrections = notes.since = 0
+        notes.smallest = notes.least = math.inf
+        notes.is_best, notes.hold = False, FREE
+        notes.terms = notes.share = 0.0
+        notes.kept = 1.0
+    notes.d_x, notes.d_y, notes.v_x, notes.v_y, notes.speed = d_x, d_y, v_x, v_y, omega
+    if notes.hold == RETURNED:
+        notes.hold = ASKED
         set_pressures(film, work.room, work.w[HERE])
         f_x, f_y = force(film, work.room)
-    elif notes[HOLD] == FREE and notes[KEPT] == 1.0 and _takes_place(film, work, g, iteration):
-        if notes[CORRECTIONS] < MOST_CORRECTIONS:
+    elif notes.hold == FREE and notes.kept == 1.0 and _takes_place(film, work, g, iteration):
+        if notes.corrections < MOST_CORRECTIONS:
             f_x, f_y, xx, xy, yx, yy = solve(film, work.room)
-            notes[SINCE] += 1.0
-        if not (notes[SINCE] <= PATIENCE and math.isfinite(f_x)):
+            notes.since += 1
+        if not (notes.since <= PATIENCE and math.isfinite(f_x)):
             f_x = math.nan
-            if notes[LEAST] < TOLERATED:
-                notes[HOLD] = TO_HOLD
+            if notes.least < TOLERATED:
+                notes.hold = TO_HOLD
     return f_x, f_y, 0.0, 0.0, 0.0, 0.0, xx, xy, yx, yy
 
 
 @compiled(internal=True)
 def _takes_place(film: ElementFilm, work: ElementWork, g: float, iteration: int) -> bool:
     """Assemble at where the film is; whether its residual is no reason to shorten the last correction."""
-    notes, sizes = work.notes, work.notes[SIZES:]
-    size, notes[TERMS] = residual(
-        film, work.room, work.w[HERE], work.past, notes[D_X], notes[D_Y], notes[V_X], notes[V_Y], notes[SPEED], g
+    notes, sizes = work.notes[0], work.notes[0].sizes
+    size, notes.terms = residual(
+        film, work.room, work.w[HERE], work.past, notes.d_x, notes.d_y, notes.v_x, notes.v_y, notes.speed, g
     )
     if iteration == 0:
         sizes[:] = size
@@ -160,13 +179,13 @@ def _takes_place(film: ElementFilm, work: ElementWork, g: float, iteration: int)
         largest = sizes[0]
         for k in range(1, sizes.shape[0]):
             largest = max(largest, sizes[k])
-        if not (size < largest or notes[SHARE] < SMALLEST_SHARE):
-            notes[KEPT] = 0.5
+        if not (size < largest or notes.share < SMALLEST_SHARE):
+            notes.kept = 0.5
             return False
-        sizes[int(notes[CORRECTIONS]) % MEMORY] = size
-        notes[CORRECTIONS] += 1.0
-    if size < notes[SMALLEST]:
-        notes[SMALLEST], notes[LEAST], notes[SINCE], notes[IS_BEST] = size, notes[TERMS], 0.0, 1.0
+        sizes[notes.corrections % MEMORY] = size
+        notes.corrections += 1
+    if size < notes.smallest:
+        notes.smallest, notes.least, notes.since, notes.is_best = size, notes.terms, 0, True
         for n in range(work.w.shape[1]):
             work.w[BEST, n] = work.w[HERE, n]
     return True
@@ -174,41 +193,41 @@ def _takes_place(film: ElementFilm, work: ElementWork, g: float, iteration: int)
 
 @compiled(internal=True)
 def back_off(work: ElementWork, rows: Array) -> bool:
-    """step_back of film_forces.py; rows: of stage.py."""
-    notes, w, best_u = work.notes, work.w, work.notes[BEST_U:SIZES]
+    """step_back of forces.py; rows: of stage.py."""
+    notes, w, best_u = work.notes[0], work.w, work.notes[0].best_u
     m, nodes = rows.shape[1], w.shape[1]
-    if notes[IS_BEST] != 0.0:
-        notes[IS_BEST] = 0.0
+    if notes.is_best:
+        notes.is_best = False
         for i in range(m):
             best_u[i] = rows[U, i]
-    if notes[HOLD] == TO_HOLD:
-        notes[HOLD], notes[KEPT] = RETURNED, 1.0
+    if notes.hold == TO_HOLD:
+        notes.hold, notes.kept = RETURNED, 1.0
         for i in range(m):
             rows[U, i] = best_u[i]
         for n in range(nodes):
             w[HERE, n] = w[BEST, n]
         return True
-    if notes[KEPT] == 1.0:
+    if notes.kept == 1.0:
         return False
-    back = (1.0 - notes[KEPT]) * notes[SHARE]
+    back = (1.0 - notes.kept) * notes.share
     for i in range(m):
         rows[U, i] -= back * rows[CORRECTION, i]
     for n in range(nodes):
         w[HERE, n] -= back * w[CHANGE, n]
-    notes[SHARE] *= notes[KEPT]
-    notes[KEPT] = 1.0
+    notes.share *= notes.kept
+    notes.kept = 1.0
     return True
 
 
 @compiled(internal=True)
 def move_elements(film: ElementFilm, work: ElementWork, u_x: float, u_y: float, share: float, g: float) -> int:
-    """move_film of film_forces.py."""
-    notes, w, change, largest = work.notes, work.w[HERE], work.w[CHANGE], 0.0
-    notes[D_X] += g * u_x
-    notes[D_Y] += g * u_y
-    notes[V_X] += u_x
-    notes[V_Y] += u_y
-    if notes[HOLD] != FREE:
+    """move_film of forces.py."""
+    notes, w, change, largest = work.notes[0], work.w[HERE], work.w[CHANGE], 0.0
+    notes.d_x += g * u_x
+    notes.d_y += g * u_y
+    notes.v_x += u_x
+    notes.v_y += u_y
+    if notes.hold != FREE:
         return 0
     solution = work.room.solution.reshape(-1, RIGHTS)
     for i in range(len(w)):
@@ -216,26 +235,26 @@ def move_elements(film: ElementFilm, work: ElementWork, u_x: float, u_y: float, 
         w[i] += share * change[i]
         if not film.unknowns.fixed[i]:
             largest = max(largest, abs(change[i]))
-    notes[SHARE], notes[KEPT] = share, min(1.0, LARGEST_CORRECTION / (share * largest + 1e-300))
+    notes.share, notes.kept = share, min(1.0, LARGEST_CORRECTION / (share * largest + 1e-300))
     return 0 if largest < FILM_SETTLED else 1
 
 
 @compiled(internal=True)
 def left_of_elements(work: ElementWork, moved: float, unsettled: int, allowed: float) -> float:
-    """left_over of film_forces.py."""
-    notes = work.notes
-    if notes[HOLD] != FREE:
+    """left_over of forces.py."""
+    notes = work.notes[0]
+    if notes.hold != FREE:
         return LEFT_WHERE_HELD * moved
     if unsettled == 0:
         return LEFT_OVER * moved
-    if notes[CORRECTIONS] > 0.0 and notes[TERMS] < ENOUGH and LEFT_OVER * moved < allowed:
-        notes[HOLD] = TO_HOLD  # its kinks do not reach the journal
+    if notes.corrections > 0 and notes.terms < ENOUGH and LEFT_OVER * moved < allowed:
+        notes.hold = TO_HOLD  # its kinks do not reach the journal
     return math.inf
 
 
 def accept_elements(films, work, wet, flows, weights, step):  # type: ignore[no-untyped-def]
-    """accept_films of films.py; oil that passes counts at the mean of the flows before and after."""
-    last, nodes, notes = weights.shape[0] - 1, films.elements.nodes, work.notes
+    """accept_films of steps.py; oil that passes counts at the mean of the flows before and after."""
+    last, nodes, notes = weights.shape[0] - 1, films.elements.nodes, work.notes[0]
     _keep_rates(films, work, last, weights[last, last] * step)
     for e in range(nodes.shape[0]):
         for a in range(9):
@@ -243,16 +262,16 @@ def accept_elements(films, work, wet, flows, weights, step):  # type: ignore[no-
             wet[W_BEFORE, 0, e, a], wet[W, 0, e, a] = wet[W, 0, e, a], work.w[HERE, nodes[e, a]]
             work.past[e, a] = -work.rates[last, e, a]
     came, left = oil_passing(
-        films, work.room, work.w[HERE], work.past, notes[D_X], notes[D_Y], notes[V_X], notes[V_Y], notes[SPEED]
+        films, work.room, work.w[HERE], work.past, notes.d_x, notes.d_y, notes.v_x, notes.v_y, notes.speed
     )
     passed, now = flows[PASSED, 0], flows[NOW, 0]
     passed[CAME] += 0.5 * step * (now[CAME] + came)
     passed[LEFT] += 0.5 * step * (now[LEFT] + left)
-    now[CAME], now[LEFT], now[HELD] = came, left, oil_held(films, notes[D_X], notes[D_Y], work.thetas[last])
+    now[CAME], now[LEFT], now[HELD] = came, left, oil_held(films, notes.d_x, notes.d_y, work.thetas[last])
 
 
 def write_element_oil(films, work, out_oil, first, last):  # type: ignore[no-untyped-def]
-    """write_oil of films.py."""
+    """write_oil of steps.py."""
     oil = mean_oil_fraction(films, work.thetas[work.thetas.shape[0] - 1])
     for row in range(first, last):
         out_oil[row, 0] = oil

@@ -12,28 +12,25 @@ from numba import types
 from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS, compiled
-from frbcli.film.cells.data import REMEMBERS
 from frbcli.film.rectangles.film_force import film_force
+from frbcli.solve.films.cell_steps import Work
 from frbcli.solve.films.cells import (
     AHEAD,
-    BALANCE,
-    GRID_X,
-    GRID_Y,
-    STAGE,
-    cell_numbers,
+    cell_response,
     left_of_cells,
     move_cells,
     sheared,
     store_ahead,
 )
 from frbcli.solve.films.channels import follow_journals, join, set_laws, set_pressures
-from frbcli.solve.films.elements import back_off, element_numbers, left_of_elements, move_elements
-from frbcli.solve.films.steps import Work, have_cells, have_elements, have_none, have_scales
+from frbcli.solve.films.elements import back_off, element_response, left_of_elements, move_elements
+from frbcli.solve.films.kinds import CELLS, ELEMENTS, NONE, by_kind, kind_of
+from frbcli.solve.films.steps import Scaled
 from frbcli.solve.stage.equations import FilmMotion
 from frbcli.solve.state import Array
 
 
-def film_numbers(films: Any, work: Work, f: int, motion: FilmMotion, g: float, s: int, iteration: int) -> Any:
+def film_response(films: Any, work: Work, f: int, motion: FilmMotion, g: float, s: int, iteration: int) -> Any:
     """The ten numbers of film_force for film f at what it feels of its journal; those of cells hold all in the
     derivatives by the velocity.
 
@@ -120,11 +117,12 @@ def _scaled(
     return f_x, f_y, k_xx, k_xy, k_yx, k_yy, scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy
 
 
-@overload(film_numbers, jit_options=AS_KERNELS | {"forceinline": True}, strict=False)
-def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
-    if have_none(films):  # never asked
+@overload(film_response, jit_options=AS_KERNELS | {"forceinline": True}, strict=False)
+def _film_response(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
+    kind = kind_of(films)
+    if kind == NONE:  # never asked
         return lambda films, work, f, motion, g, s, iteration: (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    if have_scales(work):
+    if getattr(work, "instance_class", None) is Scaled:
         if isinstance(films, types.UniTuple):  # one call less per film solve: a tenth of the time of a tabulated film
 
             def scaled(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
@@ -142,103 +140,86 @@ def _film_numbers(films, work, f, motion, g, s, iteration):  # type: ignore[no-u
         return lambda films, work, f, motion, g, s, iteration: film_force(
             films[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
-    if have_elements(films):
-        return lambda films, work, f, motion, g, s, iteration: element_numbers(
+    if kind == ELEMENTS:
+        return lambda films, work, f, motion, g, s, iteration: element_response(
             films, work, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega, g, iteration
         )
-    if not have_cells(films):  # of several kinds: what the compiler knows of each stands at a fixed place of the tuple
+    if kind != CELLS:  # of several kinds: what the compiler knows of each stands at a fixed place of the tuple
         return lambda films, work, f, motion, g, s, iteration: _one_of(
             films, f, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
 
-    kernel: Any = cell_numbers  # itself, not called from here: what calls is optimised and turned to machine code, too
+    kernel: Any = cell_response  # itself, not called from here: what calls is optimised and turned to machine code, too
     return kernel.py_func
 
 
-@overload(meet_channels, jit_options=AS_KERNELS)
-def _meet_channels(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        return lambda films, work, x_0, u, omega, clearances, g, iteration: None
-
-    def volumes(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
-        if films.feed_holes.shape[0] > 0:
-            if iteration == 0:
-                set_laws(films, work.grids, x_0, u, omega, clearances, g)
-            set_pressures(films, work.grids, work.w, work.channel)
-
-    return volumes
+def _meet(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
+    """meet_channels of films with cells."""
+    if films.feed_holes.shape[0] > 0:
+        if iteration == 0:
+            set_laws(films, work.grids, x_0, u, omega, clearances, g)
+        set_pressures(films, work.grids, work.w, work.channel)
 
 
-@overload(join_films, jit_options=AS_KERNELS)
-def _join_films(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        return lambda films, work, clearances, force, follows_x, follows_y: None
-
-    def volumes(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
-        if films.feed_holes.shape[0] > 0:
-            join(films, work, clearances, follows_x, follows_y, force)
-
-    return volumes
+def _join(films, work, clearances, force, follows_x, follows_y):  # type: ignore[no-untyped-def]
+    """join_films of films with cells."""
+    if films.feed_holes.shape[0] > 0:
+        join(films, work, clearances, follows_x, follows_y, force)
 
 
-@overload(follow_channels, jit_options=AS_KERNELS)
-def _follow_channels(films, work, correction, share):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        return lambda films, work, correction, share: None
-
-    def volumes(films, work, correction, share):  # type: ignore[no-untyped-def]
-        if films.feed_holes.shape[0] > 0:
-            follow_journals(films, work.answers, correction, share, work.changes)
-
-    return volumes
+def _follow(films, work, correction, share):  # type: ignore[no-untyped-def]
+    """follow_channels of films with cells."""
+    if films.feed_holes.shape[0] > 0:
+        follow_journals(films, work.answers, correction, share, work.changes)
 
 
-@overload(step_back, inline="always")
-def _step_back(films, work, rows):  # type: ignore[no-untyped-def]
-    if have_elements(films):
-        return lambda films, work, rows: back_off(work, rows)
-    return lambda films, work, rows: False
-
-
-@overload(left_over, inline="always")
-def _left_over(films, work, smooth, moved, unsettled, allowed):  # type: ignore[no-untyped-def]
-    if have_elements(films):
-        return lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, unsettled, allowed)
-    if not have_cells(films):
-        return lambda films, work, smooth, moved, unsettled, allowed: smooth
-    return lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved)
-
-
-@overload(move_film, inline="always")
-def _move_film(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
-    if have_elements(films):
-        return lambda films, work, f, u_x, u_y, share, g: move_elements(films, work, u_x, u_y, share, g)
-    if not have_cells(films):
-        return lambda films, work, f, u_x, u_y, share, g: 0
-
-    def volumes(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
-        unsettled = move_cells(work.w[f], work.states[f], work.fields[f], work.grids[f], u_x, u_y, g, work.changes[f])
-        if films.numbers[f, REMEMBERS] != 0.0 and work.grids[f, BALANCE] == AHEAD:
-            s = int(work.grids[f, STAGE])
-            store_ahead(
-                films.ring[f], films.cells[f], work, f, u_x, u_y, g, work.stage_oil[s, f], work.stage_flows[s, f]
-            )
-        return unsettled
-
-    return volumes
-
-
-@overload(drag_integral, inline="always")
-def _drag_integral(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
-    if not have_cells(films):
-        # of 1 / H over the turn, Sommerfeld's integral
-        return lambda films, work, f, d_x, d_y, factor: (
-            2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
+def _move(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
+    """move_film of films with cells."""
+    unsettled = move_cells(work.w[f], work.states[f], work.fields[f], work.grids[f], u_x, u_y, g, work.changes[f])
+    if films.films[f].remembers and work.grids[f].balance == AHEAD:
+        s = work.grids[f].stage
+        store_ahead(
+            films.ring[f], films.cells[f], work, f, u_x, u_y, g, work.stage_oil[s, f], work.stage_flows[s, f]
         )
+    return unsettled
 
-    def volumes(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
-        return sheared(
-            films.ring[f], films.cells[f], work.states[f], work.grids[f, GRID_X], work.grids[f, GRID_Y], factor
-        )
 
-    return volumes
+def _sheared(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
+    """drag_integral of films with cells."""
+    return sheared(
+        films.ring[f], films.cells[f], work.states[f], work.grids[f].x, work.grids[f].y, factor
+    )
+
+
+by_kind(
+    meet_channels, others=lambda films, work, x_0, u, omega, clearances, g, iteration: None, cells=_meet
+)  # fmt: skip
+by_kind(join_films, others=lambda films, work, clearances, force, follows_x, follows_y: None, cells=_join)
+by_kind(follow_channels, others=lambda films, work, correction, share: None, cells=_follow)
+by_kind(
+    step_back,
+    inline=True,
+    others=lambda films, work, rows: False,
+    elements=lambda films, work, rows: back_off(work, rows),
+)
+by_kind(
+    left_over,
+    inline=True,
+    others=lambda films, work, smooth, moved, unsettled, allowed: smooth,
+    cells=lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved),
+    elements=lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, unsettled, allowed),
+)
+by_kind(
+    move_film,
+    inline=True,
+    others=lambda films, work, f, u_x, u_y, share, g: 0,
+    cells=_move,
+    elements=lambda films, work, f, u_x, u_y, share, g: move_elements(films, work, u_x, u_y, share, g),
+)
+by_kind(
+    drag_integral,
+    inline=True,
+    # of 1 / H over the turn, Sommerfeld's integral
+    others=lambda films, work, f, d_x, d_y, factor: 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6)),
+    cells=_sheared,
+)

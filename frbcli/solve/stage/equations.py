@@ -76,9 +76,9 @@ def predict(weights: Array, s: int, step: float, q: Array, v: Array, stage_v: Ar
 @compiled(inline=True)
 def start_stage(
     acceleration: float, speed: float, angle: float, g: float, gyroscopic: bool, products: Array, loads: Array,
-    selection: Array, at: Array, film: Array,
+    selection: Array, at: Array, journal: Array,
 ) -> None:  # fmt: skip
-    """Fill FREE of `at` and U_0, X_0 of `film`: what a stage knows before its films do."""
+    """Fill FREE of `at` and U_0, X_0 of `journal`: what a stage knows before its films do."""
     n = at.shape[1]
     # The unbalance (2.3): along the angle with alpha'', outwards with alpha'^2
     sine, cosine = math.sin(angle), math.cos(angle)
@@ -97,7 +97,7 @@ def start_stage(
         for i in range(n):
             place += selection[k, i] * at[Q, i]
             rate += selection[k, i] * (at[V, i] + g * at[FREE, i])
-        film[X_0, k], film[U_0, k] = place, rate
+        journal[X_0, k], journal[U_0, k] = place, rate
 
 
 @compiled(inline=True)
@@ -111,7 +111,7 @@ def begin_lag(numbers: Array, g: float, speed: float, at: Array) -> float:
 @compiled(inline=True)
 def guess(
     points: Array, three: Indices, s: int, selection: Array, q: Array, clearances: Array, g: float, t: float,
-    limit: float, film: Array,
+    limit: float, journal: Array,
 ) -> None:  # fmt: skip
     """u of the stage at time t by extrapolation; a guess beyond the shell is drawn back to where the journal is.
 
@@ -121,20 +121,21 @@ def guess(
     i_a, i_b, i_c = three[s, 0], three[s, 1], three[s, 2]
     weight_a, weight_b, weight_c = lagrange(points[i_a, 0], points[i_b, 0], points[i_c, 0], t)
     for i in range(selection.shape[0]):
-        film[U, i] = weight_a * points[i_a, 1 + i] + weight_b * points[i_b, 1 + i] + weight_c * points[i_c, 1 + i]
+        journal[U, i] = weight_a * points[i_a, 1 + i] + weight_b * points[i_b, 1 + i] + weight_c * points[i_c, 1 + i]
     for f in range(clearances.shape[0]):
         x, y = 2 * f, 2 * f + 1
-        if norm(film[X_0, x] + g * film[U, x], film[X_0, y] + g * film[U, y]) > 0.999 * limit * clearances[f]:
+        eccentricity = norm(journal[X_0, x] + g * journal[U, x], journal[X_0, y] + g * journal[U, y])
+        if eccentricity > 0.999 * limit * clearances[f]:
             here_x, here_y = 0.0, 0.0
             for i in range(q.shape[0]):
                 here_x += selection[x, i] * q[i]
                 here_y += selection[y, i] * q[i]
-            film[U, x], film[U, y] = (here_x - film[X_0, x]) / g, (here_y - film[X_0, y]) / g
+            journal[U, x], journal[U, y] = (here_x - journal[X_0, x]) / g, (here_y - journal[X_0, y]) / g
 
 
 @compiled(inline=True)
 def accelerate(
-    s: int, g: float, lag: float, products: Array, spread: Array, selection: Array, at: Array, film: Array,
+    s: int, g: float, lag: float, products: Array, spread: Array, selection: Array, at: Array, journal: Array,
     stage_v: Array, stage_a: Array,
 ) -> float:  # fmt: skip
     """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
@@ -147,7 +148,7 @@ def accelerate(
     for i in range(n):
         total = at[row, i]
         for j in range(m):
-            total += spread[i, j] * film[FORCE, j]
+            total += spread[i, j] * journal[FORCE, j]
         stage_a[i, s] = total
         stage_v[i, s] = at[V, i] + g * total
     if lag != 0.0:
@@ -160,6 +161,6 @@ def accelerate(
             rate = 0.0
             for i in range(n):
                 rate += selection[k, i] * (at[V, i] + g * at[LATE, i])
-            change = max(change, abs(rate - film[U_0, k]))
-            film[U_0, k] = rate
+            change = max(change, abs(rate - journal[U_0, k]))
+            journal[U_0, k] = rate
     return change

@@ -10,7 +10,7 @@ from typing import Any
 
 from frbcli.compiled import Array, compiled
 from frbcli.dense import solve_dense
-from frbcli.solve.films.forces import film_numbers, follow_channels, join_films, meet_channels, move_film, step_back
+from frbcli.solve.films.forces import film_response, follow_channels, join_films, meet_channels, move_film, step_back
 from frbcli.solve.stage.contact import feel, push_back, shell_ahead
 from frbcli.solve.stage.equations import (
     BY_X,
@@ -34,7 +34,7 @@ CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction m
 @compiled()
 def _store(
     numbers: tuple[float, ...], felt: tuple[float, ...], motion: FilmMotion, g: float, turning: float, f: int,
-    c: float, control: Control, film: Array,
+    c: float, control: Control, journal: Array,
 ) -> None:  # fmt: skip
     """FORCE, BY_X, BY_Y, FOLLOWS_X, FOLLOWS_Y of film f by its ten numbers, see film_force, at what it feels of its
     journal, see feel, with the push of an elastic shell."""
@@ -44,26 +44,26 @@ def _store(
     s_x, s_y, s_xx, s_yy, s_xy = push_back(
         motion.d_x, motion.d_y, c, control.contact_eccentricity, control.contact_stiffness
     )
-    film[FORCE, x], film[FORCE, y] = f_x + s_x, f_y + s_y
+    journal[FORCE, x], journal[FORCE, y] = f_x + s_x, f_y + s_y
     rate_xx, rate_yy, rate_xy = xx + turning * turn_xx, yy + turning * turn_yy, xy + turning * turn_xy
-    film[BY_X, x] = (d_xx * rate_xx + d_xy * rate_xy + g * (k_xx * xx + k_xy * xy - s_xx)) / c
-    film[BY_Y, x] = (d_xx * rate_xy + d_xy * rate_yy + g * (k_xx * xy + k_xy * yy - s_xy)) / c
-    film[BY_X, y] = (d_yx * rate_xx + d_yy * rate_xy + g * (k_yx * xx + k_yy * xy - s_xy)) / c
-    film[BY_Y, y] = (d_yx * rate_xy + d_yy * rate_yy + g * (k_yx * xy + k_yy * yy - s_yy)) / c
-    film[FOLLOWS_X, x], film[FOLLOWS_Y, y] = rate_xx, rate_yy
-    film[FOLLOWS_X, y] = film[FOLLOWS_Y, x] = rate_xy
+    journal[BY_X, x] = (d_xx * rate_xx + d_xy * rate_xy + g * (k_xx * xx + k_xy * xy - s_xx)) / c
+    journal[BY_Y, x] = (d_xx * rate_xy + d_xy * rate_yy + g * (k_xx * xy + k_xy * yy - s_xy)) / c
+    journal[BY_X, y] = (d_yx * rate_xx + d_yy * rate_xy + g * (k_yx * xx + k_yy * xy - s_xy)) / c
+    journal[BY_Y, y] = (d_yx * rate_xy + d_yy * rate_yy + g * (k_yx * xy + k_yy * yy - s_yy)) / c
+    journal[FOLLOWS_X, x], journal[FOLLOWS_Y, y] = rate_xx, rate_yy
+    journal[FOLLOWS_X, y] = journal[FOLLOWS_Y, x] = rate_xy
 
 
 @compiled(inline=True)
-def _solve_small(matrix: Array, film: Array) -> None:
+def _solve_small(matrix: Array, journal: Array) -> None:
     """CORRECTION <- matrix^-1 CORRECTION for the few journals' equations; closed form for one bearing."""
     if matrix.shape[0] == 2:
         det = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
-        x, y = film[CORRECTION, 0], film[CORRECTION, 1]
-        film[CORRECTION, 0] = (matrix[1, 1] * x - matrix[0, 1] * y) / det
-        film[CORRECTION, 1] = (matrix[0, 0] * y - matrix[1, 0] * x) / det
+        x, y = journal[CORRECTION, 0], journal[CORRECTION, 1]
+        journal[CORRECTION, 0] = (matrix[1, 1] * x - matrix[0, 1] * y) / det
+        journal[CORRECTION, 1] = (matrix[0, 0] * y - matrix[1, 0] * x) / det
     elif matrix.shape[0] > 0:
-        right = film[CORRECTION : CORRECTION + 1].reshape(-1, 1)  # a view: solved in place
+        right = journal[CORRECTION : CORRECTION + 1].reshape(-1, 1)  # a view: solved in place
         solve_dense(matrix, right)
 
 
@@ -82,25 +82,25 @@ def reach(d_x: float, d_y: float, c_x: float, c_y: float, end: float) -> float:
 
 @compiled(inline=True)
 def forces(
-    films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, iteration: int, film: Array
+    films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, iteration: int, journal: Array
 ) -> None:
     """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
-    meet_channels(films, work, film[X_0], film[U], film[OMEGA], clearances, g, iteration)
+    meet_channels(films, work, journal[X_0], journal[U], journal[OMEGA], clearances, g, iteration)
     turning = 0.0 if work.grids.shape[0] > 0 else g  # a film with cells has one derivative, of velocity and place
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
-        d_x, d_y = (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c
-        motion = FilmMotion(d_x, d_y, film[U, x] / c, film[U, y] / c, film[OMEGA, x])
+        d_x, d_y = (journal[X_0, x] + g * journal[U, x]) / c, (journal[X_0, y] + g * journal[U, y]) / c
+        motion = FilmMotion(d_x, d_y, journal[U, x] / c, journal[U, y] / c, journal[OMEGA, x])
         felt = feel(d_x, d_y, motion.v_x, motion.v_y, control.contact_eccentricity, control.contact_stiffness)
         at = FilmMotion(felt[0], felt[1], felt[2], felt[3], motion.omega)
-        numbers = film_numbers(films, work, f, at, g, s, iteration)
-        _store(numbers, felt, motion, g, turning, f, c, control, film)
-    join_films(films, work, clearances, film[FORCE], film[FOLLOWS_X], film[FOLLOWS_Y])
+        numbers = film_response(films, work, f, at, g, s, iteration)
+        _store(numbers, felt, motion, g, turning, f, c, control, journal)
+    join_films(films, work, clearances, journal[FORCE], journal[FOLLOWS_X], journal[FOLLOWS_Y])
 
 
 @compiled(inline=True)
 def correct(
-    films: Any, work: Any, compliance: Array, clearances: Array, control: Control, g: float, film: Array,
+    films: Any, work: Any, compliance: Array, clearances: Array, control: Control, g: float, journal: Array,
     newton: Array,
 ) -> tuple[float, float, float, int]:  # fmt: skip
     """One correction of U by Newton's method, and of the films' cells with it.
@@ -109,26 +109,26 @@ def correct(
     over their clearances, films that had not settled). What may be left is infinite for a correction that is not
     finite. Nothing is applied, but some of the last correction is taken back, where a film steps back.
     """
-    if step_back(films, work, film):
+    if step_back(films, work, journal):
         return 0.0, 0.0, 0.0, 1
     m, crossed = compliance.shape[0], work.cross.shape[0]
     for i in range(m):
-        total = film[U_0, i] - film[U, i]
+        total = journal[U_0, i] - journal[U, i]
         for j in range(m):
-            total += compliance[i, j] * film[FORCE, j]
+            total += compliance[i, j] * journal[FORCE, j]
             x = j - j % 2
             slope = BY_X + j % 2
-            newton[i, j] = -(compliance[i, x] * film[slope, x] + compliance[i, x + 1] * film[slope, x + 1])
+            newton[i, j] = -(compliance[i, x] * journal[slope, x] + compliance[i, x + 1] * journal[slope, x + 1])
             for a in range(crossed):
                 newton[i, j] -= compliance[i, a] * work.cross[a, j]
         newton[i, i] += 1.0
-        film[CORRECTION, i] = total
-    _solve_small(newton, film)
+        journal[CORRECTION, i] = total
+    _solve_small(newton, journal)
     share, moved, left, unsettled = 1.0, 0.0, 0.0, 0
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
-        at_x, at_y = (film[X_0, x] + g * film[U, x]) / c, (film[X_0, y] + g * film[U, y]) / c
-        c_x, c_y = g * film[CORRECTION, x] / c, g * film[CORRECTION, y] / c
+        at_x, at_y = (journal[X_0, x] + g * journal[U, x]) / c, (journal[X_0, y] + g * journal[U, y]) / c
+        c_x, c_y = g * journal[CORRECTION, x] / c, g * journal[CORRECTION, y] / c
         move = norm(c_x, c_y)
         if not math.isfinite(move):
             return 0.0, math.inf, math.inf, 0
@@ -138,21 +138,22 @@ def correct(
         share = min(share, reach(at_x, at_y, c_x, c_y, end))
         # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
         # |w|, over the size of w.
-        half = 0.5 * film[OMEGA, x]
-        film_speed = norm(film[U, x] / c + half * at_y, film[U, y] / c - half * at_x)
+        half = 0.5 * journal[OMEGA, x]
+        film_speed = norm(journal[U, x] / c + half * at_y, journal[U, y] / c - half * at_x)
         left = max(left, move * move * (1.0 / (end - here) + 1.0 / (g * film_speed + 1e-30)))
     for i in range(m):
-        film[U, i] += share * film[CORRECTION, i]
+        journal[U, i] += share * journal[CORRECTION, i]
     for i in range(m):  # the forces at the corrected velocities, to first order: what Newton's equations have used
         x = i - i % 2
-        film[FORCE, i] += share * (film[BY_X, i] * film[CORRECTION, x] + film[BY_Y, i] * film[CORRECTION, x + 1])
+        by_itself = journal[BY_X, i] * journal[CORRECTION, x] + journal[BY_Y, i] * journal[CORRECTION, x + 1]
+        journal[FORCE, i] += share * by_itself
         for j in range(crossed):
-            film[FORCE, i] += share * work.cross[i, j] * film[CORRECTION, j]
-    follow_channels(films, work, film[CORRECTION], share)
+            journal[FORCE, i] += share * work.cross[i, j] * journal[CORRECTION, j]
+    follow_channels(films, work, journal[CORRECTION], share)
     for f in range(clearances.shape[0]):
         x, y = 2 * f, 2 * f + 1
-        c_x, c_y = share * film[CORRECTION, x] / clearances[f], share * film[CORRECTION, y] / clearances[f]
-        felt_x = film[FOLLOWS_X, x] * c_x + film[FOLLOWS_Y, x] * c_y
-        felt_y = film[FOLLOWS_X, y] * c_x + film[FOLLOWS_Y, y] * c_y
+        c_x, c_y = share * journal[CORRECTION, x] / clearances[f], share * journal[CORRECTION, y] / clearances[f]
+        felt_x = journal[FOLLOWS_X, x] * c_x + journal[FOLLOWS_Y, x] * c_y
+        felt_y = journal[FOLLOWS_X, y] * c_x + journal[FOLLOWS_Y, y] * c_y
         unsettled += move_film(films, work, f, felt_x, felt_y, share, g)
     return share, min(left, moved), moved, unsettled

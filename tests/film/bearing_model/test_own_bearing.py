@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from films import rectangular
 from numba import njit
 from paths import DOCS
 from scipy.optimize import brentq
@@ -38,8 +39,8 @@ from frbcli.errors import InputError
 from frbcli.film.bearing_model import table
 from frbcli.film.bearing_model.checks import model_film
 from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
+from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.plot.signals import model as described
@@ -48,7 +49,7 @@ from frbcli.scene.machine.system import make_system
 
 PAGE = DOCS / "adding-a-model.md"
 R, L, C, MU = 0.05, 0.03, 1e-4, 0.01
-JOURNAL = RectangularBearing(L, 2 * R, C, MU, 1, 1e5, 1e5)
+JOURNAL = rectangular(L, 2 * R, C, MU, 1e5, 1e5)
 DAMPER = f"""
 bearing = {{ kind = "single-film", width = "{L} m", diameter = "{2 * R} m", clearance = "{C} m", ends = "oil-bath" }}
 oil = {{ viscosity = "{MU} Pa*s", density = "850 kg/m^3" }}
@@ -132,10 +133,10 @@ def added() -> Iterator[None]:
         frbcli.remove_bearing(model.name)
 
 
-def film_of(model: BearingModel, bearing: RectangularBearing = JOURNAL, keys: tuple[float, ...] = ()) -> Any:
+def film_of(model: BearingModel, bearing: Section = JOURNAL, keys: tuple[float, ...] = ()) -> Any:
     b = bearing
-    pressures = (b.ambient_pressure, b.cavitation_pressure, b.ambient_pressure + b.groove_pressure)
-    size = (b.width, b.diameter, b.clearance, b.viscosity, b.sections, b.section_width)
+    pressures = (b.ambient_pressure, b.cavitation_pressure, b.ambient_pressure + b.far_pressure)
+    size = (b.bearing_width, 2.0 * b.radius, b.clearance, b.viscosity, b.copies, b.width)
     return model_film(model, BearingDimensions(*size, *pressures), keys)
 
 

@@ -156,7 +156,7 @@ def test_balances_are_the_plain_ones(law: Law, omega: float, ends: tuple[str, st
     residual, plain = balance.residual(film.cells(w), Storage(rate * gap, past))
     data = volume_films([film])
     states, stencil, _, fields, flows = arrays()
-    parts = data.numbers[0], data.ring[0], data.width[0], data.cells[0]
+    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
     numbers = np.empty(LAW_NUMBERS)
     follow_law(parts[0], *motion.d, 0.0, 0.0, omega, numbers)
     cell_states(parts[0], parts[3], numbers, 0.0, w, states)

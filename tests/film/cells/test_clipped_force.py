@@ -13,7 +13,7 @@ from frbcli.film.cells.balance.balances import SIDES
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES
-from frbcli.film.cells.data import CLIPS, FORCE_SCALE, volume_films
+from frbcli.film.cells.data import BETWEEN_MIDDLES, BY_CELLS, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import volume_grid
@@ -85,12 +85,12 @@ def test_kernel_is_the_plain_one_and_has_its_derivatives() -> None:
     def push(own: np.ndarray) -> tuple[float, ...]:
         changed = fields.copy()
         changed[:, :, k] = own
-        return clipped_push(data.numbers[0], data.ring[0], data.cells[0], states, changed, k + 1, k + 2)
+        return clipped_push(data.films[0], data.ring[0], data.cells[0], states, changed, k + 1, k + 2)
 
     f_x, f_y, *by = push(fields[:, :, k])
     pressure = states[PRESSURE] + states[PRESSURE_SLOPE] * fields[:, :, k]
     expected = force(film, cavity + clipped_means(pressure - cavity))
-    scale = data.numbers[0, FORCE_SCALE]
+    scale = data.films[0].force_scale
     assert (scale * f_x, scale * f_y) == pytest.approx(expected, rel=1e-12)
     step = 1e-6
     for layer, slopes in ((k + 1, by[:2]), (k + 2, by[2:])):
@@ -106,5 +106,5 @@ def test_cavities_beside_a_circumferential_groove_are_clipped_cell_by_cell() -> 
     solution = FilmSolver(film).steady(Motion((0.0, -0.7), (0.0, 0.0), 900.0))
     assert film.pressure(solution.state).min() == film.scales.cavitation
     assert np.array_equal(film.mean_pressure(solution.state), film.pressure(solution.state))
-    assert volume_films([film]).numbers[0, CLIPS] == 1.0
-    assert volume_films([plain_film(24, 4)]).numbers[0, CLIPS] == 2.0
+    assert volume_films([film]).films[0].clips == BY_CELLS
+    assert volume_films([plain_film(24, 4)]).films[0].clips == BETWEEN_MIDDLES

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from films import rectangular
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
@@ -29,7 +30,6 @@ from frbcli.film.published.equations.unknown import make_unknowns, pressures_of,
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.plain import terms
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.untabulated import direct_force
 
 OMEGA = 2.0 * math.pi * 120.0  # at 4 s of the run-up of chapter 6
@@ -176,7 +176,7 @@ def test_full_film_is_that_of_sommerfeld() -> None:
     section = groove_section(ambient_pressure=50e5, cavitation_pressure=1e5)
     film = PublishedFilm(section, TwoPhase(0.9, outer_slope=1e-9))
     solution = film.steady(turning(0.3, -0.2, (5.0, 3.0)))
-    bearing = RectangularBearing(20e-3, 25e-3, 35e-6, 12e-3, 2, 50e5, 1e5, grooved=True)
+    bearing = rectangular(20e-3, 25e-3, 35e-6, 12e-3, 50e5, 1e5, groove=2)
     place, velocity = 35e-6 * np.array([0.3, -0.2]), 35e-6 * np.array([5.0, 3.0])
     expected = direct_force(bearing, "sommerfeld", Mesh(10, 192), place, velocity, OMEGA)
     assert solution.response.force == pytest.approx(expected, rel=2e-3)

@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 import pytest
+from films import rectangular
 from numpy.typing import NDArray
 from paths import DATA
 
 from frbcli.case.reading.load import load_case
-from frbcli.film.gap import AxialGroove
+from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
-from frbcli.film.rectangles.bearing import RectangularBearing
 from frbcli.film.rectangles.chain import chain_grid, element_matrices, mode_fields
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
@@ -27,11 +27,11 @@ MESH = Mesh(6, 48)
 AXIS = np.eye(2)
 
 
-def grooved(pressure: float, count: int = 1, position: float = 0.0) -> RectangularBearing:
+def grooved(pressure: float, count: int = 1, position: float = 0.0) -> Section:
     """The bearing of table 4.1 with grooves of 15 degrees; pressure in the grooves, absolute."""
     turn = 2 * math.pi / count
     grooves = tuple(AxialGroove(position + turn * i, math.radians(15), pressure - 1e5) for i in range(count))
-    return RectangularBearing(0.02, 0.025, CLEARANCE, 0.01, 1, 1e5, 1e5, grooves=grooves)
+    return rectangular(0.02, 0.025, CLEARANCE, 0.01, 1e5, 1e5, grooves=grooves)
 
 
 FILMS = {pressure: make_film(grooved(pressure), "finite", "half-sommerfeld", MESH) for pressure in (1e5, 2e5)}
@@ -165,7 +165,7 @@ def test_supply_pressure_of_one_groove_pushes_the_resting_journal_down() -> None
 def test_a_narrow_groove_leaves_the_plain_film() -> None:
     """At the widest gap Sommerfeld's pressure is ambient by symmetry: a groove at ambient pressure there changes
     little, and less the narrower it is."""
-    plain = RectangularBearing(0.02, 0.025, CLEARANCE, 0.01, 1, 1e5, 1e5)
+    plain = rectangular(0.02, 0.025, CLEARANCE, 0.01, 1e5, 1e5)
     place, omega = CLEARANCE * np.array([0.3, -0.5]), 200.0
     film = make_film(plain, "finite", "half-sommerfeld", Mesh(6, 96))
     expected = evaluate(film, CLEARANCE, place, np.zeros(2), omega)
@@ -173,7 +173,7 @@ def test_a_narrow_groove_leaves_the_plain_film() -> None:
     errors = []
     for opening in (15.0, 0.5):
         groove = AxialGroove(widest, math.radians(opening), 0.0)
-        bearing = RectangularBearing(0.02, 0.025, CLEARANCE, 0.01, 1, 1e5, 1e5, grooves=(groove,))
+        bearing = rectangular(0.02, 0.025, CLEARANCE, 0.01, 1e5, 1e5, grooves=(groove,))
         force = evaluate(make_film(bearing, "finite", "half-sommerfeld", MESH), CLEARANCE, place, np.zeros(2), omega)
         errors.append(float(np.hypot(*(force.force - expected.force)) / np.hypot(*expected.force)))
     assert errors[1] < min(1e-3, 0.2 * errors[0])

@@ -33,7 +33,7 @@ def size(kind: str, d: np.ndarray, v: np.ndarray, omega: float) -> float:
     """A force in N that round-off is measured by: that of the pressures before they cancel."""
     bearing, eccentricity = KINDS[kind][0], float(np.linalg.norm(d))
     centrifugal_pressure = bearing.force_scale * (float(np.linalg.norm(v)) + abs(omega)) / (1 - eccentricity) ** 2.5
-    supply = bearing.diameter * bearing.width * bearing.groove_pressure
+    supply = 2.0 * bearing.radius * bearing.bearing_width * bearing.far_pressure
     return max(float(np.linalg.norm(force(kind, d, v, omega))), 1e-3 * centrifugal_pressure, supply)
 
 
@@ -75,8 +75,8 @@ def test_force_scales_with_viscosity_or_speed_and_pressure(
 ) -> None:
     """Viscosity, or all speeds, and the gauge pressure of the supply times a factor: the force times the factor."""
     bearing, theory, cavitation = KINDS[kind]
-    supply = factor * bearing.groove_pressure
-    other = replace(bearing, groove_pressure=supply, viscosity=bearing.viscosity * (factor if thicker else 1.0))
+    supply = factor * bearing.far_pressure
+    other = replace(bearing, far_pressure=supply, viscosity=bearing.viscosity * (factor if thicker else 1.0))
     faster = 1.0 if thicker else factor
     found = evaluate(
         film_of(other, theory, cavitation), other.clearance, d * other.clearance, faster * v * other.clearance,

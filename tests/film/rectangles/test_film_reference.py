@@ -11,7 +11,7 @@ import pytest
 from films import GROOVED, PLAIN, film_of, polar
 from paths import DATA
 
-from frbcli.film.rectangles.bearing import RectangularBearing
+from frbcli.film.gap import Section
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
@@ -33,10 +33,10 @@ def name_of(row: dict[str, str]) -> str:
     return "-".join(row[key] for key in keys)
 
 
-def bearing_of(row: dict[str, str]) -> RectangularBearing:
+def bearing_of(row: dict[str, str]) -> Section:
     if row["supply"] == "none":
         return PLAIN
-    return replace(GROOVED, groove_pressure=1e5 * float(row["supply_pressure_bar"]) - GROOVED.ambient_pressure)
+    return replace(GROOVED, far_pressure=1e5 * float(row["supply_pressure_bar"]) - GROOVED.ambient_pressure)
 
 
 def motion_of(row: dict[str, str], clearance: float) -> Motion:

@@ -26,11 +26,8 @@ from frbcli.film.cells.balance.states import (
 )
 from frbcli.film.cells.data import (
     ALONG,
-    AMBIENT,
     AREA,
     AROUND,
-    ASPECT,
-    BORED,
     CLOSED,
     COS,
     EDGE,
@@ -41,16 +38,9 @@ from frbcli.film.cells.data import (
     FACE_COS,
     FACE_GAP,
     FACE_SIN,
-    FAR,
-    FAR_BEND,
-    FAR_PRESSURE,
-    FAR_RISE,
     FREE,
     GAP,
     LENGTH,
-    NEAR,
-    NEAR_BEND,
-    NEAR_RISE,
     SHARE,
     SIN,
     UNKNOWN,
@@ -82,12 +72,12 @@ class GridMotion(NamedTuple):
 
 
 @compiled(inline=True)
-def section_end(numbers: Array, k: int, far: bool) -> tuple[int, int, int, float, float]:
+def section_end(film: np.record, k: int, far: bool) -> tuple[int, int, int, float, float]:
     """Of the end z = 0 of a section with k cells along, or of z = 1: its kind, the last cell and the one beyond it, and
     how the pressure falls there by those of the two, see EndSlope."""
     if far:
-        return int(numbers[FAR]), k - 1, max(k - 2, 0), numbers[FAR_RISE], numbers[FAR_BEND]
-    return int(numbers[NEAR]), 0, min(1, k - 1), numbers[NEAR_RISE], numbers[NEAR_BEND]
+        return film.far.kind, k - 1, max(k - 2, 0), film.far.rise, film.far.bend
+    return film.near.kind, 0, min(1, k - 1), film.near.rise, film.near.bend
 
 
 @compiled(inline=True)
@@ -104,17 +94,17 @@ def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple
 
 @compiled()
 def falls_to_air(
-    numbers: Array, ring: Array, pressures: Array, d_x: float, d_y: float, far: bool, falls: Array
+    film: np.record, ring: Array, pressures: Array, d_x: float, d_y: float, far: bool, falls: Array
 ) -> None:  # fmt: skip
     """falls (m,) <- of the pressure from the last cells to a free end, times the steepness b of (4.37): Wright's omega
     function, see ends.py. pressures: (m, k) of the cells; d: of the journal over the clearance."""
     m, k = pressures.shape
-    steepness = STEEPNESS / numbers[AMBIENT]
-    _, j, b, rise, bend = section_end(numbers, k, far)
+    steepness = STEEPNESS / film.scales.ambient
+    _, j, b, rise, bend = section_end(film, k, far)
     for i in range(m):
         h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
         felt, _, _ = felt_at_end(pressures[i, j], pressures[i, b], bend, 0.0)
-        falls[i] = math.log(PREFACTOR * steepness / (h * h * h * numbers[ASPECT] * rise)) + steepness * felt
+        falls[i] = math.log(PREFACTOR * steepness / (h * h * h * film.aspect * rise)) + steepness * felt
     for i in range(m):  # side by side
         falls[i], _ = wright_omega(falls[i])
 
@@ -137,12 +127,12 @@ def end_flow(
 
 @compiled()
 def _flow_around(
-    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
+    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
     right: Array, flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
-    bored, half = numbers[BORED] != 0.0, 0.5 * omega
+    bored, half = film.bored, 0.5 * omega
     forward = omega >= 0.0
     taken = 0.0  # by the openings in cells that are film in part
     for i in range(m):
@@ -180,14 +170,14 @@ def _flow_around(
             other = carried * h * (0.5 if t_n > 1.0 else next_) * states[FRACTION_SLOPE, n, j]
             by_own, by_next = through * states[PRESSURE_SLOPE, i, j], through * states[PRESSURE_SLOPE, n, j]
             taken += (share - share_n) * drawn
-            right[i, j, k] -= pressed + share * drawn
-            right[n, j, k] += pressed + share_n * drawn
+            right[i, j, k + BY_ITSELF] -= pressed + share * drawn
+            right[n, j, k + BY_ITSELF] += pressed + share_n * drawn
             by_x, by_y = g * by_x * fall, g * by_y * fall
             drawn_x, drawn_y = g * carried * theta * s, -g * carried * theta * c
-            right[i, j, k + 1] -= by_x + share * drawn_x
-            right[n, j, k + 1] += by_x + share_n * drawn_x
-            right[i, j, k + 2] -= by_y + share * drawn_y
-            right[n, j, k + 2] += by_y + share_n * drawn_y
+            right[i, j, k + BY_X] -= by_x + share * drawn_x
+            right[n, j, k + BY_X] += by_x + share_n * drawn_x
+            right[i, j, k + BY_Y] -= by_y + share * drawn_y
+            right[n, j, k + BY_Y] += by_y + share_n * drawn_y
             stencil[CENTRE, i, j] += by_own + share * own
             stencil[BEHIND, i, j] += share * other - by_next
             stencil[CENTRE, n, j] += by_next - share_n * other
@@ -222,9 +212,9 @@ def _carry_out_of_excess(
             if excess != 0.0:
                 oil = excess * states[FRACTION, i, j]
                 taken += oil * rise
-                right[i, j, k] -= oil * rise
-                right[i, j, k + 1] -= g * oil * s
-                right[i, j, k + 2] += g * oil * c
+                right[i, j, k + BY_ITSELF] -= oil * rise
+                right[i, j, k + BY_X] -= g * oil * s
+                right[i, j, k + BY_Y] += g * oil * c
                 stencil[CENTRE, i, j] += excess * rise * states[FRACTION_SLOPE, i, j]
     _take(taken, flows)
 
@@ -244,12 +234,12 @@ def _flow_along(
             flow, by_gap = cube * fall, g * square * fall
             low = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j]
             high = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j + 1]
-            right[i, j, k] -= flow
-            right[i, j + 1, k] += flow
-            right[i, j, k + 1] -= by_gap * s
-            right[i, j + 1, k + 1] += by_gap * s
-            right[i, j, k + 2] += by_gap * c
-            right[i, j + 1, k + 2] -= by_gap * c
+            right[i, j, k + BY_ITSELF] -= flow
+            right[i, j + 1, k + BY_ITSELF] += flow
+            right[i, j, k + BY_X] -= by_gap * s
+            right[i, j + 1, k + BY_X] += by_gap * s
+            right[i, j, k + BY_Y] += by_gap * c
+            right[i, j + 1, k + BY_Y] -= by_gap * c
             stencil[CENTRE, i, j] += low
             stencil[ABOVE, i, j] -= high
             stencil[CENTRE, i, j + 1] += high
@@ -278,34 +268,34 @@ def _store(
                 kept += area * growth * states[FRACTION_SLOPE, i, j]
                 by_x, by_y = area * theta * s_v, area * theta * c_v
             if cells[UNKNOWN, i, j] != 0.0:
-                right[i, j, k] -= stored
-                right[i, j, k + 1] -= by_x
-                right[i, j, k + 2] += by_y
+                right[i, j, k + BY_ITSELF] -= stored
+                right[i, j, k + BY_X] -= by_x
+                right[i, j, k + BY_Y] += by_y
                 stencil[CENTRE, i, j] += kept
 
 
 @compiled(makes_arrays=True)
 def _flow_through_ends(
-    numbers: Array, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
+    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
     flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, g = motion.d_x, motion.d_y, motion.g
-    steepness, falls = STEEPNESS / numbers[AMBIENT], np.empty(m)
+    steepness, falls = STEEPNESS / film.scales.ambient, np.empty(m)
     for far in (False, True):
-        kind, j, b, rise, bend = section_end(numbers, k, far)
+        kind, j, b, rise, bend = section_end(film, k, far)
         if kind == CLOSED:
             continue
-        groove = numbers[FAR_PRESSURE] if far else 0.0
+        groove = film.far.pressure if far else 0.0
         if kind == FREE:
-            falls_to_air(numbers, ring, states[PRESSURE], d_x, d_y, far, falls)
+            falls_to_air(film, ring, states[PRESSURE], d_x, d_y, far, falls)
         for i in range(m):
             if cells[UNKNOWN, i, j] == 0.0:
                 continue
             s, c = ring[SIN, i], ring[COS, i]
             h = ring[GAP, i] + d_x * s - d_y * c
             cube, square = h * h * h, 3.0 * h * h
-            unit = numbers[ASPECT] * ring[LENGTH, i] * rise
+            unit = film.aspect * ring[LENGTH, i] * rise
             flow, by_last, by_beyond, by_conductance = end_flow(
                 kind,
                 states[PRESSURE, i, j],
@@ -317,9 +307,9 @@ def _flow_through_ends(
                 falls[i],
             )
             by_gap = g * by_conductance * square * unit
-            right[i, j, k] -= flow
-            right[i, j, k + 1] -= by_gap * s
-            right[i, j, k + 2] += by_gap * c
+            right[i, j, k + BY_ITSELF] -= flow
+            right[i, j, k + BY_X] -= by_gap * s
+            right[i, j, k + BY_Y] += by_gap * c
             stencil[CENTRE, i, j] += by_last * states[PRESSURE_SLOPE, i, j]
             if b > j:
                 stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
@@ -339,7 +329,7 @@ def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> Non
     for i in range(m):
         for j in range(k):
             if cells[UNKNOWN, i, j] == 0.0:
-                fed = -right[i, j, k]
+                fed = -right[i, j, k + BY_ITSELF]
                 flows[SUPPLY_NET] += fed
                 if fed > 0.0:
                     flows[INFLOW] += fed
@@ -354,7 +344,7 @@ def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> Non
 
 @compiled()
 def balances(
-    numbers: Array, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
+    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
     stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
     """The balances of the cells and their derivatives.
@@ -373,10 +363,10 @@ def balances(
                 right[i, j, k + side] = 0.0
     for flow in range(FLOWS):
         flows[flow] = 0.0
-    _flow_around(numbers, ring, width, cells, states, motion, stencil, right, flows)
-    if numbers[BORED] != 0.0:
+    _flow_around(film, ring, width, cells, states, motion, stencil, right, flows)
+    if film.bored:
         _carry_out_of_excess(ring, cells, states, motion, stencil, right, flows)
     _flow_along(ring, cells, states, motion, stencil, right)
     _store(ring, cells, states, motion, past, stencil, right)
-    _flow_through_ends(numbers, ring, cells, states, motion, stencil, right, flows)
+    _flow_through_ends(film, ring, cells, states, motion, stencil, right, flows)
     _hold_given(cells, stencil, right, flows)

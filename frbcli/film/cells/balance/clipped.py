@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from frbcli.compiled import Array, compiled
 from frbcli.film.cells.balance.plain_clipped import CURVED
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE
-from frbcli.film.cells.data import CAVITY, LOAD, PUSH_X, PUSH_Y
+from frbcli.film.cells.data import LOAD, PUSH_X, PUSH_Y
 
 
 @compiled()
@@ -36,12 +38,12 @@ def _above(
 
 @compiled()
 def clipped_push(
-    numbers: Array, ring: Array, cells: Array, states: Array, fields: Array, one: int, other: int
+    film: np.record, ring: Array, cells: Array, states: Array, fields: Array, one: int, other: int
 ) -> tuple[float, float, float, float, float, float]:
     """Force (x, y) over the film's scale after its own change in fields (m, k, k + SIDES), see film_loads, and its
     derivatives by what two layers of fields are changes with: (x, y) of one, (x, y) of the other."""
     m, k = states.shape[1], states.shape[2]
-    cavity = numbers[CAVITY]
+    cavity = film.scales.cavitation
     f_x, f_y, one_x, one_y, other_x, other_y = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for j in range(k):  # four cells in a row: b, p, q, z
         b, one_b, other_b = _above(cavity, states, fields, m - 1, j, one, other)

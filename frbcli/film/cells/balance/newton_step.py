@@ -6,22 +6,19 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
-from frbcli.film.cells.balance.balances import GridMotion, balances
+from frbcli.film.cells.balance.balances import BY_ITSELF, BY_X, BY_Y, GridMotion, balances
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 from frbcli.film.cells.data import (
     AREA,
-    CAVITY,
-    CENTRIFUGAL,
-    CLIPS,
+    BETWEEN_MIDDLES,
     COS,
-    FORCE_SCALE,
     GAP,
     LOAD,
+    NO_CLIP,
     PUSH_X,
     PUSH_Y,
     SIN,
-    SOLVER_AT,
     UNKNOWN,
     VolumeFilms,
 )
@@ -31,27 +28,27 @@ from frbcli.film.cells.elimination.ring_solver import solve_ring_at
 
 @compiled()
 def film_loads(
-    numbers: Array, ring: Array, cells: Array, states: Array, delta: Array,
+    film: np.record, ring: Array, cells: Array, states: Array, delta: Array,
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Force on the journal with the changes delta (m, k, k + SIDES): (x, y) after the film's own change, and its
     derivatives (xx, xy, yx, yy) by the journal's velocities, in N and N s."""
     m, k = states.shape[1], states.shape[2]
-    scale, cavity, clips = numbers[FORCE_SCALE], numbers[CAVITY], numbers[CLIPS] != 0.0
-    if numbers[CLIPS] == 2.0:
-        f_x, f_y, xx, yx, xy, yy = clipped_push(numbers, ring, cells, states, delta, k + 1, k + 2)
+    scale, cavity, clips = film.force_scale, film.scales.cavitation, film.clips != NO_CLIP
+    if film.clips == BETWEEN_MIDDLES:
+        f_x, f_y, xx, yx, xy, yy = clipped_push(film, ring, cells, states, delta, k + BY_X, k + BY_Y)
         return scale * f_x, scale * f_y, scale * xx, scale * xy, scale * yx, scale * yy
     f_x, f_y, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(m):
         p, x, y = 0.0, 0.0, 0.0
         for j in range(k):
             weight, slope = cells[LOAD, i, j], states[PRESSURE_SLOPE, i, j]
-            here = states[PRESSURE, i, j] + slope * delta[i, j, k]
+            here = states[PRESSURE, i, j] + slope * delta[i, j, k + BY_ITSELF]
             if clips and here < cavity:
                 p += weight * cavity
             else:
                 p += weight * here
-                x += weight * slope * delta[i, j, k + 1]
-                y += weight * slope * delta[i, j, k + 2]
+                x += weight * slope * delta[i, j, k + BY_X]
+                y += weight * slope * delta[i, j, k + BY_Y]
         f_x += ring[PUSH_X, i] * p
         f_y += ring[PUSH_Y, i] * p
         xx += ring[PUSH_X, i] * x
@@ -94,14 +91,14 @@ def film_newton(
 
     See balances for the arguments; the layer BEFORE_UPSTREAM of states is given. Returns film_loads.
     """
-    numbers, ring, width, cells = films.numbers[f], films.ring[f], films.width[f], films.cells[f]
+    film, ring, width, cells = films.films[f], films.ring[f], films.width[f], films.cells[f]
     law, spin = np.empty(LAW_NUMBERS), motion.spin
     v_x, v_y = motion.v_x - spin * motion.d_y, motion.v_y + spin * motion.d_x
-    follow_law(numbers, motion.d_x, motion.d_y, v_x, v_y, motion.omega + 2.0 * spin, law)
-    cell_states(numbers, cells, law, numbers[CENTRIFUGAL] * spin * spin, w, states)
-    balances(numbers, ring, width, cells, states, motion, past, stencil, fields, flows)
-    solve_ring_at(numbers[SOLVER_AT], stencil, blocks, fields)
-    return film_loads(numbers, ring, cells, states, fields)
+    follow_law(film, motion.d_x, motion.d_y, v_x, v_y, motion.omega + 2.0 * spin, law)
+    cell_states(film, cells, law, film.centrifugal * spin * spin, w, states)
+    balances(film, ring, width, cells, states, motion, past, stencil, fields, flows)
+    solve_ring_at(film.solver_at, stencil, blocks, fields)
+    return film_loads(film, ring, cells, states, fields)
 
 
 @compiled()

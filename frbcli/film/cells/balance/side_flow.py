@@ -9,8 +9,6 @@ from frbcli.film.cells.balance.balances import end_flow, falls_to_air, section_e
 from frbcli.film.cells.balance.ends import STEEPNESS
 from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import (
-    AMBIENT,
-    ASPECT,
     CLOSED,
     COS,
     FREE,
@@ -25,22 +23,22 @@ from frbcli.film.cells.film import VolumeFilm
 
 @compiled(makes_arrays=True)
 def side_flow(
-    numbers: Array, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, far_open: bool
+    film: np.record, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, far_open: bool
 ) -> float:
     """Outflow through the ends in the film's units, by one section; d: in the frame of its cells."""
     m, k = states.shape[1], states.shape[2]
-    steepness, total, falls = STEEPNESS / numbers[AMBIENT], 0.0, np.empty(m)
+    steepness, total, falls = STEEPNESS / film.scales.ambient, 0.0, np.empty(m)
     for far in (False, True):
-        kind, j, b, rise, bend = section_end(numbers, k, far)
+        kind, j, b, rise, bend = section_end(film, k, far)
         if kind == CLOSED or (far and not far_open):
             continue
         if kind == FREE:
-            falls_to_air(numbers, ring, states[PRESSURE], d_x, d_y, far, falls)
+            falls_to_air(film, ring, states[PRESSURE], d_x, d_y, far, falls)
         for i in range(m):
             if cells[UNKNOWN, i, j] == 0.0:
                 continue
             h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
-            conductance = h * h * h * numbers[ASPECT] * ring[LENGTH, i] * rise
+            conductance = h * h * h * film.aspect * ring[LENGTH, i] * rise
             flow, _, _, _ = end_flow(
                 kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, steepness, falls[i]
             )
@@ -55,7 +53,7 @@ def outflow(film: VolumeFilm, d: tuple[float, float], pressure: Array) -> float:
     states = np.zeros((STATES, *pressure.shape))
     states[PRESSURE] = pressure
     unit = section.copies * section.radius * section.width * section.clearance
-    return unit * float(side_flow(data.numbers[0], data.ring[0], data.cells[0], states, *d, opens_far(film)))
+    return unit * float(side_flow(data.films[0], data.ring[0], data.cells[0], states, *d, opens_far(film)))
 
 
 def opens_far(film: VolumeFilm) -> bool:

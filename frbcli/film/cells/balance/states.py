@@ -8,7 +8,7 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import ECCENTRICITY, MOTION, SPEED, WHIRL, call_cells, call_follow
-from frbcli.film.cells.data import CELLS_AT, FOLLOW_AT, GIVEN_PRESSURE, PARAMETERS, REFERENCE, SCALES_END, UNKNOWN
+from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
 
 # Layers of the states of the cells: of the law, the slopes by w last; and the oil fraction before the cell upstream of
 # the face after each cell, as it is held, see carried.py.
@@ -30,20 +30,20 @@ def whirl_share(d_x: float, d_y: float, v_x: float, v_y: float, speed: float) ->
 
 
 @compiled(makes_arrays=True)
-def follow_law(numbers: Array, d_x: float, d_y: float, v_x: float, v_y: float, speed: float, law: Array) -> None:
+def follow_law(film: np.record, d_x: float, d_y: float, v_x: float, v_y: float, speed: float, law: Array) -> None:
     """law (LAW_NUMBERS,) <- what a film's law is at the displacement d, its rate v and the speed omega_J + omega_S."""
     motion = np.empty(MOTION)
     motion[ECCENTRICITY], motion[SPEED] = math.sqrt(d_x * d_x + d_y * d_y), speed
     motion[WHIRL] = whirl_share(d_x, d_y, v_x, v_y, speed)
-    call_follow(int(numbers[FOLLOW_AT]), numbers[PARAMETERS:], motion, numbers[REFERENCE:SCALES_END], law)
+    call_follow(film.follow_at, film.parameters, motion, film.scales, law)
 
 
 @compiled()
-def cell_states(numbers: Array, cells: Array, law: Array, drop: float, w: Array, states: Array) -> None:
+def cell_states(film: np.record, cells: Array, law: Array, drop: float, w: Array, states: Array) -> None:
     """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law as follow_law has it; all arrays in
     one piece. drop: by which the given pressures are lower than they were made."""
     m, k = w.shape
-    call_cells(int(numbers[CELLS_AT]), m * k, law, numbers[REFERENCE:SCALES_END], w, states)
+    call_cells(film.cells_at, m * k, law, film.scales, w, states)
     for i in range(m):
         for j in range(k):
             if cells[UNKNOWN, i, j] == 0.0:
@@ -71,9 +71,9 @@ def hold(states: Array, omega: float) -> None:
 
 
 @compiled(makes_arrays=True)
-def pressure_of(numbers: Array, law: Array, w: float) -> float:
+def pressure_of(film: np.record, law: Array, w: float) -> float:
     """Pressure of one cell with the unknown w."""
     unknown, state = np.empty(1), np.empty(STATES)
     unknown[0] = w
-    call_cells(int(numbers[CELLS_AT]), 1, law, numbers[REFERENCE:SCALES_END], unknown, state)
+    call_cells(film.cells_at, 1, law, film.scales, unknown, state)
     return float(state[PRESSURE])

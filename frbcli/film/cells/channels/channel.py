@@ -19,7 +19,7 @@ class FeedHole:
 @dataclass(frozen=True)
 class Channel:
     """A bore between two films. inner, outer: its feed holes, the outer one None where it opens to a groove of a gauge
-    pressure in Pa; resistance in Pa s / m^3; centrifugal: in Pa s^2, see CHANNEL_NUMBERS."""
+    pressure in Pa; resistance in Pa s / m^3; centrifugal: in Pa s^2, see CHANNEL."""
 
     inner: FeedHole
     outer: FeedHole | None

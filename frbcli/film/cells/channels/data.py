@@ -13,31 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.film.cells.channels.channel import Channel, FeedHole
-from frbcli.film.cells.data import (
-    CHANNEL_CENTRIFUGAL,
-    CHANNEL_NUMBERS,
-    CONDUCTANCE,
-    EXCHANGE,
-    FEED_HOLE,
-    FEED_HOLE_NUMBERS,
-    FILM,
-    FLOW_SCALE,
-    GROOVE_PRESSURE,
-    INNER,
-    OUTER,
-    PRESSURE_SCALE,
-    RESISTANCE,
-    SLOT,
-    SOLVER_AT,
-    UNKNOWN,
-    VolumeFilms,
-)
+from frbcli.film.cells.data import CHANNEL, EXCHANGE, FEED_HOLE, FEED_HOLES, UNKNOWN, Records, VolumeFilms
 from frbcli.film.cells.elimination.ring_solver import ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.openings import hole_opening
 from frbcli.film.grid import Array
 
-IN_GROOVE = -1.0  # in place of a feed hole
+IN_GROOVE = -1  # in place of a feed hole
 OPENNESS = 1e5  # of a feed hole over its gap, centred: the conductances between channel and film, and along the film
 
 
@@ -49,9 +31,10 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
     channels = [channel for channel in channels if _is_open(films, channel.inner) and _is_open(films, channel.outer)]
     if not channels:
         return data
-    cells, numbers_of_films = data.cells.copy(), data.numbers.copy()
-    numbers_of_films[:, SOLVER_AT] = ring_solver(cells.shape[-1], usual=False)
-    rows, feed_holes, places = np.zeros((len(channels), CHANNEL_NUMBERS)), [], []
+    cells, own = data.cells.copy(), data.films.copy()
+    own["solver_at"] = ring_solver(cells.shape[-1], usual=False)
+    rows: Records = np.zeros(len(channels), CHANNEL)
+    feed_holes, places = [], []
     slots = dict.fromkeys(range(len(films)), 0)
 
     def opened(feed_hole: FeedHole) -> int:
@@ -61,28 +44,25 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
         slots[feed_hole.film] += 1
         size[UNKNOWN][inside], size[EXCHANGE][inside] = 1.0, _conductances(film)[inside]
         size[FEED_HOLE][inside] = 1.0 + slot
-        numbers = np.zeros(FEED_HOLE_NUMBERS)
-        numbers[FILM], numbers[SLOT] = feed_hole.film, slot
-        section = film.section
-        numbers[FLOW_SCALE] = section.copies * section.radius * section.width * section.clearance
-        numbers[PRESSURE_SCALE], numbers[CONDUCTANCE] = section.pressure_scale, size[EXCHANGE][inside].sum()
-        feed_holes.append(numbers)
+        section, conductance = film.section, size[EXCHANGE][inside].sum()
+        flow_scale = section.copies * section.radius * section.width * section.clearance
+        feed_holes.append((feed_hole.film, slot, flow_scale, section.pressure_scale, conductance))
         places.append(np.argwhere(inside))
         return len(feed_holes) - 1
 
     for row, channel in zip(rows, channels, strict=True):
-        row[INNER] = opened(channel.inner)
-        row[OUTER] = IN_GROOVE if channel.outer is None else opened(channel.outer)
-        row[RESISTANCE], row[GROOVE_PRESSURE] = channel.resistance, channel.groove_pressure
-        row[CHANNEL_CENTRIFUGAL] = channel.centrifugal
+        row.inner = opened(channel.inner)
+        row.outer = IN_GROOVE if channel.outer is None else opened(channel.outer)
+        row.resistance, row.groove_pressure = channel.resistance, channel.groove_pressure
+        row.centrifugal = channel.centrifugal
     filled = np.full((len(places), max(map(len, places)), 2), -1, dtype=np.int64)
-    for place, own in zip(filled, places, strict=True):
-        place[: len(own)] = own
+    for place, cells_of in zip(filled, places, strict=True):
+        place[: len(cells_of)] = cells_of
     return data._replace(
-        numbers=numbers_of_films,
+        films=own,
         cells=cells,
         channels=rows,
-        feed_holes=np.array(feed_holes),
+        feed_holes=np.array(feed_holes, FEED_HOLES),
         feed_hole_cells=filled,
     )
 

@@ -10,28 +10,21 @@ from one film and given to the other one, so that no oil is lost however far the
 
 from __future__ import annotations
 
+import numpy as np
+
 from frbcli.compiled import Array, Indices, compiled
 from frbcli.film.cells.balance.balances import CHANNELS_NET, SIDES
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 from frbcli.film.cells.data import (
-    CAVITY,
-    CHANNEL_CENTRIFUGAL,
-    CLIPS,
-    CONDUCTANCE,
+    BETWEEN_MIDDLES,
     EXCHANGE,
     FEED_HOLE,
-    FILM,
-    FLOW_SCALE,
-    FORCE_SCALE,
-    GROOVE_PRESSURE,
-    INNER,
     LOAD,
-    OUTER,
-    PRESSURE_SCALE,
+    NO_CLIP,
     PUSH_X,
     PUSH_Y,
-    RESISTANCE,
+    Records,
 )
 from frbcli.film.cells.elimination.block_cyclic import CENTRE
 
@@ -63,63 +56,67 @@ def ask_of_channels(cells: Array, right: Array) -> None:
 
 
 @compiled()
-def feed_hole_pressure(numbers: Array, cells: Array, law: Array, w: Array, feed_hole: Array, places: Indices) -> float:
+def feed_hole_pressure(
+    film: np.record, cells: Array, law: Array, w: Array, feed_hole: np.record, places: Indices
+) -> float:
     """Mean pressure of the cells of a feed hole, by their conductances."""
     total = 0.0
     for n in range(places.shape[0]):
         i, j = places[n, 0], places[n, 1]
         if i >= 0:
-            total += cells[EXCHANGE, i, j] * pressure_of(numbers, law, w[i, j])
-    return total / float(feed_hole[CONDUCTANCE])
+            total += cells[EXCHANGE, i, j] * pressure_of(film, law, w[i, j])
+    return total / float(feed_hole.conductance)
 
 
 @compiled()
-def _entry(feed_hole: Array) -> float:
+def _entry(feed_hole: np.record) -> float:
     """Resistance between the cells of a feed hole and the channel, Pa s / m^3."""
-    return float(feed_hole[PRESSURE_SCALE] / (feed_hole[FLOW_SCALE] * feed_hole[CONDUCTANCE]))
+    return float(feed_hole.pressure_scale / (feed_hole.flow_scale * feed_hole.conductance))
 
 
 @compiled()
-def channel_pressures(channels: Array, feed_holes: Array, spins: Array, means: Array) -> None:
+def channel_pressures(channels: Records, feed_holes: Records, spins: Array, means: Array) -> None:
     """means (feed_holes,) of the pressures at the feed holes <- the pressures of the channels' ends, in the units of
     their films. spins: (films,) speeds of their grids."""
     for c in range(channels.shape[0]):
-        inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
-        scale, entry = feed_holes[inner, PRESSURE_SCALE], _entry(feed_holes[inner])
-        spin = spins[int(feed_holes[inner, FILM])]
-        fall = -scale * means[inner] - channels[c, CHANNEL_CENTRIFUGAL] * spin * spin
-        resistance = channels[c, RESISTANCE] + entry
+        inner, outer = channels[c].inner, channels[c].outer
+        scale, entry = feed_holes[inner].pressure_scale, _entry(feed_holes[inner])
+        spin = spins[feed_holes[inner].film]
+        fall = -scale * means[inner] - channels[c].centrifugal * spin * spin
+        resistance = channels[c].resistance + entry
         if outer >= 0:
-            fall += feed_holes[outer, PRESSURE_SCALE] * means[outer]
+            fall += feed_holes[outer].pressure_scale * means[outer]
             resistance += _entry(feed_holes[outer])
         else:
-            fall += channels[c, GROOVE_PRESSURE]
+            fall += channels[c].groove_pressure
         flow = fall / resistance
         means[inner] += flow * entry / scale
         if outer >= 0:
-            means[outer] -= flow * _entry(feed_holes[outer]) / feed_holes[outer, PRESSURE_SCALE]
+            means[outer] -= flow * _entry(feed_holes[outer]) / feed_holes[outer].pressure_scale
 
 
 @compiled()
-def follow_means(channels: Array, feed_holes: Array, matrix: Array) -> None:
+def follow_means(channels: Records, feed_holes: Records, matrix: Array) -> None:
     """matrix (feed_holes, n) of changes of the means at the feed holes <- those at the channels' ends, as
     channel_pressures."""
     for c in range(channels.shape[0]):
-        inner, outer = int(channels[c, INNER]), int(channels[c, OUTER])
-        scale, entry = feed_holes[inner, PRESSURE_SCALE], _entry(feed_holes[inner])
-        resistance = channels[c, RESISTANCE] + entry
+        inner, outer = channels[c].inner, channels[c].outer
+        scale, entry = feed_holes[inner].pressure_scale, _entry(feed_holes[inner])
+        resistance = channels[c].resistance + entry
         if outer >= 0:
             resistance += _entry(feed_holes[outer])
         for n in range(matrix.shape[1]):
             flow = -scale * matrix[inner, n] / resistance
             if outer >= 0:
-                flow += feed_holes[outer, PRESSURE_SCALE] * matrix[outer, n] / resistance
-                matrix[outer, n] -= flow * _entry(feed_holes[outer]) / feed_holes[outer, PRESSURE_SCALE]
+                flow += feed_holes[outer].pressure_scale * matrix[outer, n] / resistance
+                matrix[outer, n] -= flow * _entry(feed_holes[outer]) / feed_holes[outer].pressure_scale
             matrix[inner, n] += flow * entry / scale
 
 
 @compiled()
-def mean_changes(cells: Array, states: Array, fields: Array, feed_hole: Array, places: Indices, changes: Array) -> None:
+def mean_changes(
+    cells: Array, states: Array, fields: Array, feed_hole: np.record, places: Indices, changes: Array
+) -> None:
     """changes (SIDES + slots,) <- those of the mean pressure of a feed hole with the layers of fields, see
     film_newton."""
     k = fields.shape[1]
@@ -128,27 +125,27 @@ def mean_changes(cells: Array, states: Array, fields: Array, feed_hole: Array, p
     for n in range(places.shape[0]):
         i, j = places[n, 0], places[n, 1]
         if i >= 0:
-            share = cells[EXCHANGE, i, j] * states[PRESSURE_SLOPE, i, j] / feed_hole[CONDUCTANCE]
+            share = cells[EXCHANGE, i, j] * states[PRESSURE_SLOPE, i, j] / feed_hole.conductance
             for layer in range(changes.shape[0]):
                 changes[layer] += share * fields[i, j, k + layer]
 
 
 @compiled()
 def push_of_channel(
-    numbers: Array, ring: Array, cells: Array, states: Array, fields: Array, slot: int,
+    film: np.record, ring: Array, cells: Array, states: Array, fields: Array, slot: int,
 ) -> tuple[float, float]:  # fmt: skip
     """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
     m, k = states.shape[1], states.shape[2]
-    if numbers[CLIPS] == 2.0:
-        _, _, x, y, _, _ = clipped_push(numbers, ring, cells, states, fields, k + SIDES + slot, k + SIDES + slot)
-        return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y
-    clips, x, y = numbers[CLIPS] != 0.0, 0.0, 0.0
+    if film.clips == BETWEEN_MIDDLES:
+        _, _, x, y, _, _ = clipped_push(film, ring, cells, states, fields, k + SIDES + slot, k + SIDES + slot)
+        return film.force_scale * x, film.force_scale * y
+    clips, x, y = film.clips != NO_CLIP, 0.0, 0.0
     for i in range(m):
         p = 0.0
         for j in range(k):
             slope = states[PRESSURE_SLOPE, i, j]
-            if not (clips and states[PRESSURE, i, j] + slope * fields[i, j, k] < numbers[CAVITY]):
+            if not (clips and states[PRESSURE, i, j] + slope * fields[i, j, k] < film.scales.cavitation):
                 p += cells[LOAD, i, j] * slope * fields[i, j, k + SIDES + slot]
         x += ring[PUSH_X, i] * p
         y += ring[PUSH_Y, i] * p
-    return numbers[FORCE_SCALE] * x, numbers[FORCE_SCALE] * y
+    return film.force_scale * x, film.force_scale * y

@@ -24,15 +24,15 @@ _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(*[types.intp] * 3, *[_POINTER] * 3)
 
 
-def ring_solver(k: int, usual: bool = True) -> float:
-    """The address of an elimination for columns of k cells, as a number of a film.
+def ring_solver(k: int, usual: bool = True) -> int:
+    """Address of an elimination for columns of k cells.
 
     usual: with the right-hand sides of a film that shares no oil with others."""
     return _address(k if usual and k in _LENGTHS else ANY)
 
 
 @cache
-def _address(length: int) -> float:
+def _address(length: int) -> int:
     return address_of(c_function(_LENGTHS.get(length, _any), _SIGNATURE, Path(__file__)))
 
 
@@ -84,7 +84,7 @@ _call: Any = intrinsic(_call_solver)
 
 
 @compiled()
-def solve_ring_at(address: float, stencil: Array, blocks: Array, fields: Array) -> None:
+def solve_ring_at(address: int, stencil: Array, blocks: Array, fields: Array) -> None:
     """solve_blocks, by the address that ring_solver tells."""
     m, k, n = fields.shape
-    _call(int(address), m, k, n, stencil, blocks, fields)
+    _call(address, m, k, n, stencil, blocks, fields)

@@ -1,0 +1,21 @@
+"""How the grid of a film stands in the time loop, and how far its cells have come in a stage."""
+
+from __future__ import annotations
+
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
+from frbcli.film.cells.data import record
+
+# A film in the loop: the angle at which its grid stands, and its speed; where the journal is in it (x, y); whether its
+# cells balance (see OPEN); how far the journals were moved last, and that over the time before; the stage; its law as
+# follow_law has it.
+GRID = record(
+    ("turn", "f8"),
+    ("speed", "f8"),
+    ("x", "f8"),
+    ("y", "f8"),
+    ("moved", "f8"),
+    ("ratio", "f8"),
+    ("balance", "i8"),
+    ("stage", "i8"),
+    ("law", "f8", (LAW_NUMBERS,)),
+)

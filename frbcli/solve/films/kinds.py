@@ -1,0 +1,44 @@
+"""Which kind of films the time loop has: asked here alone, by the types of the films, when the loop is compiled.
+
+- none at all, an empty tuple;
+- a tuple of FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
+- VolumeFilms, all films together: cells with unknowns of their own, see cells.py;
+- ElementFilm, the one film of a machine: elements of the published two-phase form, see elements.py.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from numba import types
+from numba.extending import overload
+
+from frbcli.compiled import AS_KERNELS
+from frbcli.film.cells.data import VolumeFilms
+from frbcli.film.published.data import ElementFilm
+
+NONE, TABLES, CELLS, ELEMENTS = "none", "tables", "cells", "elements"
+_KINDS = {VolumeFilms: CELLS, ElementFilm: ELEMENTS}
+
+
+def kind_of(films: Any) -> str:
+    """The kind of films, or of a type of films that the compiler knows."""
+    if isinstance(films, types.BaseTuple) and not isinstance(films, types.BaseNamedTuple) and len(films) == 0:
+        return NONE
+    return _KINDS.get(getattr(films, "instance_class", type(films)), TABLES)
+
+
+def by_kind(
+    question: Callable[..., Any], *, others: Callable[..., Any], inline: bool = False, **answers: Callable[..., Any]
+) -> None:
+    """A question that kernels ask the films, its argument `films`, is compiled as the answer of their kind: that under
+    the name of the kind, else `others`. inline: the answer is put into the functions that ask."""
+    at = list(inspect.signature(question).parameters).index("films")
+    how: dict[str, Any] = {"inline": "always"} if inline else {"jit_options": AS_KERNELS}
+
+    def answer(*given: Any) -> Callable[..., Any]:
+        return answers.get(kind_of(given[at]), others)
+
+    overload(question, strict=False, **how)(answer)
