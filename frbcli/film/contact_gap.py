@@ -22,8 +22,8 @@ def closes_freely_until(contact_eccentricity: float) -> float:
 def contact_gap(
     begins: float, d_x: float, d_y: float, v_x: float, v_y: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """What a film feels of a journal beyond the eccentricity `begins`, see closes_freely_until; d: displacement over
-    the clearance, v: its rate.
+    """The motion that a film feels of a journal beyond the eccentricity `begins`, see closes_freely_until; d:
+    displacement over the clearance, v: its rate.
 
     The felt eccentricity goes on as begins + room tanh((eps - begins) / room), room = (1 - KEPT) (1 - begins): its
     slope falls from 1 to 0, so that the gap, its rate and with them the force have no jump. The felt velocity is the

@@ -184,7 +184,7 @@ def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Arr
 
 
 def _apart(cuts: Array) -> Array:
-    """Those of the sorted angles (n,) within a turn that do not fall together with the one before."""
+    """The sorted angles (n,) within a turn without those that coincide with the one before."""
     turn = np.append(cuts[-1] - 2 * np.pi, cuts)
     kept = cuts[np.diff(turn) > ON_EDGE]
     return kept if len(kept) else cuts[:1]

@@ -1,4 +1,4 @@
-"""What operation makes of a bearing: strains of its parts, its warm gap, Reynolds and Sommerfeld number.
+"""A bearing in operation: strains of its parts, its warm gap, Reynolds and Sommerfeld number.
 
 Strains are those of a surface's radius, its displacement over it, in the plane stress state of table A.2. Temperatures
 are differences to those at which the parts were measured, in K.
@@ -33,12 +33,12 @@ def friction_coefficient(torque: float, force: float, radius: float) -> float:
 
 
 def shaft_rotation_strain(solid: Solid, omega: float, radius: float) -> float:
-    """Of the surface of a solid shaft with a radius in m that turns with omega in rad/s."""
+    """Strain of the surface of a solid shaft with a radius in m that turns with omega in rad/s."""
     return 0.25 * solid.density * (omega * radius) ** 2 * (1.0 - solid.poisson) / solid.modulus
 
 
 def ring_rotation_strains(solid: Solid, omega: float, inner: float, outer: float) -> tuple[float, float]:
-    """Of the inner and the outer surface of a ring with these radii in m that turns with omega in rad/s."""
+    """Strains of the inner and the outer surface of a ring with these radii in m that turns with omega in rad/s."""
     scale = 0.25 * solid.density * omega**2 / solid.modulus
     near, across = 1.0 - solid.poisson, 3.0 + solid.poisson
     return scale * (across * outer**2 + near * inner**2), scale * (near * outer**2 + across * inner**2)

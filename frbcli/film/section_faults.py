@@ -1,4 +1,4 @@
-"""What cannot be solved on a section, said before it is tried."""
+"""Faults of a section that cannot be solved, found before it is tried."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MOST_OPENED = 1.0 - 1e-6  # of a section by its openings: beyond, no film is lef
 
 
 class SectionFault(NamedTuple):
-    """What is wrong with a section, and what helps."""
+    """A fault of a section, and its remedy."""
 
     problem: str
     remedy: str
@@ -109,7 +109,7 @@ def _opened(section: Section) -> float:
 
 
 def _reach(section: Section, hole: Hole) -> str:
-    """How far a hole leaves the film, nothing if it does not: it may cross the plane of
+    """The place of a hole that leaves the film, else nothing: it may cross the plane of
     symmetry, where its other half lies, but no open end."""
     low, high = hole.axial - hole.half_width, hole.axial + hole.half_width
     tolerance = 1e-9 * section.width

@@ -1,4 +1,4 @@
-"""Where the time loop finds what the films of a machine carry along: positions in their arrays."""
+"""Layers of the arrays in which the time loop keeps the state of films."""
 
 from __future__ import annotations
 

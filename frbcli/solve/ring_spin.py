@@ -1,4 +1,4 @@
-"""How floating rings turn in one stage of the time loop: speeds of their films, torques on them. Compiled."""
+"""Rotation of floating rings in one stage of the time loop: speeds of their films, torques on them. Compiled."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Rings(NamedTuple):
 
 
 def make_rings(count: int) -> Rings:
-    """For so many rings, all at rest."""
+    """The given number of rings, all at rest."""
     return Rings(np.zeros(1 + count), np.zeros(1 + count), np.zeros(count), np.zeros(count))
 
 

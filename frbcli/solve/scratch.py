@@ -16,7 +16,7 @@ from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
 
 class Scratch(NamedTuple):
     """selection (m, n): the journals' displacements from the rotor's; products, loads, spread, compliance, elimination:
-    see prepare of inverse.py; at (STAGE_ROWS, n), journal (JOURNAL_ROWS, m): rows of stage.py; stage_v, stage_a
+    see prepare of inverse.py; at (STAGE_ROWS, n), journal (JOURNAL_ROWS, m): rows of equations.py; stage_v, stage_a
     (n, stages)."""
 
     selection: Array
@@ -32,7 +32,7 @@ class Scratch(NamedTuple):
 
 
 def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
-    """Scratch for a rotor; its inverse is the one that the numbers tell of, if any."""
+    """Scratch for a rotor; its inverse is the one noted in the numbers, if any."""
     n, m = rotor.mass.shape[0], 2 * rotor.clearances.shape[0]
     scratch = Scratch(
         np.ascontiguousarray(rotor.journals.reshape(m, n)),

@@ -1,4 +1,4 @@
-"""What the time loop is given and what it carries along: all of it arrays, so that the loop is compiled once."""
+"""Data and state of the time loop: all of it arrays, so that the loop is compiled once."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class RotorData(NamedTuple):
 
 
 class Control(NamedTuple):
-    """What the time loop may do. tolerance: local error of a displacement over the clearance; longest_step in s;
+    """Limits of the time loop. tolerance: local error of a displacement over the clearance; longest_step in s;
     steps_per_revolution: at least; output_step in s; contact_eccentricity; contact_stiffness in N/m, 0: stop there;
     linearised: a film is solved once in a stage, at its guess, and its force then followed by its derivatives (5.1)."""
 
@@ -84,8 +84,8 @@ class State(NamedTuple):
 
 
 class LoopOutput(NamedTuple):
-    """What the time loop writes, one row for each output time: displacements q and velocities v (rows, n), the mean oil
-    fraction (4.46) of films that keep their oil (rows, films), and of a machine with heat what heat.py tells."""
+    """Output of the time loop, one row for each output time: displacements q and velocities v (rows, n), the mean oil
+    fraction (4.46) of films that keep their oil (rows, films), and of a machine with heat the columns of heat.py."""
 
     q: Array
     v: Array
@@ -93,10 +93,10 @@ class LoopOutput(NamedTuple):
     heat: Array
 
     def after(self, row: int) -> LoopOutput:
-        """What is left behind so many rows."""
+        """The rows from `row` on."""
         return LoopOutput(self.q[row:], self.v[row:], self.oil[row:], self.heat[row:])
 
 
 def make_output(rows: int, n: int, films: int = 0, columns: int = 0) -> LoopOutput:
-    """For a rotor with n degrees of freedom and so many films that keep their oil; columns of heat."""
+    """Output of a rotor with n degrees of freedom, of films that keep their oil, and with columns of heat."""
     return LoopOutput(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, films)), np.zeros((rows, columns)))

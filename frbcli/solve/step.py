@@ -1,4 +1,5 @@
-"""What all time loops do around the stages of a step: its length, its error, its end, its output, the next. Compiled.
+"""The parts of all time loops around the stages of a step: its length, its error, its end, its output, the next.
+Compiled.
 
 The functions are given few arrays each: to pass a tuple of many costs more than they do.
 """

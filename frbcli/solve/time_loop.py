@@ -1,7 +1,7 @@
 """The time loop: rotor and films advanced together by an implicit Runge-Kutta method with error control. Compiled.
 
-A step is a few stages (stage.py) and what all loops do around them (step.py). All that it is given and carries along
-is in state.py, the methods in tableau.py.
+A step is a few stages (stage/) and what all loops do around them (step.py). All that it is given and carries along is
+in state.py, the methods in tableau.py.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
 
 
 class Own(NamedTuple):
-    """What this loop works in beside the Scratch of the stages: newton (m, m); past (HISTORY + stages - 1, 1 + m) times
+    """Scratch of this loop beside that of the stages: newton (m, m); past (HISTORY + stages - 1, 1 + m) times
     and journals' velocities; q_new (n,)."""
 
     newton: Array
@@ -54,7 +54,7 @@ class Own(NamedTuple):
 
 
 class Space(NamedTuple):
-    """All that this loop works in; work: of the films, see make_work. In kernels its parts are taken by their names: of
+    """All scratch of this loop; work: of the films, see make_work. In kernels its parts are taken by their names: of
     tuples of tuples that are unpacked, numba releases the arrays too early."""
 
     scratch: Scratch
@@ -63,7 +63,7 @@ class Space(NamedTuple):
 
 
 def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: Any) -> Space:
-    """For a machine in a state, which its heat has changed."""
+    """Scratch for a machine in a state, which its heat has changed."""
     n, m = rotor.mass.shape[0], 2 * rotor.clearances.shape[0]
     begin_heat(heat, films, rotor, state.wet)
     own = Own(

@@ -24,9 +24,9 @@ DRAG, LEAVES, NOTES = range(3)  # rows that are noted of each film: drag_integra
 
 
 class Notes(NamedTuple):
-    """Of a run that records more: now (n + NOTES films,) the rotor's accelerations and what is noted of its films, at
-    the end of the last step, not a number before the first one; rows (rows, the same): at the output times; far_open
-    (films,): whether the end z = 1 of the sections of films on cells is open."""
+    """Records of a run beside its motion: now (n + NOTES films,) the rotor's accelerations and what is noted of its
+    films, at the end of the last step, not a number before the first one; rows (rows, the same): at the output times;
+    far_open (films,): whether the end z = 1 of the sections of films on cells is open."""
 
     now: Array
     rows: Array
@@ -37,7 +37,7 @@ def advance_watched(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: LoopOutput,
     heat: Any, notes: Notes,
 ) -> tuple[int, int]:  # fmt: skip
-    """As advance of time_loop.py, with notes."""
+    """Advance the state, see advance of time_loop.py, and take notes."""
     space = make_space(rotor, films, state, tableau.times.shape[0], heat)
     status, rows = _advance_watched(rotor, films, tableau, control, state, space, budget, output, heat, notes)
     return int(status), int(rows)

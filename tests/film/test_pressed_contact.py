@@ -100,7 +100,7 @@ ALL = [*TABULATED, "penalty, cells", "two-phase, cells", "published"]
 # Films without a pressure of their own, which no work can be taken from where nothing turns.
 PASSIVE = [*films.EQUAL_PRESSURES, "penalty", "penalty, cells"]
 
-Pressed = Callable[[Array, Array], Array]  # displacement and velocity over the clearance -> rows of stage.py
+Pressed = Callable[[Array, Array], Array]  # displacement and velocity over the clearance -> rows of equations.py
 
 
 @functools.cache

@@ -1,4 +1,4 @@
-"""What is asked of a bearing model before anything runs: finite forces everywhere, derivatives that are those."""
+"""A bearing model is checked before anything runs: finite forces everywhere, derivatives that are those."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def model_film(model: BearingModel, dimensions: BearingDimensions, values: tuple
 
 
 def problem_of(model: BearingModel, film: BearingModelFilm, omega: float) -> str:
-    """What is wrong with the forces of a bearing whose journal turns with up to omega in rad/s, or nothing."""
+    """Fault of the forces of a bearing whose journal turns with up to omega in rad/s, or nothing."""
     for place, motion, speed in itertools.product(PLACES, MOTIONS, dict.fromkeys((0.0, omega))):
         state = _state(place, motion, speed)
         if not np.all(np.isfinite(film_force(film._replace(central=1), *state))):
@@ -44,7 +44,7 @@ def problem_of(model: BearingModel, film: BearingModelFilm, omega: float) -> str
 
 
 def fingerprint(film: BearingModelFilm, omega: float) -> str:
-    """Of the forces of a bearing, to nine digits: models of one name that differ have different ones."""
+    """Digest of the forces of a bearing, to nine digits: models of one name that differ have different ones."""
     states = (_state(place, motion, omega) for place, motion in itertools.product(PLACES, MOTIONS))
     forces = np.array([film_force(film, *state)[:2] for state in states])
     sizes = np.hypot(forces[:, 0], forces[:, 1])[:, None]
@@ -54,7 +54,8 @@ def fingerprint(film: BearingModelFilm, omega: float) -> str:
 
 
 def _wrong_derivatives(film: BearingModelFilm, omega: float) -> str:
-    """At every state that is compared: a force that has a corner at one of them is not wrong."""
+    """Whether the derivatives are wrong at every state that is compared: a force that has a corner at one of them is
+    not wrong."""
     told = ""
     for place, motion in zip(COMPARED, MOTIONS, strict=True):
         state = _state(place, motion, omega)

@@ -78,7 +78,7 @@ def _checked(model: BearingModel, name: str, function: Any, record: Any, count: 
 
 
 def _reason(error: BaseException) -> str:
-    """What numba says, on one line: the first that is about the function."""
+    """First line of numba's message that is about the function."""
     lines = [line.strip() for line in str(error).splitlines()]
     told = [line for line in lines if line and not line.startswith(("Failed in", ">>>"))]
     places = [line for line in told if line.startswith("File ")]
@@ -87,7 +87,7 @@ def _reason(error: BaseException) -> str:
 
 
 def _by_derivatives(central, d_x, d_y, v_x, v_y, omega, given, answer):  # type: ignore[no-untyped-def]
-    """The ten numbers of a model that tells its derivatives."""
+    """The ten numbers of a model with derivatives of its own."""
     out = carray(answer, (NUMBERS,))
     for i in range(NUMBERS):
         out[i] = np.nan  # what is left where a function raises an exception, which C does not know

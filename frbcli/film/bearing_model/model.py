@@ -1,4 +1,4 @@
-"""What a bearing model is: the force of one whole bearing as a function of displacement, velocity and speed."""
+"""A bearing model: the force of one whole bearing as a function of displacement, velocity and speed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from frbcli.film.cavitation.law import Key
 
 @dataclass(frozen=True)
 class BearingDimensions:
-    """What the case says of a bearing, SI units: the first fields of the record that a model's functions take.
+    """Dimensions of a bearing from its case, SI units: the first fields of the record that a model's functions take.
 
     width: of the whole bearing; clearance: radial; sections: equal rectangles of the developed gap side by side, 2 with
     a circumferential groove in the middle, else 1; section_width: width / sections; pressures are absolute, that of the

@@ -65,7 +65,7 @@ class Barotropic(Law):
 
     @staticmethod
     def empty(parameters: Numbers, scales: Scales) -> float:
-        """Where the mixture ends and the vapour begins."""
+        """w at which the mixture ends and the vapour begins."""
         return parameters[4] - 1.0 + parameters[0] * parameters[5] / scales.reference
 
     def cells(self, w: Array, scales: Scales) -> CellState:
@@ -97,7 +97,7 @@ class Barotropic(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """As `cells`."""
+        """State of one cell, see `cells`."""
         tension, r, liquid, vapour, emptied, lowest = parameters
         share = tension / scales.reference
         bottom = emptied - 1.0 + share * lowest

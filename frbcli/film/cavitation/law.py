@@ -1,4 +1,4 @@
-"""What a cavitation law is: one class in one file, which declares and computes everything that is particular to it."""
+"""A cavitation law: one class in one file, which declares and computes everything that is particular to it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CellState:
-    """What a law says of cells with the unknown w, arrays of its shape: pressure over the ambient pressure, scaled, in
+    """State of cells with the unknown w, arrays of its shape: pressure over the ambient pressure, scaled, in
     1/s; oil fraction theta; source of oil in 1/s; and the derivatives of the three by w."""
 
     pressure: Array
@@ -33,8 +33,8 @@ class Scales(NamedTuple):
 
 
 class FilmOil(NamedTuple):
-    """What a law may need of a film: scale, 12 eta / psi^2 in Pa s, which a pressure is divided by to be scaled;
-    ambient and cavitation pressure, absolute, in Pa; density of the full oil in kg / m^3."""
+    """Properties of a film that a law may need: scale, 12 eta / psi^2 in Pa s, which a pressure is divided by to be
+    scaled; ambient and cavitation pressure, absolute, in Pa; density of the full oil in kg / m^3."""
 
     scale: float
     ambient: float
@@ -153,7 +153,7 @@ class Law:
 
     @property
     def parameters(self) -> Numbers:
-        """Its numbers, as `cell` takes them."""
+        """Numbers of the law in the order in which `cell` takes them."""
         return tuple(float(getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
 
     def followed(self, eccentricity: float, speed: float, whirl: float = 0.0) -> Self:

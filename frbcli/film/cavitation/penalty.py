@@ -92,7 +92,7 @@ class Penalty(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """As `cells`, without a branch, so that cells are computed side by side."""
+        """State of one cell, see `cells`, without a branch, so that cells are computed side by side."""
         a, b = parameters[0], parameters[1]
         per_b = 1.0 / b
         target = w * scales.reference

@@ -32,7 +32,7 @@ class Sommerfeld(Law):
 
 @dataclass(frozen=True)
 class HalfSommerfeld(Sommerfeld):
-    """The same, and loads take no pressure below p_cav."""
+    """Reynolds' equation without cavitation; the loads take no pressure below p_cav (3.29)."""
 
     name = "half-sommerfeld"
     label = "half-Sommerfeld"

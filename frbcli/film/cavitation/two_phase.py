@@ -71,7 +71,7 @@ class TwoPhase(Law):
 
     @staticmethod
     def empty(parameters: Numbers, scales: Scales) -> float:
-        """Where the step begins."""
+        """w at which the step begins."""
         steepness, outer_slope, _ = parameters
         absolute = scales.cavitation + scales.ambient
         return outer_slope * (2.0 * steepness - 1.0) - 1.0 - 2.0 * (1.0 - steepness) * absolute / scales.reference

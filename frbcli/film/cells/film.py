@@ -14,7 +14,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
-ABOVE_KINK = 1e-300  # of an unknown: no pressure worth the name, but a full cell
+ABOVE_KINK = 1e-300  # of an unknown: a negligible pressure, but a full cell
 HALVINGS = 60  # of the interval in which the unknown of a cell with a given oil fraction lies
 
 __all__ = [
@@ -45,7 +45,7 @@ class Flows:
 
     @property
     def defect(self) -> float:
-        """What does not balance, over the larger of inflow and outflow; oil that the law makes is such."""
+        """Residual of the oil balance over the larger of inflow and outflow; oil that the law makes is such."""
         size = max(self.inflow, self.outflow, abs(self.stored), self.still)
         return (self.inflow - self.outflow - self.stored) / size if size > 0.0 else 0.0
 

@@ -1,4 +1,4 @@
-"""What a film on volumes does to journal and shell, and where its oil goes: forces, torques, pressures, flows."""
+"""Forces, torques, pressures and oil flows of a film on cells."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ class Torque:
 
     @property
     def journal(self) -> float:
-        """On the journal."""
+        """Torque on the journal."""
         return self.couette + self.poiseuille
 
     @property
     def shell(self) -> float:
-        """On the shell, as section 3.2.4 has it: the shear at its surface, in the journal's sense of rotation."""
+        """Torque on the shell (section 3.2.4): the shear at its surface, in the journal's sense of rotation."""
         return self.couette - self.poiseuille
 
 

@@ -26,7 +26,7 @@ class Motion:
 
     @property
     def rate(self) -> float:
-        """How fast the gap changes, in 1/s: what drives pressure and flow."""
+        """Rate of change of the gap in 1/s, which drives pressure and flow."""
         return max(0.5 * abs(self.omega), math.hypot(*self.v), 1e-3)
 
 

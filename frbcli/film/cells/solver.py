@@ -106,7 +106,7 @@ class FilmSolver:
         return solution, gap * solution.state.fraction
 
     def _solve(self, motion: Motion, start: Array, storage: Storage) -> VolumeSolution:
-        """By the first of ATTEMPTS that gets there."""
+        """Solve by the first of ATTEMPTS that converges."""
         spent, failure = 0, ""
         start = np.ascontiguousarray(start, dtype=np.float64)  # as the kernels take it
         for attempt in ATTEMPTS:
@@ -182,7 +182,7 @@ class FilmSolver:
         return terms
 
     def _solution(self, motion: Motion, w: Array, storage: Storage, iterations: int) -> VolumeSolution:
-        """Of the cells that the arrays of the solver hold."""
+        """The solution that the arrays of the solver hold."""
         film, (pressure, fraction, source) = self.film, self._states[:PRESSURE_SLOPE]
         state = CellState(*self._states[:BEFORE_UPSTREAM].copy())
         if film.law.clips:  # so do the flows, as the loads

@@ -36,8 +36,8 @@ def steady_solution(film: VolumeFilm, motion: Motion, start: Array | None = None
 def steady_force(
     film: VolumeFilm, displacement: Array, velocity: Array, omega: float, start: Array | None = None
 ) -> FilmForce:
-    """As film.bearing.evaluate, for a film whose oil has settled. start: (m, k) field of a motion near by, if one is
-    known. Raises NotConverged."""
+    """Force and derivatives of a film whose oil has settled, in SI units. start: (m, k) field of a motion near by, if
+    one is known. Raises NotConverged."""
     c = film.section.clearance
     d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)

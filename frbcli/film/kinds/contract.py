@@ -1,4 +1,4 @@
-"""What all kinds of films answer: a machine is asked by these functions alone, whatever its films are.
+"""The contract of all kinds of films: a machine uses its films by these functions alone.
 
 Film i has a journal whose displacement `place` (2,) in m and velocity `rate` (2,) in m/s are relative to its shell;
 `total` is omega_J + omega_S, `slip` omega_J - omega_S, in rad/s. Forces act on the journal, by a whole bearing.
@@ -72,7 +72,7 @@ class Films(ABC):
 
     @property
     def compared_states(self) -> int | None:
-        """At how many of the samples of a run that is done, where it takes long; None: at all."""
+        """Number of samples of a run at which forces are compared where that takes long; None: at all of them."""
         return None
 
     def counted_share(self, ring_count: int) -> float:
@@ -108,11 +108,11 @@ class Films(ABC):
 
     @abstractmethod
     def heat_ends(self) -> Any:
-        """What the heat of the time loop takes to know the oil that leaves."""
+        """Data from which the heat of the time loop computes the oil that leaves."""
 
     @property
     def end_flows(self) -> tuple[EndFlow, ...]:
-        """The oil that leaves as it follows from the motion; empty where the films tell it themselves."""
+        """The oil that leaves as it follows from the motion; empty where it is part of the films' state."""
         return ()
 
     @property
@@ -138,7 +138,7 @@ class Films(ABC):
         return self
 
     def scaled(self, scales: Array, clearances: Array) -> Self | None:
-        """The same films with other clearances (films,) in m, and with tables that serve when velocities are multiplied
+        """These films with other clearances (films,) in m, and with tables that serve when velocities are multiplied
         by scales (films,); None where they have to be made anew."""
         return None
 

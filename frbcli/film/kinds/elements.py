@@ -85,7 +85,7 @@ class ElementFilms(Films):
         return wet, flows
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
-        """What it creates, over what has passed through, or over what the full film holds if less has passed."""
+        """Oil that the film creates, over what has passed through, or over what the full film holds if that is more."""
         full = self.data.volume * float((self.data.open_area * self.data.height).sum())
         return abs(self._created(flows)) / max(float(flows[PASSED, 0, [CAME, LEFT]].max()), full)
 

@@ -20,7 +20,7 @@ class NoFilms(Films):
 
     @property
     def loop(self) -> Any:
-        """What the time loop takes."""
+        """No films for the time loop."""
         return ()
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:

@@ -36,7 +36,7 @@ class MeanFilm(NamedTuple):
 def mean_force(
     film: MeanFilm, eccentricity: float, w_r: float, w_t: float, omega: float,
 ) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
-    """As table_force.
+    """Force and derivatives, see table_force.
 
     Between the middles of two cells pressure and weight are straight lines, and the integral of the part above the
     level is exact: so the force has continuous derivatives.

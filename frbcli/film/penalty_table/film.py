@@ -73,7 +73,7 @@ class SourceFilm:
 
     @property
     def numbers(self) -> Array:
-        """Of the table, see table_numbers."""
+        """Numbers of the table, see table_numbers."""
         return table_numbers(self.law.steepness, self.relative)
 
     def forces(self, eccentricity: float, velocities: Array) -> Array:
@@ -128,7 +128,7 @@ def force_scale(section: Section) -> float:
 
 
 def _half(section: Section, along: int) -> tuple[Section, int]:
-    """Half of a section that is symmetric about its own middle, and the cells along it."""
+    """The half of a section that is symmetric about its own middle, and the cells along it."""
     if section.far == "symmetry":
         return section, max(2, (along + 1) // 2)
     if section.far_pressure != 0.0:

@@ -178,7 +178,7 @@ def _basis(s: float) -> tuple[float, float, float, float, float, float, float, f
 def spline(
     table: Array, i: int, j: int, k: int, a: float, b: float, c: float,
 ) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
-    """Of both components, one after the other: value and derivatives by the three axes, in steps, at (a, b, c) in the
+    """Both components, one after the other: value and derivatives by the three axes, in steps, at (a, b, c) in the
     cell (i, j, k)."""
     basis_a, basis_b = _basis(a), _basis(b)
     c0, c1, c2, c3, d0, d1, d2, d3 = _basis(c)

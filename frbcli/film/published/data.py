@@ -20,7 +20,7 @@ RIGHTS = 3  # what is missing, and its derivatives by both velocities
 
 
 class ElementFilm(NamedTuple):
-    """What does not change in a run. unknowns: of the nodes; weights (nodes, 2): force on the journal in N per scaled
+    """A film as it stays in a run. unknowns: of the nodes; weights (nodes, 2): force on the journal in N per scaled
     pressure; height, slope (e, 9): H and dH/dphi of the centred journal at the points; open_area (e, 9): of the
     points outside of grooves and holes; volume: R b C of the whole bearing in m^3; along: elements."""
 

@@ -53,7 +53,7 @@ class PublishedFilm:
         self._newton = Newton(self.mesh, self.elements, self.step_law)
 
     def coarser(self) -> PublishedFilm:
-        """The same film on half as many elements each way, as far as there are so many."""
+        """The film on half as many elements each way, as far as there are so many."""
         elements = max(3, self.mesh.around // 2), max(1, self.mesh.along // 2)
         return PublishedFilm(self.section, self.law, self._diffusion, *elements)
 
@@ -157,7 +157,7 @@ class PublishedFilm:
 
 
 def published_force(film: PublishedFilm, displacement: Array, velocity: Array, omega: float) -> FilmForce:
-    """As film.bearing.evaluate, for a film that has settled: SI units. Raises NotConverged."""
+    """Force and derivatives of a film that has settled, in SI units. Raises NotConverged."""
     c = film.section.clearance
     d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
     found = film.steady(Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)).response

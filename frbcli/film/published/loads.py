@@ -17,8 +17,8 @@ from frbcli.film.published.solution import PublishedSolution
 
 @dataclass(frozen=True)
 class OilFlows:
-    """Of the whole bearing in m^3/s: in and out at ends, grooves and holes, summed node by node; supply, fed net by
-    grooves and holes; ends, leaving net there; stored, by which the oil in the film grows."""
+    """Oil flows of the whole bearing in m^3/s: in and out at ends, grooves and holes, summed node by node; supply, fed
+    net by grooves and holes; ends, leaving net there; stored, by which the oil in the film grows."""
 
     inflow: float
     outflow: float

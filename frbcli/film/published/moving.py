@@ -73,7 +73,7 @@ def residual(
 
 @compiled(internal=True)
 def force(film: ElementFilm, room: Room) -> tuple[float, float]:
-    """On the journal, by the PRESSURE of the room."""
+    """Force on the journal by the PRESSURE of the room."""
     f_x, f_y, pressure = 0.0, 0.0, room.nodes[PRESSURE]
     for i in range(len(pressure)):
         f_x += film.weights[i, 0] * pressure[i]
@@ -179,7 +179,7 @@ def oil_passing(
 
 @compiled(internal=True)
 def _carried(elements: Elements, step: Step, pressure: Any, e: int, gap: Gap) -> float:
-    """What the surfaces carry out of a groove or hole in element e, net."""
+    """Oil that the surfaces carry out of a groove or hole in element e, net."""
     total = 0.0
     for q in range(9):
         here, around = 0.0, 0.0

@@ -29,7 +29,7 @@ MOST = 1200  # assemblies on the way
 
 @dataclass(frozen=True)
 class Equations:
-    """What a solution must satisfy: theta_t = rate theta - past, past (e, 9), in this gap with this step."""
+    """Equations that a solution satisfies: theta_t = rate theta - past, past (e, 9), in this gap with this step."""
 
     gap: Gap
     step: Step
@@ -78,7 +78,7 @@ class Newton:
         return _with_cost(best, cost)
 
     def approach(self, equations: Callable[[float], Equations], distance: float, pressure: Array) -> Point:
-        """The same from far away, by steps less steep than that with 1 - x_1 = distance.
+        """Solve from far away, by steps less steep than that with 1 - x_1 = distance.
 
         equations: of 1 - x_1.
         """

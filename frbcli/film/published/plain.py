@@ -15,7 +15,7 @@ AROUND_DIRECTION, ALONG_DIRECTION = 0, 1
 
 @dataclass(frozen=True)
 class Terms:
-    """Of each element, by its nodes' shape functions: pressed, spread (e, 9): pressure flow, artificial diffusion;
+    """Terms of each element by its nodes' shape functions: pressed, spread (e, 9): pressure flow, artificial diffusion;
     stored, carried (e, 9): d(H theta)/dt, omega/2 d(H theta)/dphi; near, far (e, 3): outflow through ends free to air
     by the nodes 3 i and 3 i + 2."""
 

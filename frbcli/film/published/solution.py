@@ -1,4 +1,4 @@
-"""What a film of the published form remembers and answers."""
+"""State and answers of a film of the published form."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from frbcli.film.grid import Array
 
 @dataclass(frozen=True)
 class NodeState:
-    """What a film remembers. pressure: (2 a, 2 k + 1) scaled gauge pressure of the nodes; fraction: (e, 9) of oil at
+    """State of a film. pressure: (2 a, 2 k + 1) scaled gauge pressure of the nodes; fraction: (e, 9) of oil at
     the points."""
 
     pressure: Array

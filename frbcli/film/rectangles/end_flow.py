@@ -1,4 +1,4 @@
-"""What leaves the open ends of a film made of rectangles, for the balance of its heat.
+"""Flow through the open ends of a film made of rectangles, for the balance of its heat.
 
 Before it is clipped the pressure is a sum of the fields of a unit w and of a hydrostatic part, and so is its slope at
 an end. Where this is positive oil leaves; where it is negative, the film is clipped there, or draws in oil that is as
@@ -54,9 +54,9 @@ class TableEndFlow(NamedTuple):
 
 
 class ChainEndFlow(NamedTuple):
-    """The same between axial grooves. film: whose pressure it is; slopes (modes,) of the axial modes at an end; rest:
-    what modes beyond these would add, over (w . n); corner: what they add beside an edge of a groove, whose pressure
-    falls fast near the end, over H^3 there, 1/s."""
+    """The flow through the ends between axial grooves. film: whose pressure it is; slopes (modes,) of the axial modes
+    at an end; rest: what modes beyond these would add, over (w . n); corner: what they add beside an edge of a groove,
+    whose pressure falls fast near the end, over H^3 there, 1/s."""
 
     unit: float
     film: ChainFilm
@@ -156,7 +156,8 @@ def table_end_flow(flow: TableEndFlow, d_x: float, d_y: float, w_x: float, w_y: 
 
 @compiled(makes_arrays=True)
 def chain_end_flow(flow: ChainEndFlow, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
-    """The same of a film between axial grooves, which stand still; the ends of the grooves themselves are left out."""
+    """The outflow of a film between axial grooves, which stand still; the ends of the grooves themselves are left
+    out."""
     eccentricity = math.sqrt(d_x * d_x + d_y * d_y)
     if eccentricity > LARGEST_ECCENTRICITY:
         d_x, d_y = d_x * LARGEST_ECCENTRICITY / eccentricity, d_y * LARGEST_ECCENTRICITY / eccentricity

@@ -31,7 +31,7 @@ SLOPE = np.stack([4 * GAUSS_POINTS - 3, 4 - 8 * GAUSS_POINTS, 4 * GAUSS_POINTS -
 
 
 class RingMatrices(NamedTuple):
-    """What solve_ring works in, on m elements with r right-hand sides: middle (m, 3) row of each element over its
+    """Scratch of solve_ring on m elements with r right-hand sides: middle (m, 3) row of each element over its
     diagonal; diagonal, upper, cut (m,); condensed (m, r); local (3, 3)."""
 
     middle: Array

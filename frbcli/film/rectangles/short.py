@@ -103,8 +103,8 @@ def short_closed(
 def short_general(
     eccentricity: float, w_r: float, w_t: float, slenderness: float, sigma: float, level: float,
 ) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
-    """As short_closed, with the supply pressure sigma at z = 1 and the cavitation pressure `level`, both scaled,
-    gauge."""
+    """Force, see short_closed, with the supply pressure sigma at z = 1 and the cavitation pressure `level`, both
+    scaled, gauge."""
     s = math.sqrt(1.0 - eccentricity * eccentricity)
     force_r = force_t = rr = rt = tt = by_e_r = by_e_t = 0.0
     for i in range(ANGLES):

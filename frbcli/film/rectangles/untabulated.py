@@ -94,7 +94,8 @@ def section_pressure(
 
 @functools.lru_cache(maxsize=2)
 def _modes(elements: int) -> AxialModes:
-    """Of a section with so many elements along: on fine meshes they take longer than all else, at every position."""
+    """Modes of a section with so many elements along; on fine meshes they take longer than all else, at every
+    position."""
     return axial_modes(axial_vertices(elements))
 
 

@@ -55,8 +55,9 @@ SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what 
 
 
 class Exchange(NamedTuple):
-    """What rotor and films tell each other: responses (n, m + rings), see below; given (m + rings,) forces of the films
-    and torques on the rings; what the films are told; the rings; and a Scratch to ask the films for torques alone."""
+    """The quantities that rotor and films exchange: responses (n, m + rings), see below; given (m + rings,) forces of
+    the films and torques on the rings; what the films are told; the rings; and a Scratch to ask the films for torques
+    alone."""
 
     responses: Array
     given: Array
@@ -66,7 +67,7 @@ class Exchange(NamedTuple):
 
 
 def make_exchange(rotor: RotorData, scratch: Scratch) -> Exchange:
-    """For a rotor and what its stages work in."""
+    """The exchange of a rotor and the scratch of its stages."""
     (m, n), rings = scratch.selection.shape, rotor.spins.shape[0]
     unused = np.zeros((n, 1))
     return Exchange(
@@ -188,7 +189,8 @@ def _ask_for_torques(
 def advance_in_turn(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: LoopOutput
 ) -> tuple[int, int]:
-    """As march.advance, for rotor and films that are solved apart; the state comes from cosimulation.in_turn.
+    """Advance rotor and films that are solved apart, see advance of time_loop.py; the state comes from in_turn of
+    runs/cosimulation.py.
 
     control.longest_step is the longest macro step. state.past: (3, 1 + 6 films + 3 rings) at the last macro times:
     time; the journals' displacements and velocities; the rings' angles and speeds; the films' forces, the rings'

@@ -32,8 +32,8 @@ def parabola(times: Array, t: float, weights: Array) -> None:
 
 
 class Told(NamedTuple):
-    """What the films are told of the rotor: motions (3, 4 films + 2 rings) of journals and rings at the macro times
-    (3,), the films being at the second one: see macro_step.py."""
+    """The motion of the rotor as the films know it: motions (3, 4 films + 2 rings) of journals and rings at the macro
+    times (3,), the films being at the second one: see macro_step.py."""
 
     times: Array
     motions: Array

@@ -56,7 +56,7 @@ NEWTON_GAINS, GAINS_CARRIED = 5.0, 10.0
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.03, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
-SLOWEST = 1.0  # 1/s: a film that is driven more slowly has no pressure worth the name
+SLOWEST = 1.0  # 1/s: a film that is driven more slowly has a negligible pressure
 NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
@@ -170,7 +170,7 @@ def move_cells(
 def store_ahead(
     ring: Array, cells: Array, work: Any, f: int, u_x: float, u_y: float, g: float, rates: Array, flows: Array
 ) -> None:
-    """As store_rates, after move_cells has moved a film that will balance: rates by its linear equations, which hold.
+    """Store the rates, see store_rates, of a film that will balance after move_cells, by its linear equations.
 
     Cells pass as much to each other as the neighbours take, so that no oil is lost. What the ends pass follows from
     what all cells gain; it contains the small change of the flow through openings.
@@ -195,7 +195,7 @@ def store_ahead(
 
 @compiled()
 def left_of_cells(grids: Records, smooth: float, moved: float) -> float:
-    """What a correction of the journals by `moved` may leave of their error.
+    """Error of the journals that may be left after a correction by `moved`.
 
     Behind films that have all been linearised where they were, that is `smooth`, as without cells. One that balanced
     already has followed with older slopes: then corrections become smaller by the same ratio again and again.

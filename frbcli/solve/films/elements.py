@@ -193,7 +193,7 @@ def _takes_place(film: ElementFilm, work: ElementWork, g: float, iteration: int)
 
 @compiled(internal=True)
 def back_off(work: ElementWork, rows: Array) -> bool:
-    """step_back of forces.py; rows: of stage.py."""
+    """step_back of forces.py; rows: of equations.py."""
     notes, w, best_u = work.notes[0], work.w, work.notes[0].best_u
     m, nodes = rows.shape[1], w.shape[1]
     if notes.is_best:

@@ -1,4 +1,4 @@
-"""What the films say in one iteration of a stage, compiled: forces, derivatives, and how they follow the journals.
+"""The films in one iteration of a stage, compiled: forces, derivatives, and how they follow the journals.
 
 As in films.py, the type of the films decides which kind is meant when the loop is compiled.
 """
@@ -45,7 +45,7 @@ def meet_channels(
 ) -> None:
     """Before the films are asked in an iteration: the pressures of the coupled channels, by the films as they are.
 
-    x_0, u, omega: (2 films,), see the rows of stage.py."""
+    x_0, u, omega: (2 films,), see the rows of equations.py."""
     raise NotImplementedError
 
 
@@ -54,7 +54,7 @@ def join_films(
 ) -> None:
     """After all films have been asked: what coupled channels make of their forces (2 films,), and work.cross.
 
-    follows_x, follows_y: (2 films,), see the rows of stage.py."""
+    follows_x, follows_y: (2 films,), see the rows of equations.py."""
     raise NotImplementedError
 
 
@@ -65,7 +65,7 @@ def follow_channels(films: Any, work: Work, correction: Array, share: float) -> 
 
 def step_back(films: Any, work: Work, rows: Array) -> bool:
     """After all films have been asked: whether one does not go to where the last correction led, and has taken itself
-    and U of the rows of stage.py back by some of it. It is to be asked again."""
+    and U of the rows of equations.py back by some of it. It is to be asked again."""
     raise NotImplementedError
 
 
@@ -76,7 +76,7 @@ def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, share: flo
 
 
 def left_over(films: Any, work: Work, smooth: float, moved: float, unsettled: int, allowed: float) -> float:
-    """What a correction of the journals by `moved` may leave of their error, of which no more than `allowed` may be
+    """Error of the journals that may be left after a correction by `moved`, of which no more than `allowed` may be
     left: `smooth` for forces without kinks, infinite as long as films are unsettled."""
     raise NotImplementedError
 

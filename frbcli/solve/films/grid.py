@@ -1,4 +1,4 @@
-"""How the grid of a film stands in the time loop, and how far its cells have come in a stage."""
+"""The grid of a film in the time loop: its place, and the progress of its cells in a stage."""
 
 from __future__ import annotations
 

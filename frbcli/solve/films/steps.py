@@ -28,7 +28,7 @@ CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer
 
 
 class NoCells(NamedTuple):
-    """What loops look for in the work of any films, all of it empty for films without cells."""
+    """The parts of the scratch that loops need of any films; all are empty for films without cells."""
 
     stage_oil: Array
     grids: Records
@@ -36,7 +36,7 @@ class NoCells(NamedTuple):
 
 
 class Scaled(NamedTuple):
-    """The same for tabulated films of a machine with heat, with scales (F,) of their tables, see forces.py."""
+    """NoCells of tabulated films in a machine with heat, and scales (F,) of their tables, see forces.py."""
 
     stage_oil: Array
     grids: Records
@@ -58,7 +58,7 @@ def make_work(
 
 
 def most_iterations(films: Any) -> int:
-    """Of Newton's method in a stage."""
+    """Limit of the iterations of Newton's method in a stage."""
     raise NotImplementedError
 
 
@@ -74,7 +74,7 @@ def begin_stage(
     ahead: float,
     lag: float,
 ) -> None:
-    """What stage s knows of the films before it is solved: past, and a guess of w. ahead, lag: how far the stage and
+    """Prepare the films for stage s: past, and a guess of w. ahead, lag: how far the stage and
     the one before it lie from the start of the step, over the step before and over this one."""
     raise NotImplementedError
 

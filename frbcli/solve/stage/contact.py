@@ -20,8 +20,8 @@ def touches(eccentricity: float, contact_at: float, contact_stiffness: float) ->
 
 @compiled(inline=True)
 def shell_ahead(eccentricity: float, contact_at: float, contact_stiffness: float) -> float:
-    """Where the gap ends for Newton's method: at the shell, and in contact as far ahead as the gap was wide there, but
-    no further than a shell gives way."""
+    """Eccentricity at which the gap ends for Newton's method: at the shell, and in contact as far ahead as the gap was
+    wide there, but no further than a shell gives way."""
     if contact_stiffness > 0.0:
         return min(max(1.0, eccentricity + 1.0 - closes_freely_until(contact_at)), ELASTIC_LIMIT)
     return 1.0

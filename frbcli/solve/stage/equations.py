@@ -30,7 +30,7 @@ U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL
 
 
 class FilmMotion(NamedTuple):
-    """What a film feels of its journal: displacement d and velocity v over the clearance, omega_J + omega_S."""
+    """Motion of the journal as a film feels it: displacement d and velocity v over the clearance, omega_J + omega_S."""
 
     d_x: float
     d_y: float

@@ -1,4 +1,4 @@
-"""The inverse of the rotor behind all implicit stages of a step, see stage.py. Compiled."""
+"""The inverse of the rotor behind all implicit stages of a step, see equations.py. Compiled."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ E_STATIC, E_COS, E_SIN = range(3)
 
 @compiled(inline=True)
 def outdated(numbers: Array, g: float, speed: float, gyroscopic: bool, follows_speed: bool) -> bool:
-    """Whether the inverse that the numbers tell of does not serve a stage with this g and speed."""
+    """Whether the inverse noted in the numbers does not serve a stage with this g and speed."""
     if follows_speed:
         return bool(g != numbers[INVERSE_G] or speed != numbers[INVERSE_SPEED])
     return g != numbers[INVERSE_G] or (gyroscopic and abs(speed - numbers[INVERSE_SPEED]) > LASTS * abs(speed))
@@ -51,7 +51,7 @@ def prepare(
     """Make the inverse E for this g and speed, keep its products, and book in the numbers for what they are.
 
     products (3, n, n), loads (3, n): of E with the matrices and loads in the order of E_...; spread (n, m): with the
-    forces on the journals; compliance (m, m): S of stage.py; elimination (2, n, 3 n + 3 + m): to work in.
+    forces on the journals; compliance (m, m): S of equations.py; elimination (2, n, 3 n + 3 + m): to work in.
     """
     n, m = rotor.mass.shape[0], selection.shape[0]
     numbers[INVERSE_G], numbers[INVERSE_SPEED] = g, speed

@@ -1,6 +1,6 @@
 """Newton's method for the velocities of the journals in a stage, with the films' analytic derivatives. Compiled.
 
-The equations are those of stage.py. Films with cells are corrected along with the journals.
+The equations are those of equations.py. Films with cells are corrected along with the journals.
 """
 
 from __future__ import annotations

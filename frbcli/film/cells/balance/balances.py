@@ -54,7 +54,7 @@ BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 
 class GridMotion(NamedTuple):
-    """How the journal moves against a film's grid, in the grid's directions, and how the time step takes it.
+    """Motion of the journal relative to a film's grid, in the grid's directions, and its share in a time step.
 
     d: displacement over the clearance; omega: omega_J + omega_S relative to the grid; spin: angular speed of the grid,
     which turns the velocity v; g: how far a velocity moves the journal within the stage, 0: not at all; rate: of what
@@ -73,7 +73,7 @@ class GridMotion(NamedTuple):
 
 @compiled(inline=True)
 def section_end(film: np.record, k: int, far: bool) -> tuple[int, int, int, float, float]:
-    """Of the end z = 0 of a section with k cells along, or of z = 1: its kind, the last cell and the one beyond it, and
+    """The end z = 0 of a section with k cells along, or z = 1: its kind, the last cell and the one beyond it, and
     how the pressure falls there by those of the two, see EndSlope."""
     if far:
         return film.far.kind, k - 1, max(k - 2, 0), film.far.rise, film.far.bend
@@ -82,7 +82,7 @@ def section_end(film: np.record, k: int, far: bool) -> tuple[int, int, int, floa
 
 @compiled(inline=True)
 def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
-    """By how much the pressure towards an end is above that of the groove there, or of the air, by a parabola through
+    """Pressure towards an end over that of the groove there, or of the air, by a parabola through
     the last cell and the one beyond it; and its derivatives by the pressures of the two."""
     rise, change = last - groove, bend * (last - beyond)
     by_last, by_beyond = 1.0 + bend, -bend
@@ -199,7 +199,7 @@ def _take(taken: float, flows: Array) -> None:
 def _carry_out_of_excess(
     ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
-    """What the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
+    """Oil that the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
     half, taken = 0.5 * omega, 0.0

@@ -39,7 +39,7 @@ def limited(a: Array, b: Array) -> tuple[Array, Array, Array]:
 
 @compiled()
 def limited_at(a: float, b: float) -> tuple[float, float, float]:
-    """As `limited`, at one face."""
+    """L and its derivatives by a and b at one face, see `limited`."""
     if not a * b > 0.0:
         return 0.0, 0.0, 0.0
     half = 0.5 / (a * a + b * b)

@@ -1,4 +1,4 @@
-"""Forces of a pressure that is clipped at p_cav between the middles of cells, compiled; see plain/clipped.py."""
+"""Forces of a pressure that is clipped at p_cav between the middles of cells, compiled; see plain_clipped.py."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from frbcli.film.cells.data import LOAD, PUSH_X, PUSH_Y
 
 @compiled()
 def _rise(p: float, n: float, s: float) -> tuple[float, float, float, float, float, float, float, float]:
-    """For p > 0 >= n and S: what counts in the cell of p and in that of n, and their derivatives by p, n and S."""
+    """Shares that count in the cell of p and in that of n, p > 0 >= n, and their derivatives by p, n and S."""
     size = p - n
     x = p / size
     y = x * x * (3.0 - 2.0 * x)

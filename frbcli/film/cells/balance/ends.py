@@ -1,4 +1,4 @@
-"""What leaves a section at its ends z = 0 and z = 1 (sections 3.2.1 and 4.2.1.2)."""
+"""Outflow of a section at its ends z = 0 and z = 1 (sections 3.2.1 and 4.2.1.2)."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class EndSlope(NamedTuple):
 
 
 def end_slope(first: float, second: float) -> EndSlope:
-    """For the distances of the middles of the last two cells from the end, over the width."""
+    """The slope at an end from the distances of the middles of the last two cells, over the width."""
     return EndSlope((first + second) / (first * second), first**2 / (second**2 - first**2))
 
 
 def end_slopes(z: Array) -> tuple[EndSlope, EndSlope]:
-    """At z = 0 and z = 1 for the boundaries z (k + 1,) of the cells."""
+    """The slopes at z = 0 and z = 1 for the boundaries z (k + 1,) of the cells."""
     middle = 0.5 * (z[1:] + z[:-1])
     if len(middle) == 1:
         return EndSlope(float(1.0 / middle[0]), 0.0), EndSlope(float(1.0 / middle[0]), 0.0)

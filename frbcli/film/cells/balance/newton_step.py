@@ -60,7 +60,7 @@ def film_loads(
 
 @compiled()
 def imbalance(cells: Array, fields: Array) -> tuple[float, float]:
-    """What does not balance in fields (m, k, k + SIDES), see balances, as a rate of the gap in 1/s: the mean over the
+    """Residual in fields (m, k, k + SIDES), see balances, as a rate of the gap in 1/s: the mean over the
     cells, and the largest."""
     m, k = fields.shape[0], fields.shape[1]
     total, area, largest = 0.0, 0.0, 0.0

@@ -30,7 +30,7 @@ class EndFlow(NamedTuple):
 
 
 class Conductances(NamedTuple):
-    """What the gap makes of pressures and motion: around (m, k) through the face after each cell, along (m, k - 1),
+    """Conductances of the gap: around (m, k) through the face after each cell, along (m, k - 1),
     near and far (m,) at the ends; by the surfaces carried (m, k) through the face after each cell and rise (m, k) out
     of the areas beside the film."""
 
@@ -151,7 +151,7 @@ class CellBalances:
         return EndFlow(np.where(fixed[:, 0], 0.0, out), by_last, by_next)
 
     def residual(self, state: CellState, storage: Storage) -> tuple[Array, Stencil]:
-        """What does not balance in each cell (m, k), and the stencil of derivatives by w.
+        """Residual of each cell (m, k), and the stencil of derivatives by w.
 
         state: of the law with arrays (m, k), whose slopes are zero and whose values are given in fixed cells.
         """

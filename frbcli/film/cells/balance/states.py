@@ -1,4 +1,4 @@
-"""What the cells of one film hold by its law of cavitation, compiled."""
+"""Pressures and oil fractions of the cells of one film by its cavitation law, compiled."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ WHIRL_EDGE, WHIRL_STEP = 0.3, 0.15  # distance from 0.5 where no whirl is left, 
 
 @compiled()
 def whirl_share(d_x: float, d_y: float, v_x: float, v_y: float, speed: float) -> float:
-    """How far a journal is in half-frequency whirl, 0 to 1, by the rate of its attitude angle over omega_J + omega_S.
+    """Share of half-frequency whirl in a journal's motion, 0 to 1, by the rate of its attitude angle over omega_J +
+    omega_S.
 
     1 between 0.35 and 0.65, 0 below 0.2 and above 0.8, a cubic step between: a synchronous orbit has 0 in the mean
     if it stays on one side of the centre, and 1 about the centre.

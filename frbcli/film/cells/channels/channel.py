@@ -10,7 +10,7 @@ from frbcli.film.gap import Hole
 
 @dataclass(frozen=True)
 class FeedHole:
-    """Where a channel opens: the number of the film, and a hole of its section."""
+    """An opening of a channel: the number of the film, and a hole of its section."""
 
     film: int
     hole: Hole

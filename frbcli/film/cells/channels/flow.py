@@ -1,4 +1,4 @@
-"""What channels between two films bring to them, and what pressures they take, compiled; see channel_data.py.
+"""Flow through the channels between two films, and their pressures, compiled; see data.py.
 
 The flow from the outer to the inner end of a channel follows from the mean pressures of the cells at its feed holes,
 

@@ -156,7 +156,8 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
 
 @compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
 def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
-    """As solve_blocks, for columns of a length and right-hand sides of a number known to the compiler, see vectors.py.
+    """Solve the equations of solve_blocks for columns of a length and right-hand sides of a number known to the
+    compiler, see vectors.py.
 
     A column is coupled to the next as x_i = right_i - inverse_i behind_i x_i+1 - border_i x_last. The rows hold
     inverse, border and right of each, the two latter first without and then with what the columns behind it bring.

@@ -85,6 +85,6 @@ _call: Any = intrinsic(_call_solver)
 
 @compiled()
 def solve_ring_at(address: int, stencil: Array, blocks: Array, fields: Array) -> None:
-    """solve_blocks, by the address that ring_solver tells."""
+    """Call an elimination by the address from ring_solver."""
     m, k, n = fields.shape
     _call(address, m, k, n, stencil, blocks, fields)

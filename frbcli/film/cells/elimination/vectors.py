@@ -24,7 +24,7 @@ _FUSED = ("contract",)  # a product and a sum are rounded once
 
 @register_jitable
 def row_length(k: int, r: int) -> int:
-    """Of the rows of a column of k cells with r right-hand sides."""
+    """Length of the rows of a column of k cells with r right-hand sides."""
     return -(-(2 * k + r) // LANES) * LANES
 
 
@@ -65,7 +65,7 @@ class _Code:
         return self.builder.shuffle_vector(self.with_lane(_ANY, 0, value), _ANY, first)
 
     def vectors(self, numbers: list[Any]) -> list[Any]:
-        """Of numbers beside each other, as many as vectors take; None: 0."""
+        """Vectors of numbers that stand beside each other; None: 0."""
         made = [ir.Constant(_VECTOR, [_ZERO] * LANES)] * (len(numbers) // LANES)
         for place, value in enumerate(numbers):
             if value is not None:

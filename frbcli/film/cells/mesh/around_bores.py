@@ -20,7 +20,7 @@ WHOLE = 1e-9  # by which the middle of a bore may miss a plane of symmetry, or i
 
 
 class Cells(NamedTuple):
-    """What bores change of a grid, see VolumeGrid: around, at, area, load (m, k), along (m, k - 1)."""
+    """The parts of a grid that bores change, see VolumeGrid: around, at, area, load (m, k), along (m, k - 1)."""
 
     around: Array
     along: Array
@@ -116,7 +116,7 @@ def _is_bore(section: Section, hole: Hole) -> bool:
 
 
 def _distance_to_next(section: Section, number: int) -> float:
-    """From the edge of a hole to that of the nearest other groove or hole, over R."""
+    """Distance from the edge of a hole to that of the nearest other groove or hole, over R."""
     hole = section.holes[number]
     found = [math.pi - hole.half_angle]
     for groove in section.grooves:

@@ -17,7 +17,7 @@ solutions: of each two solutions P and Q,
 The total flow for a given pressure in the distance is then that of the bore, wherever it lies among the cells, as with
 Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are those for
 which the solution with a source balances, and with the areas of the force the integrals of the solutions over the film
-are exact, less what parabolas over the width (axial.py) count at the ends for the oil that leaves there: it is right
+are exact, less what parabolas over the width (ends.py) count at the ends for the oil that leaves there: it is right
 for oil that comes out of the whole width, but that of a bore comes out of the place where the solutions are exact.
 """
 

@@ -80,7 +80,7 @@ class VolumeGrid:
 def fitted_grid(section: Section, d: tuple[float, float], around: int, along: int) -> VolumeGrid:
     """About around x along cells, finer where d narrows the gap; grooves and pockets end on faces.
 
-    Equal ones along: parabolas over the width (axial.py) are exact on few of them, and need no finer ones at the ends.
+    Equal ones along: parabolas over the width (axial_weights) are exact on few of them, without finer ones at the ends.
     """
     eccentricity = math.hypot(*d)
     narrowest = math.atan2(-d[0], d[1])  # H = 1 + d_x sin(phi) - d_y cos(phi) is smallest

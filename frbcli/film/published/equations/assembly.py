@@ -36,10 +36,10 @@ DIRECTIONS = 4  # the derivatives are by d_x, d_y, v_x, v_y
 
 
 class Elements(NamedTuple):
-    """What does not change: nodes (e, 9); values (9, 9) and slopes (e, 9, 9, 2) of the shape functions; area (e, 9) of
-    the points; sine, cosine (e, 9) there; length (e,): of the elements around, rad; fixed (nodes,); solid (e,): not
-    solved; near, far (e,): whether an end free to air is at z = 0, z = 1; aspect: A; spread: A_c, less than zero for no
-    artificial diffusion at all; prefactor, exponent: of g = prefactor exp(exponent P)."""
+    """The elements of a section: nodes (e, 9); values (9, 9) and slopes (e, 9, 9, 2) of the shape functions; area (e,
+    9) of the points; sine, cosine (e, 9) there; length (e,): of the elements around, rad; fixed (nodes,); solid (e,):
+    not solved; near, far (e,): whether an end free to air is at z = 0, z = 1; aspect: A; spread: A_c, less than zero
+    for no artificial diffusion at all; prefactor, exponent: of g = prefactor exp(exponent P)."""
 
     nodes: NDArray[np.int64]
     values: Array
@@ -59,7 +59,7 @@ class Elements(NamedTuple):
 
 
 class Gap(NamedTuple):
-    """At the points (e, 9): H, its slope by phi, its rate in 1/s; half: omega / 2 in rad/s."""
+    """The gap at the points (e, 9): H, its slope by phi, its rate in 1/s; half: omega / 2 in rad/s."""
 
     height: Array
     slope: Array
@@ -153,8 +153,8 @@ def assemble(
 def _by_motion(
     elements: Elements, e: int, q: int, by_h: float, across: float, axial: float, theta: float, half: float, r: Array
 ) -> None:
-    """What point q adds to minus the derivatives by the journal's displacement and velocity, by_h, across and axial
-    being those of the source and of both flows by H."""
+    """Add the share of point q in minus the derivatives by the journal's displacement and velocity, by_h, across and
+    axial being those of the source and of both flows by H."""
     area, sine, cosine = elements.area[e, q], elements.sine[e, q], elements.cosine[e, q]
     for a in range(9):
         value = area * elements.values[q, a]

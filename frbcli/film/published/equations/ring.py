@@ -167,7 +167,7 @@ def _fill_column(matrix: Array, right: Array, i: int, column: Block, m: int, n: 
 
 @compiled()
 def _place(a: int, j: int, n: int) -> int:
-    """Where local node a of element j is on the middle line, or on the two lines beside it."""
+    """Place of the local node a of element j on the middle line, or on the two lines beside it."""
     p, q = a // 3, a % 3
     if p == 1:
         return j + q // 2
