@@ -90,7 +90,7 @@ def naive_cpu_per_simulated_second(system: System, run: Run, slope: float) -> fl
 
     slope: rotor speed per time in rad/s^2.
     """
-    rotor, bearing = system.rotor, system.films.bearings[0]
+    rotor, bearing = system.rotor, system.films.sections[0]
     film = NaiveFilm(bearing)
     inverse = np.linalg.inv(rotor.mass)
     n = rotor.size
@@ -190,7 +190,7 @@ def test_film_evaluations_against_the_naive_way() -> None:
     many(system.films.loop[0], count)
     fast = (time.process_time() - began) / count
     d, v = np.array([0.3, -0.2]), np.array([1.0, -2.0])
-    film = NaiveFilm(system.films.bearings[0])
+    film = NaiveFilm(system.films.sections[0])
     film.force(d, v, 200.0)
     began = time.process_time()
     for _ in range(10):
@@ -228,7 +228,7 @@ def slowness_probe() -> Callable[[], float]:
     fast, or at a moment when others use it.
     """
     case = load_case("jeffcott")
-    film = NaiveFilm(make_system(case, make_plan(case)).films.bearings[0])
+    film = NaiveFilm(make_system(case, make_plan(case)).films.sections[0])
     d, v = np.array([0.3, -0.2]), np.array([1.0, -2.0])
     film.force(d, v, 200.0)
 

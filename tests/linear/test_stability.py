@@ -170,7 +170,7 @@ def test_coefficients_are_the_derivatives_of_the_force(theory: str) -> None:
     case = load_case("jeffcott", [f"film.theory={theory}"])
     plan = make_plan(case)
     system = make_system(case, plan)
-    bearing, film, clearance = system.films.bearings[0], system.films.loop[0], system.clearances[0]
+    bearing, film, clearance = system.films.sections[0], system.films.loop[0], system.clearances[0]
 
     def force(displacement: np.ndarray, velocity: np.ndarray, omega: float) -> np.ndarray:
         if theory == "finite":  # without the table that the coefficients come from
@@ -209,7 +209,7 @@ def rigid_on_two_bearings(offset: float) -> LinearRotor:
 def test_two_equal_bearings_rest_and_swing_as_one_that_counts_twice() -> None:
     case = load_case("rigid", ["film.theory=short", "rotor.gravity=9.81 m/s^2"])
     one = make_system(case, make_plan(case))
-    two = system_of(rigid_on_two_bearings(0.0), one.films.bearings * 2, one.films.loop * 2)
+    two = system_of(rigid_on_two_bearings(0.0), one.films.sections * 2, one.films.loop * 2)
     omega = 2 * math.pi * 100.0
     single, both = (resting_position(each, omega).displacements for each in (one, two))
     np.testing.assert_allclose(two.rotor.journals @ both, [single, single], rtol=1e-9)
@@ -228,7 +228,7 @@ def test_unequal_loads_are_shared_by_the_levers() -> None:
     one = make_system(case, make_plan(case))
     rotor = rigid_on_two_bearings(0.01)
     omega = 2 * math.pi * 60.0
-    journals = resting_position(system_of(rotor, one.films.bearings * 2, one.films.loop * 2), omega).journals
+    journals = resting_position(system_of(rotor, one.films.sections * 2, one.films.loop * 2), omega).journals
     for journal, share in zip(journals, (0.6, 0.4), strict=True):
         carried = evaluate(one.films.loop[0], one.clearances[0], journal, np.zeros(2), omega).force
         np.testing.assert_allclose(carried, [0.0, share * 6.1 * 9.81], atol=1e-7)
@@ -245,7 +245,7 @@ def test_elastic_rotor_on_three_bearings_is_in_equilibrium() -> None:
     load = 30.0 * rng.normal(size=9)
     rotor = LinearRotor(eye, none, none, 1e6 * root @ root.T, load, np.zeros(9), np.zeros(9), journals, np.ones(3), ())
     omega = 2 * math.pi * 40.0
-    q = resting_position(system_of(rotor, one.films.bearings * 3, one.films.loop * 3), omega).displacements
+    q = resting_position(system_of(rotor, one.films.sections * 3, one.films.loop * 3), omega).displacements
     forces = [
         selection.T @ evaluate(one.films.loop[0], one.clearances[0], selection @ q, np.zeros(2), omega).force
         for selection in journals
@@ -364,7 +364,7 @@ def test_rotor_that_never_turns_is_told_so() -> None:
 def test_finer_mesh_moves_the_resting_position_little() -> None:
     case = load_case("jeffcott")
     system = make_system(case, make_plan(case))
-    finer = make_film(system.films.bearings[0], "finite", "half-sommerfeld", Mesh(10, 192))
+    finer = make_film(system.films.sections[0], "finite", "half-sommerfeld", Mesh(10, 192))
     films = replace(system.films, data=(finer,))
     fine = replace(system, films=films)
     for speed in (10.0, 100.0):

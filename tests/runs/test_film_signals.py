@@ -58,7 +58,7 @@ def test_the_short_bearing_in_closed_form(tmp_path: Path) -> None:
         told = system.films.force(0, place[k], rate[k], omega[k]).force
         np.testing.assert_allclose(force[k], told, atol=2e-3 * np.abs(force).max())
 
-    film, eta = system.films.bearings[0], system.films.bearings[0].viscosity
+    film, eta = system.films.sections[0], system.films.bearings[0].viscosity
     c, radius, b = film.clearance, 0.5 * film.diameter, film.section_width
     phi = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
     for k in later:
@@ -106,7 +106,7 @@ def test_oil_that_leaves_short_films_in_motion(tmp_path: Path) -> None:
     open end."""
     run = run_of("rigid", tmp_path, [*SHORT, "rotor.unbalance=30 g*mm"], ["oil-flow"])
     case = frbcli.load_case("rigid", SHORT)
-    film = make_system(case, make_plan(case)).films.bearings[0]
+    film = make_system(case, make_plan(case)).films.sections[0]
     place = np.column_stack([run["journal_x_m"], run["journal_y_m"]])
     rate, omega = np.gradient(place, run["time_s"], axis=0), 2.0 * math.pi * run["speed_Hz"]
     w = rate - 0.5 * omega[:, None] * np.column_stack([-place[:, 1], place[:, 0]])

@@ -390,7 +390,7 @@ def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     (film,) = make_system(case, make_plan(case)).films.volumes
     plain = load_case("axial-groove")
     system = make_system(plain, make_plan(plain))
-    flow = make_end_flow(system.films.bearings[0], system.films.loop[0])
+    flow = make_end_flow(system.films.sections[0], system.films.loop[0])
     d, omega = np.array([0.3, -0.4]), 900.0
     motion = Motion((0.3, -0.4), (0.0, 0.0), omega)
     w = 0.5 * omega * np.array([d[1], -d[0]])

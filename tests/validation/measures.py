@@ -82,7 +82,7 @@ def eccentricity_at_1s(folder: Path, name: str, settings: Sequence[str] = ()) ->
 def film_pressure(case: Case, eccentricity: float, speed_Hz: float) -> float:
     """Largest absolute pressure in bar with the journal held still at an eccentricity."""
     plan = make_plan(case)
-    bearing = make_system(case, plan).films.bearings[0]
+    bearing = make_system(case, plan).films.sections[0]
     held = np.array([eccentricity * bearing.clearance, 0.0])
     return largest_pressure(bearing, plan.mesh, held, np.zeros(2), 2 * math.pi * speed_Hz) / 1e5
 
@@ -162,7 +162,7 @@ def worst_film_force(supply: str) -> float:
     case = load_case("jeffcott-table-4-1")
     plan = make_plan(case)
     sections = {"none": 1, "circumferential-groove": 2}[supply]
-    like = replace(make_system(case, plan).films.bearings[0], sections=sections)
+    like = replace(make_system(case, plan).films.sections[0], sections=sections)
     rows = [row for row in _rows("film-forces.csv") if row["supply"] == supply]
     pressures = {row["supply_pressure_bar"] for row in rows}
     gauges = {bar: float(bar) * 1e5 - like.ambient_pressure if sections == 2 else 0.0 for bar in pressures}

@@ -185,6 +185,6 @@ def test_the_plan_and_the_system_know_axial_grooves() -> None:
     case = load_case("jeffcott", [supply])
     plan = make_plan(case)
     assert any(decision.value == "2 rectangles" for decision in plan.decisions)
-    bearing = make_system(case, plan).films.bearings[0]
+    bearing = make_system(case, plan).films.sections[0]
     assert [round(math.degrees(groove.position)) for groove in bearing.grooves] == [10, 190]
     assert bearing.grooves[0].pressure == pytest.approx(1e5)
