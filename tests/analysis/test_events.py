@@ -133,6 +133,21 @@ def test_the_critical_speed_is_the_largest_synchronous_motion_whatever_comes_aft
     assert critical["point"] == "disk"
 
 
+@pytest.mark.parametrize(
+    ("speeds", "there"),
+    [((120.0, 204.0), True), ((120.0, 160.0), True), ((130.0, 204.0), True), ((143.0, 180.0), False)],
+)
+def test_a_run_that_begins_beside_its_resonance_has_its_critical_speed(
+    speeds: tuple[float, float], there: bool, tmp_path: Path
+) -> None:
+    """The amplitude is largest at 141 Hz; it rises by less than a quarter before, and there is no peak from 143 Hz."""
+    first, last = speeds
+    settings = (f"speed.from={first} Hz", f"speed.to={last} Hz", f"speed.duration={(last - first) / 1.4} s")
+    run = runup(load_case("jeffcott", [*settings, "rotor.unbalance=20 g*mm"]), tmp_path / "run.h5")
+    criticals = [event["speed_Hz"] for event in run.events if event["kind"] == "critical-speed"]
+    assert criticals == ([pytest.approx(141.0, abs=0.5)] if there else [])
+
+
 @pytest.mark.parametrize("damping", [0.05, 0.1, 0.2])
 @pytest.mark.parametrize("whirl_s", [6.0, 6.5, 8.0])
 def test_a_whirl_soon_after_a_damped_resonance_leaves_its_critical_speed(damping: float, whirl_s: float) -> None:

@@ -20,6 +20,9 @@ REVOLUTIONS = 8  # of the window: a resonance is passed in many more
 WHIRL = 0.5  # order of oil whirl
 WITHOUT_MOTION = 1.5  # neither whirl nor unbalance nor its harmonics: what is seen there is the background
 PROMINENCE = 0.25  # share of its height by which a peak stands out of the higher of its two sides
+# The same of the highest peak of a run that begins or ends beside a resonance, or of one that is strongly damped: a
+# known critical speed of the machine, and a phase that turns by LAG between the lowest points of both sides, decide.
+LOW_PROMINENCE = 0.02
 OVER_BACKGROUND = 5.0
 FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a rotor without unbalance
 # By how much the motion falls behind the unbalance from half-way up a peak to half-way down. It is 60 to 130 degrees
@@ -80,21 +83,22 @@ def critical_step(
     for point, tracked in enumerate(motions):
         # A whirl may break out in the resonance, whose peak is over a window later.
         motion = [each[settled : whirls + half] for each in tracked]
-        for place, prominence in _resonances(motion, floor, whirls - half - settled):
+        for place, prominence, low in _resonances(motion, floor, whirls - half - settled):
             step = settled + place + half
             if any(own.time_s <= turns.time_s[step] <= own.until_s for own in vibrations):
                 continue
             speed = abs(float(turns.speed_Hz[step]))
             late = LATE * np.sqrt(_ramp(turns, step))
             own = modes is None and near(speed, (vibration.frequency_Hz for vibration in vibrations), late)
-            known = modes is None or near(speed, modes, late)
+            known = not low if modes is None else near(speed, modes, late)
             if known and not own and (best is None or prominence > best[0]):
                 best = prominence, point, step
     return None if best is None else best[1:]
 
 
-def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tuple[int, float]]:
-    """Sample and prominence of each resonance with the unbalance up to a sample; motions (n,): those of `resonant`."""
+def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tuple[int, float, bool]]:
+    """Sample and prominence of each resonance with the unbalance up to a sample, and whether the prominence is so low
+    that only a known critical speed makes it one; motions (n,): those of `resonant`."""
     synchronous, background, whirl = motions
     amplitude: Values = np.abs(synchronous)
     if len(amplitude) == 0:
@@ -104,10 +108,12 @@ def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tup
     peaks = prominent_peaks(amplitude, least)
     whole = [peak for peak in peaks if peak.prominence >= PROMINENCE * amplitude[peak.place]]
     known = {peak.place for peak in whole}
-    more = [peak for peak in _cut_off(amplitude[: max(0, until + 1)], least) if peak.place not in known]
+    until_whirl = amplitude[: max(0, until + 1)]
+    more = [peak for peak in _cut_off(until_whirl, least) if peak.place not in known]
+    low = [] if whole + more else _low(until_whirl, least)
     return [
-        (peak.place, peak.prominence)
-        for peak in whole + more
+        (peak.place, peak.prominence, bool(low))
+        for peak in whole + more + low
         if peak.place < until
         and abs(whirl[peak.place]) <= amplitude[peak.place]  # whirl that is about to break out spills over
         and abs(phase[min(peak.after, until)] - phase[peak.before]) >= LAG
@@ -126,6 +132,16 @@ def _cut_off(amplitude: Values, least: float) -> list[Peak]:
         replace(peak, prominence=peak.rise)
         for peak in prominent_peaks(amplitude, least)
         if peak.place == highest and peak.rise >= PROMINENCE * amplitude[highest]
+    ]
+
+
+def _low(amplitude: Values, least: float) -> list[Peak]:
+    """The highest peak of a curve (n,) with LOW_PROMINENCE, its flanks reaching to the lowest point of each side."""
+    highest = int(np.argmax(amplitude)) if len(amplitude) else 0
+    return [
+        replace(peak, before=int(np.argmin(amplitude[:highest])), after=highest + int(np.argmin(amplitude[highest:])))
+        for peak in prominent_peaks(amplitude, least)
+        if peak.place == highest and peak.prominence >= LOW_PROMINENCE * amplitude[highest]
     ]
 
 
