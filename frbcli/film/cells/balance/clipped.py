@@ -12,17 +12,20 @@ from frbcli.film.cells.data import LOAD, PUSH_X, PUSH_Y
 
 @compiled()
 def _rise(p: float, n: float, s: float) -> tuple[float, float, float, float, float, float, float, float]:
-    """Shares that count in the cell of p and in that of n, p > 0 >= n, and their derivatives by p, n and S."""
+    """Shares that count in the cell of p and in that of n, p > 0 >= n, and their derivatives by p, n and S.
+
+    The derivatives of x are (1 - x) and x over p - n. They enter with p or S, which over p - n are of usual size even
+    in a film that begins at 1e-314 Pa, the square of which is nothing.
+    """
     size = p - n
     x = p / size
     y = x * x * (3.0 - 2.0 * x)
-    by_p, by_n = -n / (size * size), p / (size * size)
-    turn = 6.0 * x * (1.0 - x) * CURVED * s
+    turn = 6.0 * x * (1.0 - x) * CURVED * (s / size)
     own, other = CURVED * y * (1.0 - 0.5 * y), 0.5 * CURVED * y * y
     return (
         0.5 * x * p - own * s, -other * s,
-        0.5 * (x + p * by_p) - (1.0 - y) * turn * by_p, 0.5 * p * by_n - (1.0 - y) * turn * by_n, -own,
-        -y * turn * by_p, -y * turn * by_n, -other,
+        0.5 * x * (2.0 - x) - (1.0 - y) * turn * (1.0 - x), 0.5 * x * x - (1.0 - y) * turn * x, -own,
+        -y * turn * (1.0 - x), -y * turn * x, -other,
     )  # fmt: skip
 
 
