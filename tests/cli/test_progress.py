@@ -47,6 +47,20 @@ def test_without_a_terminal_a_line_comes_now_and_then(
     assert any(re.match(r"\d+ of 100: a rung: .*left$", line) for line in lines)
 
 
+@pytest.mark.parametrize(("each_s", "said"), [(0.4, ["4 of 120  0:46 left"]), (0.01, [])])
+def test_without_a_terminal_what_takes_long_is_announced(
+    each_s: float, said: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Once, after the first numbers: the response of a shaft with hundreds of modes took 26 s without a word."""
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    observe = counting(Terminal(), None)
+    for number in range(1, 30):
+        observe(number, 120)
+        now[0] += each_s
+    assert capsys.readouterr().err.splitlines() == said
+
+
 def test_stability_is_told_speed_by_speed() -> None:
     seen: list[tuple[int, int]] = []
     case = frbcli.load_case("jeffcott", ["film.theory=short"])

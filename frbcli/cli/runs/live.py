@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 REFRESH_Hz = 8
 COLUMNS = 80  # of a terminal
 TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
+# What takes long is announced there as soon as the first numbers tell: after so much time, if so much is left.
+ANNOUNCED_s, LONG_s = 1.0, 5.0
 LONGEST_LEFT_s = 1e9  # longest time that is shown
 
 
@@ -37,19 +39,20 @@ def counting(terminal: Terminal, show: Callable[[str], None] | None, what: str =
 
     The time left is that of the numbers since the first one, which compiles.
     """
-    begun, told_s, first = 0.0, time.process_time(), 0
+    begun, told_s, first, announced = 0.0, time.process_time(), 0, False
 
     def observe(number: int, count: int) -> None:
-        nonlocal begun, told_s, first
+        nonlocal begun, told_s, first, announced
         if begun == 0.0:
             begun, first = time.monotonic(), number
-        done = number - first
-        left = "" if done == 0 else f"  {_clock((time.monotonic() - begun) / done * (count - number))} left"
-        line = f"{what}{number} of {count}{left}"
+        done, spent = number - first, time.monotonic() - begun
+        left = spent / done * (count - number) if done else 0.0
+        line = f"{what}{number} of {count}" + (f"  {_clock(left)} left" if done else "")
+        long = not announced and spent > ANNOUNCED_s and left > LONG_s
         if show is not None:
             show(line)
-        elif time.process_time() > told_s + TOLD_EVERY_s:
-            told_s = time.process_time()
+        elif long or time.process_time() > told_s + TOLD_EVERY_s:
+            told_s, announced = time.process_time(), True
             terminal.remark(line)
 
     return observe
