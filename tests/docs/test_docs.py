@@ -115,10 +115,15 @@ def test_rows_of_the_page_of_additions_name_what_is_there() -> None:
     rows = [line.split("|")[1:-1] for line in table.splitlines() if line.startswith("| ")][2:]
     assert len(rows) > 8
     for what, place, row in rows:
-        missing = [path for path in re.findall(r"`([\w./-]+/[\w./-]*)`", place) if not (ROOT / path).exists()]
-        assert missing == [], what
-        for name, path in re.findall(r"`(\w+)` in `([\w./-]+)`", row):
+        places = re.findall(r"`([\w./-]+/[\w./-]*)`", place)
+        assert [path for path in places if not (ROOT / path).exists()] == [], what
+        named = [(name, path) for name, path in re.findall(r"`(\w+)` in `([\w./-]+)`", row)]
+        named += [(name, places[0]) for name in re.findall(r"`(\w+)`, same file", row)]
+        for name, path in named:
             assert re.search(rf"^(def |class )?{name}\b", (ROOT / path).read_text(encoding="utf-8"), re.MULTILINE), what
+        public = re.findall(r"`frbcli\.(\w+)`", row)
+        assert [name for name in public if not hasattr(frbcli, name)] == [], what
+        assert named or public or "the directory is read" in row, f"nothing of the row is checked: {what}"
     named = [path for path in re.findall(r"`((?:frbcli|tests)/[\w./-]+)`", text) if not (ROOT / path).exists()]
     assert named == []
 
