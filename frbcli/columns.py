@@ -157,6 +157,14 @@ class Table:
             found.append(document)
         return found
 
+    def heads(self, table: str = "") -> tuple[str, ...]:
+        """The heads of a table of the terminal."""
+        return heads(self.columns, table)
+
+    def legend(self, table: str = "") -> str:
+        """The heads of a table of the terminal with meaning and unit."""
+        return legend(self.columns, table)
+
     def cells(self, table: str = "") -> list[tuple[str, ...]]:
         """The rows of a table of the terminal."""
         return [
@@ -169,6 +177,16 @@ class Table:
 def table_of(columns: Columns, items: Iterable[object]) -> Table:
     """A row per item."""
     return Table(tuple(columns), tuple(tuple(column.value_of(item) for column in columns) for item in items))
+
+
+def documents(columns: Columns, items: Iterable[object]) -> list[dict[str, Any]]:
+    """An object of JSON per item."""
+    return table_of(columns, items).documents()
+
+
+def document(columns: Columns, item: object) -> dict[str, Any]:
+    """The object of JSON of one item."""
+    return documents(columns, [item])[0]
 
 
 def spread_table(columns: Columns, result: object) -> Table:

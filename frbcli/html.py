@@ -29,7 +29,7 @@ class Tabular:
 
     def _repr_html_(self) -> str:
         frame, case = self.to_pandas(), getattr(self, "case", None)
-        title = "" if case is None else case.title or case.name
+        title = "" if case is None else case.heading
         words = ": ".join(word for word in (title, type(self).__name__) if word)
         return html_table(words, list(frame.columns), frame.itertuples(index=False), len(frame))
 

@@ -20,9 +20,9 @@ from numba.core.runtime import _nrt_python, rtsys
 import frbcli
 from frbcli.caches import temporary_cache
 from frbcli.case.reading.load import load_case
+from frbcli.cli import progress
 from frbcli.cli.common import Terminal
-from frbcli.cli.runs import compiling
-from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.progress import Display, compilation_shown
 from frbcli.runs.run import runup
 from frbcli.scene.costs.preparation import compile_s
 
@@ -181,11 +181,11 @@ def test_the_first_start_is_told_and_the_next_is_not(
     def fresh(x: float) -> float:
         return x * 3.0
 
-    monkeypatch.setattr(compiling, "slowness", lambda: 2.0)
+    monkeypatch.setattr(progress, "slowness", lambda: 2.0)
     about = 2.0 * compile_s([load_case("jeffcott")])
     kernel = njit(fresh)
     for told in (True, False):
-        with compilation_shown(Terminal(), load_case("jeffcott")):
+        with compilation_shown(Display(Terminal()), load_case("jeffcott")):
             assert kernel(2.0) == 6.0
         assert (f"Compiling the kernels, once: about {about:.0f} s of CPU time." in capsys.readouterr().err) is told
 
@@ -194,7 +194,7 @@ def test_what_moves_on_the_screen_counts_the_kernels() -> None:
     from numba import njit
 
     shown = list[str]()
-    with compilation_shown(Terminal(), load_case("jeffcott-two-phase"), shown.append):
+    with compilation_shown(Display(Terminal(), shown.append), load_case("jeffcott-two-phase")):
         njit(lambda x: x + 1.0)(1.0)
     (about,) = re.fullmatch(r"Compiling the kernels, once: about (\d+) s of CPU time\.", shown[0]).groups()
     assert re.fullmatch(rf"Compiling the kernels, once: 1 functions in \d+ s of about {about}\.", shown[1])

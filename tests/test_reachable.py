@@ -111,7 +111,8 @@ def reached(modules: dict[str, Module], roots: list[Name]) -> set[Name]:
 def roots() -> list[Name]:
     public = [module.partition(":") for module in frbcli._PUBLIC.values()]
     named = [(module, attribute or name) for (module, _, attribute), name in zip(public, frbcli._PUBLIC, strict=True)]
-    commands = [(module, "command") for module, _ in COMMANDS.values()]
+    places = (place.partition(":") for place, *_ in COMMANDS.values())
+    commands = [(module, attribute or "command") for module, _, attribute in places]
     return [("frbcli.cli.process", "main"), ("frbcli", "__getattr__"), ("frbcli", "__dir__"), *named, *commands]
 
 

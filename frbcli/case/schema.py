@@ -229,6 +229,11 @@ class Case(Model):
     _read: tuple[str, dict[str, Any]] | None = PrivateAttr(None)  # a text, and the values that were read from it
 
     @property
+    def heading(self) -> str:
+        """The title, or the name of a case without one."""
+        return self.title or self.name
+
+    @property
     def source_text(self) -> str:
         """The case as TOML text, all overrides included; loading it gives this case again.
 
@@ -253,7 +258,7 @@ class Case(Model):
         from frbcli.case.reading.listing import values  # it is made of cases
 
         told = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
-        return html_table(self.title or self.name, ("key", "SI", "", "reads"), told, len(told))
+        return html_table(self.heading, ("key", "SI", "", "reads"), told, len(told))
 
     def with_settings(self, *settings: str | Mapping[str, object]) -> Case:
         """This case with other values of some keys, checked as a case file is; this case itself stays.

@@ -20,26 +20,31 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePath
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
 from frbcli.cli.files import INPUT, note_read
-from frbcli.cli.pictures.picture_options import Look, look_of
+from frbcli.cli.looks import Look, look_of
 from frbcli.cli.streams import OutputLost
 from frbcli.errors import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from frbcli import columns as declared
     from frbcli.case.schema import Case
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 RUN_SUFFIX = ".h5"
 DEFAULT_LOOK = Look()
+WIDTH = 80  # columns of sentences
 PIPE_WIDTH = 80  # columns of a table in a pipe or a file
 BETWEEN = 3  # blanks between its columns; one more at both edges together
+
+SETTING = "Set a key of CASE, e.g. --set bearing.clearance='40 um'."
 
 _JSON = "frbcli.json"
 _SETTINGS = "frbcli.settings"
@@ -71,6 +76,14 @@ class Terminal:
         if not self.quiet:
             _write(self._results, f"{printable(text)}\n")
 
+    def sentence(self, text: str) -> None:
+        """Print sentences, a part of the results, in lines of WIDTH columns."""
+        self.result(wrapped(text))
+
+    def show(self, title: str, table: declared.Table, name: str = "") -> None:
+        """Print the columns of a result that are declared for the table of the terminal with this name."""
+        self.table(title, table.heads(name), table.cells(name))
+
     def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
         """Print a table, a part of the results; several, which repeat the first column, where one would be too wide
         for its words. rows: as many cells as columns each, shown by str()."""
@@ -98,13 +111,6 @@ class Terminal:
         if not self.quiet:
             _write(sys.stderr, f"{printable(text)}\n")
 
-    def progress(self, line: str, show: Callable[[str], None] | None) -> None:
-        """Print progress: by `show`, which redraws a line on a terminal, else as a line of its own."""
-        if show is None:
-            self.remark(line)
-        else:
-            show(line)
-
     def text(self, text: str) -> None:
         """Print a text that was asked for, quiet or not; with json the document has it."""
         if not self.json:
@@ -119,6 +125,11 @@ class Terminal:
     @property
     def _results(self) -> TextIO:
         return sys.stderr if self.json else sys.stdout
+
+
+def wrapped(text: str) -> str:
+    """Sentences in lines of WIDTH columns."""
+    return fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def _parts(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[list[int]]:
@@ -171,16 +182,6 @@ def _console(stream: TextIO) -> Console:
     )
 
 
-class Names(click.ParamType[tuple[str, ...]]):
-    """Names separated by commas."""
-
-    name = "names"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
-        names = value if isinstance(value, tuple) else str(value).split(",")
-        return tuple(name.strip() for name in names if name.strip())
-
-
 def case_argument(
     function: Function, load: Callable[..., object] | None = None, metavar: str = "CASE"
 ) -> Function:
@@ -192,7 +193,7 @@ def case_argument(
         is_eager=True,  # CASE is loaded with the settings, so they come first
         expose_value=False,
         callback=_remember_settings,
-        help="Set a key of the case, e.g. --set bearing.clearance='40 um'. Repeatable.",
+        help=f"{SETTING} Repeatable.",
     )
     case = click.argument("case", metavar=metavar, callback=load or _load)
     return case(settings(function))

@@ -20,41 +20,115 @@ from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged
 from frbcli.nearest import did_you_mean
 from frbcli.version import __version__
 
-# name: (module, one line of help); the module is imported when its command is called
+# name: (module of the command, with its name there where a module has several; one line of help; an example);
+# the module is imported when its command is called
 COMMANDS = {
-    "check": ("frbcli.cli.check", "Validate a case; show its loads, speeds and what will be modelled."),
-    "rotation": ("frbcli.cli.bearings.rotation", "Turn a journal at a displacement or under a load; compare models."),
-    "squeeze": ("frbcli.cli.bearings.squeeze", "Move a journal up and down: force over time."),
-    "whirl": ("frbcli.cli.bearings.whirl", "Move a journal on a circle: pressure over time."),
-    "runup": ("frbcli.cli.runs.runup", "Run a rotor up and write the run to a file."),
-    "rundown": ("frbcli.cli.runs.rundown", "Run a rotor up, hold it, run it down."),
-    "waterfall": ("frbcli.cli.pictures.waterfall", "Draw the spectra of a run or a measurement over time or speed."),
-    "plot": ("frbcli.cli.pictures.plot", "Draw eccentricities, orbits, temperatures or film signals of runs."),
-    "compare": ("frbcli.cli.studies.compare", "Compare models of one case, or a run with a measurement."),
+    "check": (
+        "frbcli.cli.casefiles.check",
+        "Validate a case; show its loads, speeds and what will be modelled.",
+        "frb check jeffcott --set bearing.clearance='40 um'",
+    ),
+    "rotation": (
+        "frbcli.cli.bearings.kinematic:rotation",
+        "Turn a journal at a displacement or under a load; compare models.",
+        "frb rotation bearing-axial-groove --cavitation half-sommerfeld,elrod",
+    ),
+    "squeeze": (
+        "frbcli.cli.bearings.kinematic:squeeze",
+        "Move a journal up and down: force over time.",
+        "frb squeeze squeeze --set motion.periods=1",
+    ),
+    "whirl": (
+        "frbcli.cli.bearings.kinematic:whirl",
+        "Move a journal on a circle: pressure over time.",
+        "frb whirl whirl --set motion.periods=1",
+    ),
+    "runup": (
+        "frbcli.cli.runs.transient:runup",
+        "Run a rotor up and write the run to a file.",
+        "frb runup jeffcott -o run.h5",
+    ),
+    "rundown": (
+        "frbcli.cli.runs.transient:rundown",
+        "Run a rotor up, hold it, run it down.",
+        "frb rundown run-down -o down.h5",
+    ),
+    "waterfall": (
+        "frbcli.cli.pictures.waterfall",
+        "Draw the spectra of a run or a measurement over time or speed.",
+        "frb waterfall run.h5 --over speed --rpm",
+    ),
+    "plot": (
+        "frbcli.cli.pictures.plot",
+        "Draw eccentricities, orbits, temperatures or film signals of runs.",
+        "frb plot run.h5 --what orbit --from '1 s' --to '1.1 s'",
+    ),
+    "compare": (
+        "frbcli.cli.studies.compare",
+        "Compare models of one case, or a run with a measurement.",
+        "frb compare jeffcott --cavitation half-sommerfeld,reynolds",
+    ),
     "bearing": (
         "frbcli.cli.bearings.bearing",
         "Resting position, K, D, loss, flow of every film over speed or eccentricity.",
+        "frb bearing jeffcott --speed '50 Hz' --speed '100 Hz' --csv sheet.csv",
     ),
-    "fit": ("frbcli.cli.studies.fit", "Find numbers of a case from a measured run-up."),
+    "fit": (
+        "frbcli.cli.studies.fit",
+        "Find numbers of a case from a measured run-up.",
+        "frb fit jeffcott --measured run.h5 --vary rotor.unbalance,bearing.clearance",
+    ),
     "stability": (
         "frbcli.cli.machines.stability",
         "Resting positions, linear coefficients, eigenvalues, threshold speed.",
+        "frb stability jeffcott --speed '100 Hz' --speed '200 Hz'",
     ),
-    "response": ("frbcli.cli.machines.response", "Linear unbalance response over speed; map of critical speeds."),
+    "response": (
+        "frbcli.cli.machines.response",
+        "Linear unbalance response over speed; map of critical speeds.",
+        "frb response jeffcott --csv response.csv",
+    ),
     "limit-cycles": (
         "frbcli.cli.machines.limit_cycles",
         "Hopf points, limit cycles and folds over speed, stable or not.",
+        "frb limit-cycles jeffcott --set film.theory=short",
     ),
-    "accuracy": ("frbcli.cli.studies.accuracy", "Compare cost and error of theories, meshes, tolerances, couplings."),
-    "sweep": ("frbcli.cli.studies.sweep", "Run one case with many settings, on all cores or a cluster."),
-    "report": ("frbcli.cli.pictures.report", "Write a run as one page: machine, events, waterfall, orbits, errors."),
-    "export": ("frbcli.cli.pictures.export", "Write the signals of a run as CSV, Parquet or MAT."),
-    "cases": ("frbcli.cli.cases", "List, show or copy the shipped cases."),
-    "schema": ("frbcli.cli.schema", "Print the JSON Schema of a case file for editors."),
+    "accuracy": (
+        "frbcli.cli.studies.accuracy",
+        "Compare cost and error of theories, meshes, tolerances, couplings.",
+        "frb accuracy jeffcott --until '1 s'",
+    ),
+    "sweep": (
+        "frbcli.cli.studies.sweep",
+        "Run one case with many settings, on all cores or a cluster.",
+        "frb sweep jeffcott --set bearing.clearance='30 um,35 um,40 um' --stability",
+    ),
+    "report": (
+        "frbcli.cli.pictures.report",
+        "Write a run as one page: machine, events, waterfall, orbits, errors.",
+        "frb report run.h5 --speed '100 Hz'",
+    ),
+    "export": (
+        "frbcli.cli.pictures.export",
+        "Write the signals of a run as CSV, Parquet or MAT.",
+        "frb export run.h5 --format mat",
+    ),
+    "cases": ("frbcli.cli.casefiles.cases", "List, show or copy the shipped cases.", "frb cases jeffcott -o my.toml"),
+    "schema": ("frbcli.cli.casefiles.schema", "Print the JSON Schema of a case file for editors.", "frb schema > schema.json"),
 }
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
 LIGHT = ("cases", "schema")  # compute nothing
+
+
+def command_named(name: str) -> click.Command:
+    """The command of a row of the table, with its help and example."""
+    place, summary, example = COMMANDS[name]
+    module, _, attribute = place.partition(":")
+    command: click.Command = getattr(importlib.import_module(module), attribute or "command")
+    command.name, command.help = name, command.help or summary
+    command.epilog = f"\b\nExample:\n  {example}"
+    return command
 
 
 class LazyGroup(click.Group):
@@ -68,11 +142,7 @@ class LazyGroup(click.Group):
             return None
         if name not in LIGHT:
             require_memory()
-        module, summary = COMMANDS[name]
-        command: click.Command = importlib.import_module(module).command
-        command.name = name
-        command.help = command.help or summary
-        return command
+        return command_named(name)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -85,7 +155,7 @@ class LazyGroup(click.Group):
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
-            formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
+            formatter.write_dl([(name, summary) for name, (_, summary, _) in COMMANDS.items()])
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})

@@ -129,7 +129,7 @@ def test_errors_become_exit_codes(
     module = ModuleType("raising")
     module.command = _raising(error)  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "raising", module)
-    monkeypatch.setitem(cli.COMMANDS, "check", ("raising", "Raises."))
+    monkeypatch.setitem(cli.COMMANDS, "check", ("raising", "Raises.", "frb check"))
     assert run(["check", "--json"]) == code
     captured = capsys.readouterr()
     if status is None:
@@ -143,7 +143,7 @@ def test_bugs_are_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
     module = ModuleType("raising")
     module.command = _raising(ZeroDivisionError())  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "raising", module)
-    monkeypatch.setitem(cli.COMMANDS, "check", ("raising", "Raises."))
+    monkeypatch.setitem(cli.COMMANDS, "check", ("raising", "Raises.", "frb check"))
     with pytest.raises(ZeroDivisionError):
         run(["check"])
 
@@ -156,7 +156,7 @@ def test_command_s_own_exit_code_is_that_of_frb(monkeypatch: pytest.MonkeyPatch)
     module = ModuleType("returning")
     module.command = command  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "returning", module)
-    monkeypatch.setitem(cli.COMMANDS, "check", ("returning", "Returns."))
+    monkeypatch.setitem(cli.COMMANDS, "check", ("returning", "Returns.", "frb check"))
     assert run(["check"]) == 3
 
 

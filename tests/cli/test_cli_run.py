@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from paths import ROOT
 
 from frbcli.cli.main import run as frb
-from frbcli.cli.runs.live import progress_line
+from frbcli.cli.progress import progress_line
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import Progress
 
@@ -272,7 +272,7 @@ def test_without_a_terminal_a_line_now_and_then_tells_the_progress(
     words = ["runup", "jeffcott", "-o", str(tmp_path / "run.h5"), "--no-picture", "--force"]
     assert frb(words) == 0
     assert "steps/rev" not in capsys.readouterr().err
-    monkeypatch.setattr("frbcli.cli.runs.transient.TOLD_EVERY_s", 0.02)
+    monkeypatch.setattr("frbcli.cli.progress.TOLD_EVERY_s", 0.02)
     assert frb(words) == 0
     assert "steps/rev" in capsys.readouterr().err
     assert frb([*words, "--quiet"]) == 0

@@ -9,11 +9,10 @@ from collections import Counter
 import pytest
 
 import frbcli
-from frbcli.cli import common
+from frbcli.cli import common, progress
 from frbcli.cli.common import Terminal
 from frbcli.cli.main import run
-from frbcli.cli.runs import live
-from frbcli.cli.runs.live import counting, of_runs
+from frbcli.cli.progress import Display
 from frbcli.runs.march import Progress
 
 PROGRESS = Progress(0.5, 1.0, 30.0, 0.4, 100, 40.0, 1e6, 3.0)
@@ -24,7 +23,7 @@ def test_the_time_left_is_that_of_the_pace(monkeypatch: pytest.MonkeyPatch) -> N
     now = [100.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
     lines: list[str] = []
-    observe = counting(Terminal(), lines.append)
+    observe = Display(Terminal(), lines.append).counting()
     for number in range(1, 6):
         observe(number, 10)
         now[0] += 2.0
@@ -37,13 +36,14 @@ def test_without_a_terminal_a_line_comes_now_and_then(
 ) -> None:
     spent = [0.0]
     monkeypatch.setattr(time, "process_time", lambda: spent[0])
-    observe, tell = counting(Terminal(), None), of_runs(Terminal(), None)
+    shown = Display(Terminal())
+    observe, tell = shown.counting(), shown.of_runs()
     for number in range(1, 100):
         observe(number, 100)
         tell("a rung", number, 100, PROGRESS)
         spent[0] += 1.0
     lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 2 * int(99 / (live.TOLD_EVERY_s + 1.0))
+    assert len(lines) == 2 * int(99 / (progress.TOLD_EVERY_s + 1.0))
     assert any(re.match(r"\d+ of 100: a rung: .*left$", line) for line in lines)
 
 

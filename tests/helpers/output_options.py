@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 from typing import NamedTuple
 
 import click
 
 from frbcli.cli.files import InputFile, OutputFile, OutputFolder
-from frbcli.cli.main import COMMANDS
+from frbcli.cli.main import COMMANDS, command_named
 
 SHORT = ("--set", "film.theory=short", "--set", "speed.duration=0.1 s")
 CASE, RUN, TABLE = "my.toml", "whole.h5", "measured.csv"
@@ -23,7 +22,7 @@ class Option(NamedTuple):
 
 
 def parameters(command: str) -> list[click.Parameter]:
-    return importlib.import_module(COMMANDS[command][0]).command.params  # type: ignore[no-any-return]
+    return command_named(command).params
 
 
 def output_options() -> list[Option]:

@@ -16,8 +16,8 @@ from PIL import Image
 from synthetic_run import Rotor, make_run
 
 import frbcli
+from frbcli.cli.looks import Look, Size
 from frbcli.cli.main import frb
-from frbcli.cli.pictures.picture_options import Look, Size
 from frbcli.plot.look import fit
 from frbcli.plot.machine.campbell import campbell_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure

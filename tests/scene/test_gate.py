@@ -3,7 +3,6 @@ with the same sentence, before anything is computed. Both lists are made from th
 
 from __future__ import annotations
 
-import importlib
 import inspect
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +14,7 @@ import pytest
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.cli.main import COMMANDS, run
+from frbcli.cli.main import COMMANDS, command_named, run
 from frbcli.errors import InputError
 
 MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'
@@ -79,8 +78,7 @@ def _takes_a_case(function: Callable[..., Any]) -> bool:
 
 def case_commands() -> list[str]:
     """The commands with an argument CASE."""
-    commands = {name: importlib.import_module(module).command for name, (module, _) in COMMANDS.items()}
-    return [name for name, command in commands.items() if any(map(_is_case, command.params))]
+    return [name for name in COMMANDS if any(map(_is_case, command_named(name).params))]
 
 
 def _is_case(parameter: click.Parameter) -> bool:

@@ -1,95 +1,95 @@
-"""What `frb rotation`, `frb squeeze`, `frb whirl` and their comparison share: options, table, JSON."""
+"""`frb rotation`, `frb squeeze`, `frb whirl`: the kinematic bearing tests of section 4.2.2, and their comparison."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from operator import attrgetter
-from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from frbcli.cli.bearings.heat import film_document, tell_film
-from frbcli.cli.common import Names, Terminal
-from frbcli.cli.files import OUTPUT, check_outputs, here
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.runs.compiling import compilation_shown
-from frbcli.cli.runs.live import counting, live_lines
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.files import here
+from frbcli.cli.options import cavitation_option
+from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.progress import computing
 from frbcli.errors import INTERRUPTED, NotConverged
 
 if TYPE_CHECKING:
     from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
     from frbcli.case.schema import Case
+    from frbcli.plot.style import Picture
 
-WIDTH = 80
 LARGEST = "Values are those of the moment of the largest force."
 
 
-def kinematic_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command --cavitation, -o and --picture."""
-    cavitation = click.option(
-        "--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]"
-    )
-    output = click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-TEST.png]")
-    picture = click.option("--picture/--no-picture", default=True, help="A picture of all models.")
-    decorated: Callable[..., Any] = cavitation(output(picture(function)))
-    return decorated
+def _command(test: str, description: str) -> Callable[..., Any]:
+    """The command of a test."""
+
+    @click.command(help=description)
+    @case_argument
+    @cavitation_option
+    @outputs_options(f"CASE-{test}.png, here")
+    @output_options
+    def command(case: Case, cavitation: tuple[str, ...], outputs: OutputOptions, terminal: Terminal) -> int | None:
+        return run_test(case, test, cavitation, outputs, terminal)
+
+    return command
+
+
+rotation = _command(
+    "rotation", "Rotation of a journal at a displacement or under a load: pressure, forces, torque, oil."
+)
+squeeze = _command("squeeze", "Vertical oscillation of a journal (4.47): force over time.")
+whirl = _command("whirl", "Circular motion of a journal (4.48): pressure at the bottom of the bearing over time.")
 
 
 def run_test(
-    case: Case,
-    test: str,
-    cavitation: tuple[str, ...],
-    output: Path | None,
-    picture: bool,
-    terminal: Terminal,
+    case: Case, test: str, cavitation: tuple[str, ...], options: OutputOptions, terminal: Terminal,
     compared: bool = False,
-) -> int | None:
+) -> int | None:  # fmt: skip
     """Run a test, print and draw it; its exit code. compared: the document is that of `frb compare`."""
     from frbcli.bearing_tests import kinematic
 
-    target = output or here(case.name, f"-{test}.png")
-    check_outputs(picture=target if picture else None)
+    outputs = options.check(here(case.name, f"-{'compare' if compared else test}.png"))
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = tests[test](case, cavitation, counting(terminal, show))
-    report(found, terminal)
-    results = [result_document(result) for result in found.results]
+    with computing(terminal, case) as shown:
+        found = tests[test](case, cavitation, shown.counting())
+    _report(found, terminal)
+    if not _can_draw(found, terminal):
+        outputs = replace(outputs, picture=None)
+    written = outputs.write(terminal, found.to_pandas, lambda: _figure(found))
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
     whole = {} if found.complete else {"status": "interrupted"}
-    terminal.emit({**head, **whole, "results": results})
-    if picture:
-        draw_test(found, target, terminal)
-    return exit_code(found)
-
-
-def exit_code(found: KinematicTest) -> int | None:
-    """130 if it was interrupted, 3 if a model did not converge."""
+    terminal.emit({**head, **whole, "results": list(map(_document, found.results)), **written})
     if not found.complete:
         return INTERRUPTED
     return NotConverged.exit_code if any(result.status != "ok" for result in found.results) else None
 
 
-def draw_test(found: KinematicTest, target: Path, terminal: Terminal) -> None:
-    """The picture of a test, if it has results."""
+def _can_draw(found: KinematicTest, terminal: Terminal) -> bool:
+    if all(result.loads is None for result in found.results):
+        return False
+    if found.test == "rotation" and all(result.field is None for result in found.results):
+        terminal.remark("No picture: a bearing model has no pressure.")
+        return False
+    return True
+
+
+def _figure(found: KinematicTest) -> Picture:
     from frbcli.plot.machine.film import film_figure
     from frbcli.plot.machine.history import history_figure
 
-    if all(result.loads is None for result in found.results):
-        return
-    if found.test == "rotation" and all(result.field is None for result in found.results):
-        terminal.remark("No picture: a bearing model has no pressure.")
-        return
-    draw(terminal, lambda: film_figure(found) if found.test == "rotation" else history_figure(found), target)
+    return film_figure(found) if found.test == "rotation" else history_figure(found)
 
 
-def report(found: KinematicTest, terminal: Terminal) -> None:
+def _report(found: KinematicTest, terminal: Terminal) -> None:
     """Two tables: forces and oil."""
     from frbcli.bearing_tests.columns import FORCES, OIL, RESULT, error_column, force_size
-    from frbcli.columns import heads, legend, table_of
+    from frbcli.columns import table_of
 
-    title = found.case.title or found.case.name
     columns = (*RESULT, error_column(max(map(force_size, found.results), default=0.0)))
     table = table_of(columns, found.results)
     rows: dict[str, list[Sequence[str]]] = {FORCES: [], OIL: []}
@@ -97,9 +97,9 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
         solved = result.loads is not None
         rows[FORCES].append(forces if solved else (forces[0], "none", *[""] * (len(forces) - 2)))
         rows[OIL].append(oil if solved else (oil[0], *[""] * (len(oil) - 2), oil[-1]))
-    for name, heading in ((FORCES, f"{title}: {found.test}"), (OIL, "")):
-        terminal.table(heading, heads(columns, name), rows[name])
-    terminal.result(fill(f"{legend(columns, FORCES)}; {legend(columns, OIL)}.", WIDTH))
+    for name, heading in ((FORCES, f"{found.case.heading}: {found.test}"), (OIL, "")):
+        terminal.table(heading, table.heads(name), rows[name])
+    terminal.sentence(f"{table.legend(FORCES)}; {table.legend(OIL)}.")
     for result in found.results:
         if result.heat is not None:
             tell_film(terminal, result.heat, f"{result.name}: the film when it is warm")
@@ -112,11 +112,11 @@ def report(found: KinematicTest, terminal: Terminal) -> None:
         terminal.result("Interrupted: the other models were not computed.")
 
 
-def result_document(result: KinematicResult) -> dict[str, Any]:
+def _document(result: KinematicResult) -> dict[str, Any]:
     """A result in JSON; null where there is no solution."""
     from frbcli.bearing_tests.columns import HISTORY, RESULT
-    from frbcli.columns import named, table_of
+    from frbcli.columns import document, named
 
     history = () if result.plan.test == "rotation" else named(HISTORY, "", attrgetter("history"))
-    (document,) = table_of((*RESULT, *history), [result]).documents()
-    return document if result.heat is None else document | {"thermal": film_document(result.heat)}
+    found = document((*RESULT, *history), result)
+    return found if result.heat is None else found | {"thermal": film_document(result.heat)}

@@ -5,25 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import INPUTS, OUTPUT, check_outputs, here
-from frbcli.cli.pictures.picture_options import picture_options
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.quantities import SPEED_OPTION
-from frbcli.cli.runs.compiling import compilation_shown
-from frbcli.cli.runs.live import counting, live_lines
-from frbcli.cli.studies.gathered import gathered
+from frbcli.cli.files import INPUTS, here
+from frbcli.cli.options import gathered, speeds_option
+from frbcli.cli.outputs import OutputOptions, Outputs, outputs_options
+from frbcli.cli.progress import Display, computing
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.maps.stability_map import MapPoint, StabilityMap
     from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint, SpectralLine, UnbalancedWhirl
     from frbcli.plot.spectra.run_track import RunTrack
+    from frbcli.plot.style import Picture
 
 ASKED = "asked"
 MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
@@ -50,8 +47,7 @@ class Range:
 
 @click.command()
 @case_argument
-@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
-              help='Cycles at exactly this rotor speed, with their orbits, e.g. "200 Hz". Repeatable.')  # fmt: skip
+@speeds_option("those of the diagram; at given ones the cycles have their orbits")
 @click.option("--over", default="speed", metavar="KEY",
               help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
 @click.option("--and", "key", metavar="KEY",
@@ -61,15 +57,12 @@ class Range:
 @click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and beside --over KEY.")
 @click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and beside --over KEY.")
 @click.option("--points", type=click.IntRange(2, 500), default=3,
-              help="Number of values of --and whose diagrams tell where curves begin. [3]")  # fmt: skip
+              help="Number of values of --and at which diagrams are computed, where curves begin. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
-              help="What stable cycles become with unbalance: whirls of two frequencies or locked in.")  # fmt: skip
+              help="Add what stable cycles become with unbalance: whirls of two frequencies or locked in.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
-              help="Draw the eccentricities of runs of the case over the diagram.")  # fmt: skip
-@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-limit-cycles.png, here]")
-@click.option("--no-picture", is_flag=True, help="No picture.")
-@click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all points as a table, too.")
-@picture_options
+              help="Draw the eccentricities of runs of CASE over the diagram.")  # fmt: skip
+@outputs_options("CASE-limit-cycles.png, here")
 @output_options
 @gathered("varied", Range)
 def command(
@@ -78,9 +71,7 @@ def command(
     varied: Range,
     with_unbalance: bool,
     runs: tuple[Path, ...],
-    output: Path | None,
-    no_picture: bool,
-    csv: Path | None,
+    outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
     """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
@@ -90,10 +81,7 @@ def command(
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
-    from frbcli.results.files.kinds import TABLES
 
-    if no_picture and output is not None:
-        raise click.UsageError("-o names the picture that --no-picture leaves out.")
     _check_range(varied)
     over, key, low, high = varied.over, varied.key, varied.low, varied.high
     along_speed = over == "speed"
@@ -102,30 +90,26 @@ def command(
     if with_unbalance and (key is not None or not along_speed):
         raise click.UsageError("--with-unbalance is of the diagram of one case over its speed.")
     drawn = "limit-cycles" if key is None else "stability-map"
-    picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
-    check_outputs((csv, TABLES["csv"]), picture=picture)
+    places = outputs.check(here(case.name, f"-{drawn}.png"))
     at = speeds[0] if speeds else case.speed.end
     if varied.second is not None:
         across = None if along_speed or low is None or high is None else (over, low, high, at)
-        _map(terminal, case, (*varied.second, varied.points), across, (picture, csv))
+        _map(terminal, case, (*varied.second, varied.points), across, places)
         return
     tracks = [track for name in runs for track in _tracks(name)]
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+    with computing(terminal, case) as shown:
         if not along_speed and low is not None and high is not None:
-            found = limit_cycles_over(case, over, low, high, at, _showing(show))
+            found = limit_cycles_over(case, over, low, high, at, _showing(shown))
         else:
-            found = limit_cycles(case, speeds, _showing(show), with_unbalance)
+            found = limit_cycles(case, speeds, _showing(shown), with_unbalance)
     _tell(terminal, found)
-    if csv is not None:
-        from frbcli.results.files.tables import write_table
+    terminal.emit(_document(found) | places.write(terminal, found.to_pandas, lambda: _figure(found, tracks)))
 
-        write_table(found.to_pandas(), csv)
-        terminal.result(f"table: {csv}")
-    if picture is not None:
-        from frbcli.plot.machine.limit_cycles import limit_cycles_figure
 
-        picture = draw(terminal, lambda: limit_cycles_figure(found, tracks), picture)
-    terminal.emit(_document(found) | {"picture": picture, "csv": csv})
+def _figure(found: LimitCycles, tracks: list[RunTrack]) -> Picture:
+    from frbcli.plot.machine.limit_cycles import limit_cycles_figure
+
+    return limit_cycles_figure(found, tracks)
 
 
 def _check_range(varied: Range) -> None:
@@ -141,31 +125,25 @@ def _map(
     case: Case,
     second: tuple[str, str, str, int],
     first: tuple[str, str, str, float] | None,
-    files: tuple[Path | None, Path | None],
+    places: Outputs,
 ) -> None:
-    """The map over the speed or a first number (key, from, to, speed in Hz) and a second one (key, from, to, points).
-
-    files: picture and table.
-    """
+    """Map over the speed or a first number (key, from, to, speed in Hz), and a second one (key, from, to, points)."""
     from frbcli.cycles.maps.stability_map import Across, stability_map
     from frbcli.scene.films import film_places
 
-    picture, csv = files
     across = None if first is None else Across(*first)
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = stability_map(case, *second, counting(terminal, show), across)
+    with computing(terminal, case) as shown:
+        found = stability_map(case, *second, shown.counting(), across)
     _tell_map(terminal, found)
-    if csv is not None:
-        from frbcli.results.files.tables import write_table
-
-        write_table(found.to_pandas(), csv)
-        terminal.result(f"table: {csv}")
-    if picture is not None:
-        from frbcli.plot.machine.stability_map import stability_map_figure
-
-        picture = draw(terminal, lambda: stability_map_figure(found), picture)
     names = tuple(place.name for place in film_places(case))
-    terminal.emit(_map_document(names, found) | {"picture": picture, "csv": csv})
+    written = places.write(terminal, found.to_pandas, lambda: _map_figure(found))
+    terminal.emit(_map_document(names, found) | written)
+
+
+def _map_figure(found: StabilityMap) -> Picture:
+    from frbcli.plot.machine.stability_map import stability_map_figure
+
+    return stability_map_figure(found)
 
 
 def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
@@ -181,15 +159,15 @@ def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
         for point in found.special
     ]  # fmt: skip
     columns = (found.key, "point", found.over_unit or found.over, "whirl Hz", "")
-    terminal.table(found.case.title or found.case.name, columns, rows)
+    terminal.table(found.case.heading, columns, rows)
     for curve in found.curves:
         values = [point.value for point in curve.points]
         told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
         named = "Hopf points" if curve.kind == "hopf" else "folds"
-        terminal.result(_wrapped(" ".join([f"Curve of {named}: {told}", *curve.notes])))
+        terminal.sentence(" ".join([f"Curve of {named}: {told}", *curve.notes]))
     for row in found.rows:
         if row.problem:
-            terminal.result(_wrapped(f"{row.value:.4g} {found.unit}: {row.problem}"))
+            terminal.sentence(f"{row.value:.4g} {found.unit}: {row.problem}")
 
 
 def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, object]:
@@ -241,12 +219,10 @@ def _tracks(path: Path) -> tuple[RunTrack, ...]:
     return run_tracks(read_run(path), path.stem)
 
 
-def _showing(show: Callable[[str], None] | None) -> Callable[[int, float, float], None]:
-    def observe(number: int, value: float, eccentricity: float) -> None:
-        if show is not None:
-            show(f"cycle {number}: at {value:.4g}, eccentricity {eccentricity:.4f}")
-
-    return observe
+def _showing(shown: Display) -> Callable[[int, float, float], None]:
+    return lambda number, value, eccentricity: shown.redraw(
+        f"cycle {number}: at {value:.4g}, eccentricity {eccentricity:.4f}"
+    )
 
 
 def _tell(terminal: Terminal, found: LimitCycles) -> None:
@@ -263,15 +239,15 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
         for point in found.special
     ]
     columns = ("point", "branch", found.unit or found.over, "whirl Hz", "ratio", "eps max", "")
-    terminal.table(found.case.title or found.case.name, columns, rows)
+    terminal.table(found.case.heading, columns, rows)
     for number, branch in enumerate(found.branches):
         values = [point.value for point in branch.points]
         if not values:
-            terminal.result(_wrapped(f"Branch {number + 1} has no cycles. {branch.note}"))
+            terminal.sentence(f"Branch {number + 1} has no cycles. {branch.note}")
             continue
         stable = sum(point.stable for point in branch.points)
         told = f"{len(values)} cycles from {min(values):.4g} to {max(values):.4g} {found.unit}, {stable} stable."
-        terminal.result(_wrapped(f"Branch {number + 1}: {told} {branch.note}"))
+        terminal.sentence(f"Branch {number + 1}: {told} {branch.note}")
     for number, branch in enumerate(found.branches):
         for point in branch.points:
             if point.kind == ASKED:
@@ -280,7 +256,7 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
                 terminal.result(f"{at}, eccentricity {point.eccentricity_max.max():.5f}")
     _tell_with_unbalance(terminal, found)
     for note in (*found.notes, *_left_out(found)):
-        terminal.result(_wrapped(note))
+        terminal.sentence(note)
     terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
 
 
@@ -323,10 +299,6 @@ def _left_out(found: LimitCycles) -> list[str]:
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes
-
-
-def _wrapped(text: str) -> str:
-    return fill(text, 80, break_long_words=False, break_on_hyphens=False)
 
 
 def _document(found: LimitCycles) -> dict[str, object]:

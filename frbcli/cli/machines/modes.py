@@ -1,34 +1,36 @@
-"""Natural frequencies of a turbocharger rotor in the output of `frb stability`."""
+"""Natural frequencies and damped mode shapes of a rotor in the output of `frb stability`."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.machines.stability_table import tell_largest_error
+from frbcli.cli.progress import computing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
+    from frbcli.cli.outputs import Outputs
+    from frbcli.linear.damped_modes import DampedMode, DampedModes
     from frbcli.linear.modes import Mode, Modes
+    from frbcli.plot.style import Picture
 
 LONGEST_TABLE = 13  # rows of the text
 TOLD = 3  # slowest modes of each direction
 
 
-def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], picture: Path | None) -> None:
+def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], places: Outputs) -> None:
     """Table, picture and JSON of the rotor, free and on springs of a stiffness in N/m, at speeds in Hz."""
     from frbcli.linear.modes import natural_modes
-    from frbcli.plot.machine.modes import modes_figure
 
     found = [natural_modes(case, None, [0.0]), natural_modes(case, stiffness, speeds or None)]
     for modes in found:
         tell_modes(terminal, modes)
-    if picture is not None:
-        drawn = natural_modes(case, stiffness) if speeds else found[1]
-        picture = draw(terminal, lambda: modes_figure(drawn), picture, "Natural modes")
+    drawn = natural_modes(case, stiffness) if speeds else found[1]
+    written = places.write(terminal, found[1].to_pandas, lambda: _modes_figure(drawn), "Natural modes")
     terminal.emit(
         {
             "command": "stability",
@@ -36,9 +38,21 @@ def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequenc
             "points": [],
             "threshold": None,
             "natural_frequencies": [modes_document(modes) for modes in found],
-            "picture": picture,
+            **written,
         }
     )
+
+
+def _modes_figure(modes: Modes) -> Picture:
+    from frbcli.plot.machine.modes import modes_figure
+
+    return modes_figure(modes)
+
+
+def _shapes_figure(found: DampedModes) -> Picture:
+    from frbcli.plot.machine.shapes import shapes_figure
+
+    return shapes_figure(found)
 
 
 def tell_modes(terminal: Terminal, modes: Modes) -> None:
@@ -92,3 +106,34 @@ def modes_document(modes: Modes) -> dict[str, object]:
             "missing_flexibility_m_N": None if error is None else error.missing_flexibility,
         },
     }
+
+
+def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs) -> None:
+    """Table, picture and JSON of the modes of a rotor in its films at a speed in Hz."""
+    from frbcli.linear.damped_modes import damped_modes
+
+    with computing(terminal, case):
+        found = damped_modes(case, speed_Hz)
+    terminal.show(f"Damped modes at {speed_Hz:.5g} Hz", found.table())
+    if not found.modes:
+        terminal.result("No mode oscillates.")
+        places = replace(places, picture=None)
+    tell_largest_error(terminal, [(found.coefficient_error, speed_Hz)])
+    modes, motions = found.table().documents(), [_motion(found.points, mode) for mode in found.modes]
+    terminal.emit(
+        {
+            "command": "stability",
+            "case": case.name,
+            "points": [],
+            "threshold": None,
+            "speed_Hz": speed_Hz,
+            "error": {"coefficients_relative": found.coefficient_error},
+            "modes": [document | {"motion": motion} for document, motion in zip(modes, motions, strict=True)],
+            **places.write(terminal, found.to_pandas, lambda: _shapes_figure(found), "mode shapes"),
+        }
+    )
+
+
+def _motion(points: tuple[str, ...], mode: DampedMode) -> list[dict[str, object]]:
+    named = zip(points, mode.motion, strict=True)
+    return [{"point": name, "x": [x.real, x.imag], "y": [y.real, y.imag]} for name, (x, y) in named]

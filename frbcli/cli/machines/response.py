@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
 
-from frbcli.cli.bearings.coefficient_error import errors_of, tell_coefficient_error
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT, check_outputs, here
-from frbcli.cli.pictures.picture_options import picture_options
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.quantities import SPEED_OPTION
-from frbcli.cli.runs.compiling import compilation_shown
-from frbcli.cli.runs.live import counting, live_lines
+from frbcli.cli.files import INPUT, here
+from frbcli.cli.machines.stability_table import tell_coefficient_error
+from frbcli.cli.options import speeds_option
+from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.progress import computing
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -26,7 +23,6 @@ if TYPE_CHECKING:
     from frbcli.plot.style import Picture
     from frbcli.results.store import Run
 
-COLUMNS = 80
 MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
 EXPLANATION = (
     "um: larger semi-axis of the orbit; deg: phase of the forward motion to the\n"
@@ -38,50 +34,33 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
 
 @click.command()
 @case_argument
-@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
-              help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [120 over the range of the case]')  # fmt: skip
+@speeds_option("120 over the range of CASE")
 @click.option("--run", "run_file", type=INPUT, metavar="RUN.h5",
-              help="Draw the synchronous motion of a run of the case over the response.")  # fmt: skip
-@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-response.png, here]")
+              help="Draw the synchronous motion of a run of CASE over the response.")  # fmt: skip
 @click.option("--map", "as_map", is_flag=True,
               help="Draw the undamped critical speed map, over the stiffness of the bearings.")  # fmt: skip
-@click.option("--no-picture", is_flag=True, help="No picture.")
-@click.option("--csv", metavar="FILE", type=OUTPUT, help="Write all amplitudes and phases as a table, too.")
-@picture_options
+@outputs_options("CASE-response.png, here")
 @output_options
 def command(
     case: Case,
     speeds: tuple[float, ...],
     run_file: Path | None,
-    output: Path | None,
     as_map: bool,
-    no_picture: bool,
-    csv: Path | None,
+    outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
     """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping."""
-    from frbcli.columns import spread_table, table_of
+    from frbcli.columns import documents, spread_table
     from frbcli.linear.columns import RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
     from frbcli.linear.response import response
-    from frbcli.results.files.kinds import TABLES
     from frbcli.results.store import read_run
 
-    if no_picture and output is not None:
-        raise click.UsageError("-o names the picture that --no-picture leaves out.")
-    picture = None if no_picture else output or here(case.name, "-critical-map.png" if as_map else "-response.png")
-    check_outputs((csv, TABLES["csv"]), picture=picture)
+    places = outputs.check(here(case.name, "-critical-map.png" if as_map else "-response.png"))
     run = None if run_file is None else read_run(run_file)
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = response(case, speeds or None, counting(terminal, show))
+    with computing(terminal, case) as shown:
+        found = response(case, speeds or None, shown.counting())
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     _tell(terminal, found, bool(speeds))
-    if csv is not None:
-        from frbcli.results.files.tables import write_table
-
-        write_table(found.to_pandas(), csv)
-        terminal.result(f"table: {csv}")
-    if picture is not None:
-        picture = draw(terminal, lambda: _figure(found, tracks, as_map), picture)
     films = ((point, film) for point in found.resting for film in point.films)
     terminal.emit(
         {
@@ -90,10 +69,9 @@ def command(
             "points": found.table().documents(),
             "forces": spread_table(RESPONSE_FORCES, found).documents(),
             "films": spread_table(RESPONSE_FILMS, found).documents(),
-            "coefficients": table_of(RESPONSE_COEFFICIENTS, films).documents(),
+            "coefficients": documents(RESPONSE_COEFFICIENTS, films),
             "critical_speeds_Hz": found.critical_speeds_Hz,
-            "picture": picture,
-            "csv": csv,
+            **places.write(terminal, found.to_pandas, lambda: _figure(found, tracks, as_map)),
         }
     )
 
@@ -138,16 +116,16 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
         rows.append((speed, *motions, growth, *([f"{eccentricity}{MARKS[validity[i]]}"] if in_films else [])))
     named = [name.replace("_", " ") for name in shown]
     columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", *(["eps"] if in_films else []))
-    terminal.table(found.case.title or found.case.name, columns, rows)
+    terminal.table(found.case.heading, columns, rows)
     if len(found.points) > len(shown):
         rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
     terminal.result(EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + ".")
     for sentence in _doubts(found):
-        terminal.result(fill(sentence, COLUMNS))
+        terminal.sentence(sentence)
     peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)
     terminal.result(f"Peaks at {peaks} Hz." if peaks else "No peak in the range.")
-    tell_coefficient_error(terminal, errors_of(found.resting))
+    tell_coefficient_error(terminal, found.resting)
 
 
 def _doubts(found: Response) -> list[str]:

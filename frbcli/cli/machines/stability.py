@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.bearings.coefficient_error import errors_of, tell_coefficient_error
 from frbcli.cli.bearings.heat import heat_document, tell_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import OUTPUT, check_outputs, here
-from frbcli.cli.machines.modes import emit_modes, modes_document, tell_modes
-from frbcli.cli.machines.shapes import emit_shapes
-from frbcli.cli.machines.stability_table import tell_points
-from frbcli.cli.pictures.picture_options import picture_options
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.quantities import SPEED_OPTION, STIFFNESS_OPTION
-from frbcli.cli.runs.compiling import compilation_shown
-from frbcli.cli.runs.live import counting, live_lines
+from frbcli.cli.files import here
+from frbcli.cli.machines.modes import emit_modes, emit_shapes, modes_document, tell_modes
+from frbcli.cli.machines.stability_table import tell_coefficient_error, tell_points
+from frbcli.cli.options import SPEED_OPTION, STIFFNESS_OPTION, speeds_option
+from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.progress import computing
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -28,27 +22,24 @@ if TYPE_CHECKING:
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
     from frbcli.linear.threshold import Threshold
+    from frbcli.plot.style import Picture
 
 
 @click.command()
 @case_argument
-@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
-              help='Exactly this rotor speed, e.g. "25 Hz". Repeatable. [60 over the range of the case]')  # fmt: skip
+@speeds_option("60 over the range of CASE")
 @click.option("--stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
 @click.option("--shapes", type=SPEED_OPTION, metavar="SPEED",
               help='Only the damped modes at this rotor speed, with their shapes, e.g. "200 Hz".')  # fmt: skip
-@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-campbell.png, here]")
-@click.option("--no-picture", is_flag=True, help="No Campbell diagram.")
-@picture_options
+@outputs_options("CASE-campbell.png, here")
 @output_options
 def command(
     case: Case,
     speeds: tuple[float, ...],
     stiffness: float | None,
     shapes: float | None,
-    output: Path | None,
-    no_picture: bool,
+    outputs: OutputOptions,
     terminal: Terminal,
 ) -> int | None:
     """Resting positions, coefficients of the films and eigenvalues of CASE over speed, and the threshold of stability.
@@ -60,28 +51,21 @@ def command(
     from frbcli.linear.modes import natural_modes
     from frbcli.linear.stability import stability
 
-    if no_picture and output is not None:
-        raise click.UsageError("-o names the picture that --no-picture leaves out.")
     if shapes is not None and (stiffness is not None or speeds):
         raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")
     drawn = "shapes" if shapes is not None else "campbell" if stiffness is None else "modes"
-    picture = None if no_picture else output or here(case.name, f"-{drawn}.png")
-    check_outputs(picture=picture)
+    places = outputs.check(here(case.name, f"-{drawn}.png"))
     if shapes is not None:
-        with compilation_shown(terminal, case):
-            emit_shapes(terminal, case, shapes, picture)
+        emit_shapes(terminal, case, shapes, places)
         return None
     if stiffness is not None:
-        emit_modes(terminal, case, stiffness, speeds, picture)
+        emit_modes(terminal, case, stiffness, speeds, places)
         return None
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        found = stability(case, speeds or None, counting(terminal, show))
+    with computing(terminal, case) as shown:
+        found = stability(case, speeds or None, shown.counting())
         kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
     _tell(terminal, found, kind, bool(speeds))
-    if picture is not None:
-        from frbcli.plot.machine.campbell import campbell_figure
-
-        picture = draw(terminal, lambda: campbell_figure(found), picture, "Campbell diagram")
+    written = places.write(terminal, found.to_pandas, lambda: _figure(found), "Campbell diagram")
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
@@ -96,11 +80,17 @@ def command(
             "threshold": _threshold(found),
             "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
             "note": found.note,
-            "picture": picture,
+            **written,
         }
         | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
     )
     return None if any(point.rests for point in found.points) else NotConverged.exit_code
+
+
+def _figure(found: Stability) -> Picture:
+    from frbcli.plot.machine.campbell import campbell_figure
+
+    return campbell_figure(found)
 
 
 def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, every_speed: bool) -> None:
@@ -108,7 +98,7 @@ def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, ever
     from frbcli.scene.supply import unfed_films
 
     tell_points(terminal, found, every_speed)
-    tell_coefficient_error(terminal, errors_of(found.points))
+    tell_coefficient_error(terminal, found.points)
     terminal.result(_sentence(found))
     warmest = found.points[-1]
     if warmest.warm is not None:
@@ -116,7 +106,7 @@ def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, ever
     if kind is not None:
         terminal.result(_character(kind))
     for film in unfed_films(found.case):
-        terminal.result(fill(film.remark, 80, break_long_words=False, break_on_hyphens=False))
+        terminal.sentence(film.remark)
     if step_times(found.case):
         terminal.result("Note: the clearances are the initial ones; bearing.clearance_steps changes them during a run.")
 
@@ -168,23 +158,22 @@ def _character(kind: ThresholdKind) -> str:
 
 def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
-    from frbcli.columns import keys, table_of
+    from frbcli.columns import document, documents, keys
     from frbcli.linear.columns import FILM, MODES, POINT
 
-    (document,) = table_of(POINT, [point]).documents()
-    films = table_of(FILM, point.films).documents()
-    document |= films[0] if films else dict.fromkeys(keys(FILM))
+    told, films = document(POINT, point), documents(FILM, point.films)
+    told |= films[0] if films else dict.fromkeys(keys(FILM))
     if len(films) > 1:
         named = zip(point.films, films, strict=True)
-        document["films"] = [{"film": film.name} | values for film, values in named]
+        told["films"] = [{"film": film.name} | values for film, values in named]
     if point.ring_speeds_Hz:
-        document["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
+        told["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
     if point.warm is not None:
-        document["thermal"] = heat_document(point.warm)
+        told["thermal"] = heat_document(point.warm)
     if point.problem:
-        document["problem"] = point.problem
-    document["modes"] = table_of(MODES, point.modes.tolist()).documents()
-    return document | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
+        told["problem"] = point.problem
+    told["modes"] = documents(MODES, point.modes.tolist())
+    return told | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
 
 
 def _threshold(found: Stability) -> dict[str, float] | None:

@@ -1,4 +1,5 @@
-"""The table of `frb stability` in 80 columns: resting positions and, for each speed, the modes with the least damping.
+"""The table of `frb stability` in 80 columns: resting positions and, for each speed, the modes with the least damping;
+and the error of the coefficients that static results are made of.
 
 All growing modes are listed, then the least damped ones.
 """
@@ -12,7 +13,7 @@ from frbcli.columns import heads, table_of
 from frbcli.linear.columns import FILM, MODES, SPEED, STABILITY
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from frbcli.cli.common import Terminal
     from frbcli.linear.stability import Stability
@@ -33,7 +34,7 @@ def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None
     rows = [line for point in shown for line in (_film_lines(point) if several else _lines(point))]
     speed, place, mode = (heads(columns, STABILITY) for columns in ((SPEED,), FILM, MODES))
     columns = (*speed, "film", *place, *mode) if several else (*speed, *place, *mode[:2] * MODES_TOLD, *mode[2:])
-    terminal.table(found.case.title or found.case.name, columns, rows)
+    terminal.table(found.case.heading, columns, rows)
     if several:
         terminal.result("Modes of the machine: all that grow (damping below 0), then the least damped.")
     if every > 1:
@@ -84,3 +85,19 @@ def _film_lines(point: StabilityPoint) -> list[tuple[str, ...]]:
 
 def _speed(point: StabilityPoint) -> str:
     return table_of((SPEED,), [point]).cells(STABILITY)[0][0]
+
+
+def tell_coefficient_error(terminal: Terminal, points: Iterable[StabilityPoint]) -> None:
+    """The largest error of the coefficients of some points."""
+    tell_largest_error(terminal, ((film.error, point.speed_Hz) for point in points for film in point.films))
+
+
+def tell_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]) -> None:
+    """The largest of some errors of coefficients, each with its speed in Hz; NaN is not known."""
+    known = [(error, speed) for error, speed in errors if not math.isnan(error)]
+    if known:
+        error, speed = max(known)
+        terminal.sentence(
+            "Expected error of the films' stiffness and damping, from other meshes: up to "
+            f"{100.0 * error:.1g} % of their largest entry, at {speed:.4g} Hz."
+        )

@@ -19,9 +19,9 @@ from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
     type=click.Choice(["csv", "parquet", "mat"]),
     default="csv",
     show_default=True,
-    help="parquet needs the extra frbcli[parquet].",
+    help="Format of the table; parquet needs the extra frbcli[parquet].",
 )
-@click.option("-o", "--output", metavar="FILE", type=OUTPUT, help='The file; "-" writes CSV to stdout. [RUN.FORMAT]')
+@click.option("-o", "--output", metavar="FILE", type=OUTPUT, help='Table; "-" writes CSV to stdout. [RUN.FORMAT]')
 @output_options
 def command(run_file: Path, table_format: str, output: Path | None, terminal: Terminal) -> None:
     """Write the signals of RUN.h5, one column each."""

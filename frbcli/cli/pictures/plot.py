@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs, here
-from frbcli.cli.pictures.picture_options import picture_options
-from frbcli.cli.pictures.pictures import draw_wanted
-from frbcli.cli.quantities import TIME_OPTION
+from frbcli.cli.common import SETTING, Terminal, output_options
+from frbcli.cli.files import INPUT, beside, check_outputs, here
+from frbcli.cli.looks import look_options
+from frbcli.cli.options import TIME_OPTION, over_option, signal_option
+from frbcli.cli.outputs import draw_wanted, picture_option
 
 if TYPE_CHECKING:
     from frbcli.plot.curves import Over
@@ -28,15 +28,15 @@ SUBJECTS = (*CURVES, "orbit", "displacement", "summary", LAW)
 
 @click.command()
 @click.argument("run_files", metavar="RUN.h5...|CASE", type=INPUT, nargs=-1, required=True)
-@click.option("--what", type=click.Choice(SUBJECTS), default="eccentricity", show_default=True, help="The picture.")
-@click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Begin, e.g. "6.4 s".')
-@click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End.")
-@click.option("--over", type=click.Choice(["time", "speed"]), default="time", show_default=True, help="The axis.")
-@click.option("--signal", help="Of a displacement: disk or journal; NAME of a bearing or disk.")
-@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Of a law: set a key of CASE. Repeatable.")
-@click.option("--animate", is_flag=True, help="Of an orbit: a moving picture, GIF, or MP4 where ffmpeg is installed.")
-@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-WHAT.png]")
-@picture_options
+@click.option("--what", type=click.Choice(SUBJECTS), default="eccentricity", show_default=True, help="Subject.")
+@click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Begin of what is drawn, e.g. "6.4 s".')
+@click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End of what is drawn.")
+@over_option("time")
+@signal_option(None)
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=f"{SETTING} With --what law.")
+@click.option("--animate", is_flag=True, help="A moving picture of an orbit: GIF, or MP4 where ffmpeg is installed.")
+@picture_option("RUN-WHAT.png")
+@look_options
 @output_options
 def command(
     run_files: tuple[Path, ...],

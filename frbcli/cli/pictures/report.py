@@ -8,15 +8,14 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
-from frbcli.cli.quantities import SPEED_OPTION
+from frbcli.cli.options import signal_option, speeds_option
 
 
 @click.command()
 @click.argument("run_file", metavar="RUN.h5", type=INPUT)
-@click.option("-o", "--output", metavar="PAGE.html", type=OUTPUT, help="The page. [RUN-report.html]")
-@click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
-              help="Orbit and spectrum at this speed. Repeatable. [those of the events, and the last]")  # fmt: skip
-@click.option("--signal", default="journal", show_default=True, help="journal or disk; NAME of a bearing or disk.")
+@click.option("-o", "--output", metavar="PAGE.html", type=OUTPUT, help="Page. [RUN-report.html]")
+@speeds_option("those of the events, and the last; orbits and spectra are drawn there")
+@signal_option()
 @output_options
 def command(
     run_file: Path, output: Path | None, speeds: tuple[float, ...], signal: str, terminal: Terminal

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
-from frbcli.cli.pictures.picture_options import Span, picture_options
-from frbcli.cli.pictures.pictures import draw_wanted
-from frbcli.cli.quantities import TIME_OPTION
+from frbcli.cli.files import INPUT, beside, check_outputs
+from frbcli.cli.looks import Span, look_options
+from frbcli.cli.options import TIME_OPTION, Numbers, gathered, over_option, signal_option
+from frbcli.cli.outputs import draw_wanted, picture_option
 from frbcli.cli.runs.events import EVENT_COLUMNS, event_row
-from frbcli.cli.studies.gathered import gathered
 from frbcli.cli.studies.measured import measured_options, run_of, show_columns
 
 if TYPE_CHECKING:
@@ -24,20 +23,6 @@ if TYPE_CHECKING:
     from frbcli.plot.spectra.waterfall import Over
 
 MICRO = 1e6
-
-
-class Orders(click.ParamType[tuple[float, ...]]):
-    """Multiples of the rotor speed, separated by commas."""
-
-    name = "orders"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
-        if isinstance(value, tuple):
-            return value
-        try:
-            return tuple(float(number) for number in str(value).split(","))
-        except ValueError:
-            self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
 
 
 @dataclass(frozen=True)
@@ -56,16 +41,11 @@ class View:
 
 @click.command()
 @click.argument("run_file", metavar="RUN", type=INPUT)
-@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [RUN-waterfall.png]")
-@click.option("--signal", default="journal", show_default=True, help="journal or disk; NAME of a bearing or disk.")
-@click.option(
-    "--order",
-    "orders",
-    metavar="1,0.5",
-    type=Orders(),
-    help="Amplitudes by order in place of spectra; exact also in a ramp of the speed.",
-)
-@click.option("--over", type=click.Choice(["time", "speed"]), help="The axis. [time; speed with --order]")
+@picture_option("RUN-waterfall.png")
+@signal_option()
+@click.option("--order", "orders", metavar="1,0.5", type=Numbers(),
+              help="Amplitudes by order in place of spectra; exact also in a ramp of the speed.")  # fmt: skip
+@over_option(None)
 @click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
 @click.option("--window", type=TIME_OPTION, help="Length of one spectrum. [from the ramp, up to 0.2 s]")
 @click.option(
@@ -78,10 +58,10 @@ class View:
 @click.option("--log", is_flag=True, help="Logarithmic frequency; with --order amplitude.")
 @click.option("--levels", type=Span(), metavar="A,B", help="Range of the colours in dB, with --linear in um. [-60,0]")
 @click.option("--linear", is_flag=True, help="Amplitudes in um in place of levels in dB.")
-@click.option("--lines", type=Orders(), metavar="1,0.5", help="Orders whose lines are drawn in. [those of free whirls]")
+@click.option("--lines", type=Numbers(), metavar="1,0.5", help="Orders whose lines are drawn. [those of free whirls]")
 @click.option("--list", "listed", is_flag=True, help="List the columns of a measurement, with shapes and units.")
 @measured_options
-@picture_options
+@look_options
 @output_options
 @gathered("view", View)
 def command(

@@ -1,4 +1,4 @@
-"""What run-up and run-down share: options, live progress, the closing table, the JSON document, the exit code."""
+"""`frb runup` and `frb rundown`: options, live progress, the closing table, the JSON document, the exit code."""
 
 from __future__ import annotations
 
@@ -6,18 +6,17 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from frbcli.cli.common import Terminal
+from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
 from frbcli.cli.files import OUTPUT, beside, check_outputs, here
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.runs.compiling import compilation_shown
+from frbcli.cli.looks import look_options
+from frbcli.cli.options import gathered
+from frbcli.cli.outputs import draw, picture_switch
+from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
 from frbcli.cli.runs.events import EVENT_COLUMNS, event_row
-from frbcli.cli.runs.live import COLUMNS, LONGEST_LEFT_s, TOLD_EVERY_s, live_lines, progress_line
-from frbcli.cli.studies.gathered import gathered
 from frbcli.cli.studies.onset_spread import spread_shown
 from frbcli.errors import FrbError
 
@@ -51,21 +50,42 @@ class RunOptions:
 
 
 def run_options(function: Function) -> Function:
-    """Give a command --output, --resume, --force, --no-picture, --verify and --explain; it receives
-    `options: RunOptions`."""
-    output = click.option(
-        "--output", "-o", type=OUTPUT, default=None, metavar="RUN.h5", help="Run file. Default: CASE.h5 here."
-    )
+    """Give a command the options of a run; it receives `options: RunOptions`."""
+    output = click.option("-o", "--output", type=OUTPUT, metavar="RUN.h5", help="Run file. [CASE.h5, here]")
     resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
     force = click.option("--force", is_flag=True, help="Replace the run in the run file.")
-    picture = click.option("--picture/--no-picture", default=True, help="A summary picture beside the run.")
     verify = click.option(
         "--verify", is_flag=True, help="Run again with half the tolerance and step size, and report the change."
     )
     explain = click.option(
         "--explain", is_flag=True, help="Name the Hopf point or fold behind each onset and offset of a whirl."
     )
-    return output(resume(force(picture(verify(explain(gathered("options", RunOptions)(function)))))))
+    gathering = gathered("options", RunOptions)(function)
+    return output(resume(force(verify(explain(picture_switch(look_options(gathering)))))))
+
+
+@click.command()
+@case_argument
+@run_options
+@click.option("--onset-spread", is_flag=True,
+              help="Run again with other ramps, steps and cells: between which speeds a whirl begins.")  # fmt: skip
+@output_options
+def runup(case: Case, options: RunOptions, onset_spread: bool, terminal: Terminal) -> int:
+    """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
+    from frbcli.runs import run
+
+    return transient("runup", run.runup, case, options, terminal, onset_spread)
+
+
+@click.command()
+@case_argument
+@run_options
+@output_options
+def rundown(case: Case, options: RunOptions, terminal: Terminal) -> int:
+    """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture beside it."""
+    from frbcli.runs import run
+
+    return transient("rundown", run.rundown, case, options, terminal)
 
 
 def transient(
@@ -91,8 +111,8 @@ def transient(
     cost = run_cost(command, case)
     if cost.total_s > TOLD_s:
         terminal.remark(cost_line(cost))
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
-        run = run_case(case, path, resume=options.resume, observe=_watch(terminal, show), force=options.force)
+    with computing(terminal, case) as shown:
+        run = run_case(case, path, resume=options.resume, observe=_watch(terminal, shown), force=options.force)
     _report(case, run, terminal)
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if options.verify and run.status != "interrupted" else None
@@ -128,20 +148,16 @@ def cost_line(cost: ExpectedCost) -> str:
     return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
 
 
-def _watch(terminal: Terminal, show: Callable[[str], None] | None) -> Observer:
+def _watch(terminal: Terminal, shown: Display) -> Observer:
     """Shows the progress on a terminal, elsewhere as a line every now and then, and warns once if a run takes much
     longer than its plan expected."""
     from frbcli.scene.costs.cost import clock
 
-    said, told_s = False, 0.0
+    said, show = False, shown.now_and_then()
 
     def observe(progress: Progress) -> None:
-        nonlocal said, told_s
-        if show is not None:
-            show(progress_line(progress))
-        elif progress.cpu_s > told_s + TOLD_EVERY_s:
-            told_s = progress.cpu_s
-            terminal.remark(progress_line(progress))
+        nonlocal said
+        show(progress_line(progress))
         if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
             said = True
             left = (
@@ -162,9 +178,8 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     from frbcli.studies.verify import verify
 
     try:
-        with live_lines(terminal) as show:
-            watch = None if show is None else lambda progress: show(f"again\n{progress_line(progress)}")
-            found = verify(case, run, watch)
+        with display(terminal) as shown:
+            found = verify(case, run, lambda progress: shown.redraw(f"again\n{progress_line(progress)}"))
     except KeyboardInterrupt:
         terminal.remark("Interrupted before the end of the verification.")
         return {"status": "interrupted"}
@@ -196,7 +211,7 @@ def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
     except FrbError as error:
         told = (f"Not explained: {error}",)
     for sentence in told:
-        terminal.result(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
+        terminal.sentence(sentence)
     return told
 
 
@@ -212,7 +227,7 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
     for sentence in run_advice(case, run_end(run)):
-        terminal.remark(fill(sentence, COLUMNS, break_long_words=False, break_on_hyphens=False))
+        terminal.remark(wrapped(sentence))
     if run.events:
         terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
     terminal.table("cost and error", ("", "", ""), account(run))

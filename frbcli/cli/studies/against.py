@@ -7,33 +7,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.files import beside, check_outputs
-from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.files import beside
+from frbcli.cli.outputs import OutputOptions
 from frbcli.cli.studies.measured import run_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
+    from frbcli.plot.style import Picture
     from frbcli.studies.against import AgainstMeasured
 
 KINDS = ("critical-speed", "self-excited", "onset", "offset", "lock-in")
 
 
 def beside_measured(
-    terminal: Terminal, run_file: Path, file: Path, measurement: Measurement | None, signal: str, output: Path | None,
-    picture: bool,
+    terminal: Terminal, run_file: Path, file: Path, measurement: Measurement | None, signal: str,
+    outputs: OutputOptions,
 ) -> None:  # fmt: skip
     """Tables, picture and JSON of a run and a measurement."""
     from frbcli.results.store import read_run
     from frbcli.studies.against import against_measured
 
-    target = (output or beside(run_file, "-measured.png")) if picture else None
-    check_outputs(picture=target)
+    places = outputs.check(beside(run_file, "-measured.png"))
     found = against_measured(read_run(run_file), run_of(file, measurement), signal)
     _tell(terminal, found)
-    if target is not None:
-        from frbcli.plot.spectra.ridges import against_figure
-
-        target = draw(terminal, lambda: against_figure(found), target)
     terminal.emit(
         {
             "command": "compare",
@@ -43,9 +39,15 @@ def beside_measured(
             "deviations": [
                 {"what": what, "rms": rms, "of": size} for what, rms, size in found.deviations()
             ],
-            "picture": target,
+            **places.write(terminal, found.to_pandas, lambda: _figure(found)),
         }
     )
+
+
+def _figure(found: AgainstMeasured) -> Picture:
+    from frbcli.plot.spectra.ridges import against_figure
+
+    return against_figure(found)
 
 
 def _tell(terminal: Terminal, found: AgainstMeasured) -> None:

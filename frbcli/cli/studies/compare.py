@@ -3,31 +3,34 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.common import Names, Terminal, case_or_run_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT, OUTPUT_FOLDER, check_outputs, here
-from frbcli.cli.pictures.picture_options import picture_options
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.runs.compiling import compilation_shown
-from frbcli.cli.runs.live import live_lines, of_runs
+from frbcli.cli.common import Terminal, case_or_run_argument, output_options
+from frbcli.cli.files import INPUT, OUTPUT_FOLDER, here
+from frbcli.cli.options import (
+    cavitation_option,
+    coupling_option,
+    gathered,
+    signal_option,
+    theory_option,
+    thermal_option,
+)
+from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.progress import computing
 from frbcli.cli.runs.transient import exit_code
 from frbcli.cli.studies.against import beside_measured
-from frbcli.cli.studies.gathered import gathered
 from frbcli.cli.studies.measured import measured_options
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
+    from frbcli.plot.style import Picture
     from frbcli.studies.compare import Comparison, VariantResult
-
-WIDTH = 80
 
 
 @dataclass(frozen=True)
@@ -42,32 +45,29 @@ class Models:
 
 @click.command()
 @case_or_run_argument
-@click.option("--cavitation", type=Names(), default=(), metavar="A,B", help="Cavitation models. [that of CASE]")
-@click.option("--theory", type=Names(), default=(), metavar="A,B", help="Film theories. [that of CASE]")
-@click.option("--coupling", type=Names(), default=(), metavar="A,B", help="Couplings with the rotor. [that of CASE]")
-@click.option("--thermal", type=Names(), default=(), metavar="A,B", help="Models of heat: none, lumped. [that of CASE]")
+@cavitation_option
+@theory_option("that of CASE")
+@coupling_option
+@thermal_option
 @click.option("--test", default="runup", show_default=True, metavar="TEST",
               help="The scene: runup, rotation, squeeze, whirl.")  # fmt: skip
-@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-compare.png, here]")
-@click.option("--picture/--no-picture", default=True, help="A picture of all.")
 @click.option("--keep", metavar="DIR", type=OUTPUT_FOLDER, help="Keep the run files in this directory.")
 @click.option("--measured", "file", metavar="FILE", type=INPUT,
-              help="Of a run: a measured run-up to set beside it, CSV, WAV or MAT, see --x.")  # fmt: skip
-@click.option("--signal", default="journal", show_default=True, help="Its point in the run: journal, disk_NAME, ...")
+              help="A measured run-up to set beside RUN.h5: CSV, WAV or MAT, see --x.")  # fmt: skip
+@signal_option()
 @measured_options
-@picture_options
+@outputs_options("CASE-compare.png, here")
 @output_options
 @gathered("models", Models)
 def command(
     case: Case | Path,
     models: Models,
     test: str,
-    output: Path | None,
-    picture: bool,
     keep: Path | None,
     file: Path | None,
     signal: str,
     measurement: Measurement | None,
+    outputs: OutputOptions,
     terminal: Terminal,
 ) -> int:
     """Run CASE with several models of its films: events, deviations and cost in one table and one picture; or set a
@@ -81,15 +81,14 @@ def command(
     if isinstance(case, Path) or file is not None:
         if not isinstance(case, Path) or file is None or any(vars(models).values()) or test != "runup" or keep:
             raise click.UsageError("A measurement stands beside a run: frb compare RUN.h5 --measured FILE --x COLUMN.")
-        beside_measured(terminal, case, file, measurement, signal, output if picture else None, picture)
+        beside_measured(terminal, case, file, measurement, signal, outputs)
         return 0
-    target = output or here(case.name, "-compare.png")
     if test in TESTS:
-        return _kinematic(case, test, models, target, picture, terminal)
-    check_outputs(picture=target if picture else None)
+        return _kinematic(case, test, models, outputs, terminal)
+    places = outputs.check(here(case.name, "-compare.png"))
     others = (with_model(case, law) for law in models.cavitation)  # asked for after their names are checked
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show, others):
-        tell = of_runs(terminal, show)
+    with computing(terminal, case, others) as shown:
+        tell = shown.of_runs()
         found = compare(
             case, models.cavitation, models.theory, test, keep, lambda variant, *rest: tell(variant.name, *rest),
             models.coupling, models.thermal,
@@ -100,15 +99,20 @@ def command(
     results = [document | (_heat(result) if result.variant.thermal else {})
                for document, result in zip(found.table().documents(), found.results, strict=True)]  # fmt: skip
     whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
-    terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results})
-    if picture and all(len(result.run) > 1 for result in found.results):
-        from frbcli.plot.studies.compare import comparison_figure
-
-        draw(terminal, lambda: comparison_figure(found), target)
+    if not all(len(result.run) > 1 for result in found.results):
+        places = replace(places, picture=None)
+    written = places.write(terminal, found.to_pandas, lambda: _figure(found))
+    terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results, **written})
     return max(exit_code(status) for status in (found.status, *(result.run.status for result in found.results)))
 
 
-def _kinematic(case: Case, test: str, wanted: Models, target: Path, picture: bool, terminal: Terminal) -> int:
+def _figure(found: Comparison) -> Picture:
+    from frbcli.plot.studies.compare import comparison_figure
+
+    return comparison_figure(found)
+
+
+def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, terminal: Terminal) -> int:
     """A kinematic test with several models; their films all have finite length."""
     from frbcli.cli.bearings.kinematic import run_test
     from frbcli.film.cavitation.table import laws, names
@@ -126,21 +130,19 @@ def _kinematic(case: Case, test: str, wanted: Models, target: Path, picture: boo
             case.name, (Fault("film.theory", case.film.bearing_model, None, problem, f"Call `frb {test}`."),)
         )
     models = wanted.cavitation or names(law for law in laws() if law.cavitates)
-    return run_test(case, test, models, target, picture, terminal, compared=True) or 0
+    return run_test(case, test, models, outputs, terminal, compared=True) or 0
 
 
 def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
-    from frbcli.columns import heads, legend
-    from frbcli.studies.comparison_columns import COUPLINGS, MODELS, VARIANT
+    from frbcli.studies.comparison_columns import COUPLINGS, MODELS
 
-    title = found.case.title or found.case.name
-    table = COUPLINGS if couplings else MODELS
-    rows = found.table().cells(table)
+    name, table = COUPLINGS if couplings else MODELS, found.table()
+    rows = table.cells(name)
     if couplings and len({(result.variant.cavitation, result.variant.theory) for result in found.results}) > 1:
-        rows = [(f"{result.variant.cavitation}\n{result.variant.theory}\n{name}", *rest)
-                for result, (name, *rest) in zip(found.results, rows, strict=True)]  # fmt: skip
-    terminal.table(title, heads(VARIANT, table), rows)
-    terminal.result(fill(f"{legend(VARIANT, table)}.", WIDTH))
+        rows = [(f"{result.variant.cavitation}\n{result.variant.theory}\n{coupling}", *rest)
+                for result, (coupling, *rest) in zip(found.results, rows, strict=True)]  # fmt: skip
+    terminal.table(found.case.heading, table.heads(name), rows)
+    terminal.sentence(f"{table.legend(name)}.")
     for result in found.results:
         if result.run.status != "finished":
             terminal.result(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from frbcli.cli.common import Names, Terminal, case_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT, check_outputs, here
-from frbcli.cli.pictures.picture_options import picture_options
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.runs.compiling import compilation_shown
-from frbcli.cli.runs.live import live_lines
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.files import INPUT, OUTPUT, here
+from frbcli.cli.options import Names, signal_option
+from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.progress import computing
 from frbcli.cli.studies.measured import measured_options, run_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
+    from frbcli.plot.style import Picture
     from frbcli.studies.fit import Fit, Fitted
 
 EXPLANATION = (
@@ -33,14 +33,12 @@ POOR = 2.0  # times the scatter of the measurement: the case does not describe i
 @click.option("--measured", "file", required=True, metavar="FILE", type=INPUT,
               help="A measured run-up: CSV, WAV or MAT, see --x; or a run.")  # fmt: skip
 @click.option("--vary", type=Names(), required=True, metavar="KEY,KEY", help="The numbers of CASE that are sought.")
-@click.option("--bounds", multiple=True, metavar="KEY=LOW,HIGH", help="In the units of the case. Repeatable. [a third, "
-              "three times]")  # fmt: skip
-@click.option("--signal", default="journal", show_default=True, help="Of the run: journal, or journal_NAME.")
+@click.option("--bounds", multiple=True, metavar="KEY=LOW,HIGH", help="Range of a number, in the units of CASE. "
+              "Repeatable. [a third to three times its value]")  # fmt: skip
+@signal_option()
 @click.option("--save", metavar="CASE.toml", type=OUTPUT, help="Write the case with the numbers found.")
-@click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help="PNG, PDF or SVG. [CASE-fit.png, here]")
-@click.option("--no-picture", is_flag=True, help="No picture.")
 @measured_options
-@picture_options
+@outputs_options("CASE-fit.png, here")
 @output_options
 def command(
     case: Case,
@@ -49,9 +47,8 @@ def command(
     bounds: tuple[str, ...],
     signal: str,
     save: Path | None,
-    output: Path | None,
-    no_picture: bool,
     measurement: Measurement | None,
+    outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
     """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
@@ -59,15 +56,13 @@ def command(
     from frbcli.results.files.kinds import NEW
     from frbcli.studies.fit import fit
 
-    picture = None if no_picture else output or here(case.name, "-fit.png")
-    check_outputs((save, NEW), picture=picture)
+    places = outputs.check(here(case.name, "-fit.png"), (save, NEW))
     limits = _bounds(case, bounds)
     measured = run_of(file, measurement)
-    with live_lines(terminal) as show, compilation_shown(terminal, case, show):
+    with computing(terminal, case) as shown:
 
         def watch(number: int, values: Mapping[str, float]) -> None:
-            if show is not None:
-                show(f"run {number}: " + ", ".join(f"{key} {value:.5g}" for key, value in values.items()))
+            shown.redraw(f"run {number}: " + ", ".join(f"{key} {value:.5g}" for key, value in values.items()))
 
         found = fit(case, measured, vary, limits, signal, watch)
     _tell(terminal, found)
@@ -76,10 +71,6 @@ def command(
 
         write(save, NEW, found.case.source_text)
         terminal.result(f"case: {save}")
-    if picture is not None:
-        from frbcli.plot.spectra.ridges import fit_figure
-
-        picture = draw(terminal, lambda: fit_figure(found), picture)
     terminal.emit(
         {
             "command": "fit",
@@ -93,14 +84,20 @@ def command(
             "chi": found.chi,
             "runs": found.runs,
             "case_file": save,
-            "picture": picture,
+            **places.write(terminal, found.to_pandas, lambda: _figure(found)),
         }
     )  # fmt: skip
 
 
+def _figure(found: Fit) -> Picture:
+    from frbcli.plot.spectra.ridges import fit_figure
+
+    return fit_figure(found)
+
+
 def _tell(terminal: Terminal, found: Fit) -> None:
     columns = ("key", "at first", "found", "error", "between")
-    terminal.table(found.case.title or found.case.name, columns, map(_row, found.numbers))
+    terminal.table(found.case.heading, columns, map(_row, found.numbers))
     terminal.result(EXPLANATION)
     terminal.result(f"{found.runs} runs; residuals of {found.chi:.2g} times the scatter of the measurement.")
     if found.chi > POOR:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from textwrap import fill
+from collections.abc import Sequence
 from typing import Any
 
 from frbcli.case.reading.hard import HardCase, hard_cases
 from frbcli.cli.common import Terminal
-from frbcli.cli.runs.live import live_lines
+from frbcli.cli.progress import display
 from frbcli.columns import short_number
 from frbcli.errors import INTERRUPTED
 from frbcli.studies.hard.cases import HardResult, run_hard_cases
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
 COLUMNS = ("case", "difficulty", "end", "error", "stated", "CPU s")
-WIDTH = 80
 EXPLANATION = """\
 error: largest deviation of the eccentricities from a fine reference until a
 whirl begins or the run ends; relative deviation of a force; stated: error that
@@ -41,16 +39,16 @@ def hard_text(name: str) -> str:
 
 def run_hard(names: Sequence[str], terminal: Terminal) -> int:
     """Run hard cases, all of them for no name, and report; returns the exit code."""
-    with live_lines(terminal) as show:
-        found = run_hard_cases(names, _progress(terminal, show))
+    with display(terminal) as shown:
+        found = run_hard_cases(names, lambda *told: shown.line(_progress(*told)))
     terminal.table("hard cases", COLUMNS, map(_cells, found.results))
     terminal.result(EXPLANATION)
     for result in found.results:
         if result.message:
-            terminal.result(fill(f"{result.hard.name}: {cause_of(result)}", WIDTH))
+            terminal.sentence(f"{result.hard.name}: {cause_of(result)}")
     wrong = [result for result in found.results if not result.ok]
     for result in wrong:
-        terminal.result(fill(f"NOT AS LISTED: {result.hard.name}: {'; '.join(result.problems)}", WIDTH))
+        terminal.sentence(f"NOT AS LISTED: {result.hard.name}: {'; '.join(result.problems)}")
     cpu_s = sum(result.cpu_s for result in found.results)
     done = len(found.results)
     terminal.result(f"{done - len(wrong)} of {done} end as listed; {cpu_s:.0f} s of CPU time.")
@@ -64,12 +62,8 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
     return 0 if found.ok else NOT_AS_LISTED
 
 
-def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[HardResult, int, int], None]:
-    def tell(result: HardResult, done: int, whole: int) -> None:
-        line = f"{done}/{whole}  {result.hard.name}: {result.status}{'' if result.ok else ', NOT AS LISTED'}"
-        terminal.progress(line, show)
-
-    return tell
+def _progress(result: HardResult, done: int, whole: int) -> str:
+    return f"{done}/{whole}  {result.hard.name}: {result.status}{'' if result.ok else ', NOT AS LISTED'}"
 
 
 def cause_of(result: HardResult) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from frbcli.cli.quantities import LENGTH_OPTION, SPEED_OPTION, QuantityOption
+from frbcli.cli.options import LENGTH_OPTION, SPEED_OPTION, QuantityOption
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -39,7 +39,7 @@ class Rate(click.ParamType["float | str"]):
 def measured_options(function: Function) -> Function:
     """Give a command the options of a measurement; it receives `measurement: Measurement | None`."""
     named: dict[str, tuple[dict[str, Any], str]] = {
-        "x": ({"metavar": "COLUMN"}, "Of a measurement: column of the displacement in x; of WAV the channel, from 1."),
+        "x": ({"metavar": "COLUMN"}, "Column of the displacement in x of a measurement; of WAV the channel, from 1."),
         "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; without it there are no events."),
         "time": ({"metavar": "COLUMN"}, "Column of the times."),
         "rate": ({"type": Rate()}, "Samples per second, without a column of times; or a number of the file, as fs."),
@@ -53,7 +53,7 @@ def measured_options(function: Function) -> Function:
     }
     told: Any = function
     told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
-                        help='Of the bearing, to which levels and events refer, e.g. "35 um".')(told)  # fmt: skip
+                        help='Bearing clearance, to which levels and events refer, e.g. "35 um".')(told)  # fmt: skip
     for name, (kind, meaning) in reversed(named.items()):  # read before the clearance, which makes one of all
         kind |= {"is_eager": True, "expose_value": False, "callback": _remember}
         told = click.option(f"--{name}", help=meaning, **kind)(told)

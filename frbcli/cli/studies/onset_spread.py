@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
-from frbcli.cli.runs.live import COLUMNS, live_lines, progress_line
+from frbcli.cli.progress import display, progress_line
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -21,11 +20,10 @@ def spread_shown(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     from frbcli.studies.onset_spread import onset_spread
 
     try:
-        with live_lines(terminal) as show:
+        with display(terminal) as shown:
 
             def watch(number: int, count: int, progress: Progress) -> None:
-                if show is not None:
-                    show(f"run {number} of {count}\n{progress_line(progress)}")
+                shown.redraw(f"run {number} of {count}\n{progress_line(progress)}")
 
             found = onset_spread(case, run, watch)
     except KeyboardInterrupt:
@@ -58,7 +56,7 @@ def _show(found: OnsetSpread, terminal: Terminal) -> None:
     terminal.table("onset of the first whirl", ("run", "speed in Hz"), rows)
     most = f"{high:.1f} Hz" if math.isfinite(high) else "the end of a run without one"
     told = f"The onset lies between {low:.1f} Hz and {most} ({found.cpu_s:.3g} s of CPU time). {found.note}".strip()
-    terminal.result(fill(told, COLUMNS, break_long_words=False, break_on_hyphens=False))
+    terminal.sentence(told)
 
 
 def _onset(run: OnsetRun) -> str:

@@ -1,4 +1,4 @@
-"""What `frb sweep` says of machines whose numbers scatter."""
+"""The output of `frb sweep` for machines whose numbers scatter."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.pictures.pictures import draw
+from frbcli.cli.outputs import draw
 
 if TYPE_CHECKING:
     from frbcli.studies.sweep.sweep import Sweep
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def of_machines(
     found: Sweep, below_Hz: float | None, target: Path | None, terminal: Terminal
 ) -> tuple[dict[str, Any], Path | None]:
-    """Tables and picture of the scatter, and what JSON has of it."""
+    """Tables and picture of the scatter, and its part of the JSON document."""
     from frbcli.studies.sweep.scatter import scatter
 
     seen = scatter(found, below_Hz)
@@ -37,7 +37,7 @@ def of_machines(
     if target is not None:
         from frbcli.plot.studies.scatter import scatter_figure
 
-        drawn = draw(terminal, lambda: scatter_figure(found.case.title or found.case.name, seen), target)
+        drawn = draw(terminal, lambda: scatter_figure(found.case.heading, seen), target)
     document = {
         "count": seen.count,
         "left_out": seen.left_out,

@@ -12,12 +12,11 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, here
-from frbcli.cli.pictures.picture_options import picture_options
-from frbcli.cli.pictures.pictures import draw
-from frbcli.cli.quantities import SPEED_OPTION
-from frbcli.cli.runs.live import live_lines
+from frbcli.cli.looks import look_options
+from frbcli.cli.options import SPEED_OPTION, gathered
+from frbcli.cli.outputs import draw, picture_switch
+from frbcli.cli.progress import Display, display
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
-from frbcli.cli.studies.gathered import gathered
 from frbcli.cli.studies.scatter import of_machines
 from frbcli.errors import Fault, InputError
 
@@ -77,21 +76,22 @@ class Machines:
 @click.option("--samples", type=int, default=64, show_default=True, metavar="N",
               help="Machines, a power of 2, of keys that scatter: KEY=normal(MEAN, DEVIATION), uniform(LOW, HIGH) or "
               "truncated(MEAN, DEVIATION, LOW, HIGH).")  # fmt: skip
-@click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R", help="Of two of them. Repeatable.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Of the scrambled Sobol sequence of the machines.")
+@click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R", help="Correlation of two of them. Repeatable.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the scrambled Sobol sequence of the machines.")
 @click.option("--below", type=SPEED_OPTION, metavar="SPEED",
-              help="The share of machines that whirl below this speed. [the highest of the case]")  # fmt: skip
+              help="Speed below which the share of machines that whirl is given. [the highest of CASE]")  # fmt: skip
 @click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
               help="Points one by one: keys in the first line, values below.")  # fmt: skip
 @click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
-@click.option("--stability", is_flag=True, help="The threshold speed alone, in place of a run-up.")
+@click.option("--stability", is_flag=True, help="Compute the threshold speed alone, in place of a run-up.")
 @click.option("--no-runs", is_flag=True, help="Keep no run files.")
-@click.option("--format", "table_format", default="csv", show_default=True, metavar="FORMAT", help="csv or parquet.")
-@click.option("--picture/--no-picture", default=True, help="A curve over one key, a map over two.")
+@click.option("--format", "table_format", default="csv", show_default=True, metavar="FORMAT",
+              help="Format of the table, csv or parquet; parquet needs the extra frbcli[parquet].")  # fmt: skip
+@picture_switch
 @click.option("--jobs", type=int, default=-1, metavar="N", help="Processes. [one for each core]")
 @click.option("--backend", default="loky", show_default=True, metavar="NAME", help="loky (this machine) or dask.")
-@click.option("--scheduler", default="", metavar="ADDRESS", help="Of the dask cluster, e.g. tcp://10.0.0.1:8786.")
-@picture_options
+@click.option("--scheduler", default="", metavar="ADDRESS", help="Address of the dask cluster, e.g. tcp://10.0.0.1:8786.")
+@look_options
 @output_options
 @gathered("kept", Kept)
 @gathered("pool", Pool)
@@ -107,7 +107,7 @@ def command(
     machines: Machines,
     terminal: Terminal,
 ) -> int:
-    """Compute CASE at many points: one table, one picture, all runs.
+    """Compute CASE at many points: one table, one picture (a curve over one key, a map over two), all runs.
 
     The same command resumes an interrupted sweep.
     """
@@ -123,10 +123,9 @@ def command(
     table, target = folder / f"sweep.{kept.table_format}", folder / "sweep.png"
     _check_places(table, target if kept.picture else None)
     method = "stability" if stability else "runup"
-    with live_lines(terminal) as show:
-        observe = _progress(terminal, show)
-        workers = Workers(pool.backend, pool.jobs, pool.scheduler)
-        found = sweep(case, points, folder, method, not kept.no_runs, workers, observe)
+    workers = Workers(pool.backend, pool.jobs, pool.scheduler)
+    with display(terminal) as shown:
+        found = sweep(case, points, folder, method, not kept.no_runs, workers, _progress(shown))
     _report(found, terminal)
     write_table(found, table, kept.table_format)
     terminal.result(f"table: {table}")
@@ -203,7 +202,7 @@ def _points(axes: Sequence[Mapping[str, Sequence[str]]], list_file: Path | None)
     return points
 
 
-def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callable[[SweepPoint, int, int], None]:
+def _progress(shown: Display) -> Callable[[SweepPoint, int, int], None]:
     """A line that is redrawn on a terminal, else one for each point."""
     began = time.monotonic()
     before: list[int] = []  # its first entry: the points that an earlier call had computed
@@ -212,8 +211,7 @@ def _progress(terminal: Terminal, show: Callable[[str], None] | None) -> Callabl
         before.append(done - 1)
         computed = done - before[0]
         left = (time.monotonic() - began) / computed * (whole - done)
-        line = f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {point.message or _result(point)}"
-        terminal.progress(line, show)
+        shown.line(f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {point.message or _result(point)}")
 
     return tell
 
@@ -230,10 +228,9 @@ def _result(point: SweepPoint) -> str:
 def _report(found: Sweep, terminal: Terminal) -> None:
     event = "threshold" if found.method == "stability" else "onset"
     columns = ("", *found.keys, event, "frequency", "status", *(["reason"] if any(map(_reason, found.points)) else []))
-    title = found.case.title or found.case.name
     with_reason = "reason" in columns
     rows = [_cells(point, found.keys, event, with_reason) for point in found.points[:LONGEST_TABLE]]
-    terminal.table(title, columns, rows)
+    terminal.table(found.case.heading, columns, rows)
     if len(found.points) > LONGEST_TABLE:
         terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
     failed = [point for point in found.points if point.status != "finished"]

@@ -27,7 +27,7 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
     laws = ", ".join(dict.fromkeys(law_named(law).label for law in sheet.laws))
     with styled():
         rows, height = (3, 7.4) if case.heat is None else (4, 9.4)
-        figure = new_figure(case.title or case.name, f"bearing sheet, {laws}", width=9.6, height=height)
+        figure = new_figure(case.heading, f"bearing sheet, {laws}", width=9.6, height=height)
         panels = figure.subplots(rows, 2, sharex=True)
         first: Reading = (lambda s: s.sommerfeld_number) if chart else (lambda s: s.eccentricity)
         _curves(panels[0, 0], sheet, "Sommerfeld number" if chart else "eccentricity", [("", first)])

@@ -26,7 +26,7 @@ def campbell_figure(stability: Stability) -> Figure:
     points = [point for point in stability.sweep if point.rests]
     case = stability.case
     with styled():
-        figure = new_figure(case.title or case.name, "eigenvalues about the resting position", height=5.8)
+        figure = new_figure(case.heading, "eigenvalues about the resting position", height=5.8)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
         draw_frequencies(above, points)
         _draw_growth(below, points)

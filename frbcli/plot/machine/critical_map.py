@@ -17,7 +17,7 @@ def critical_map_figure(found: CriticalMap) -> Figure:
     films have at each speed: where the curves cross, the rotor has a critical speed, less what damping moves it."""
     case = found.case
     with styled():
-        figure = new_figure(case.title or case.name, "undamped critical speeds over the stiffness of each bearing")
+        figure = new_figure(case.heading, "undamped critical speeds over the stiffness of each bearing")
         axes = figure.subplots()
         draw_critical_map(axes, found)
         legend_below(figure, axes)

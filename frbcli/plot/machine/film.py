@@ -31,7 +31,7 @@ def film_figure(found: KinematicTest) -> Figure:
         if len(solved) == 1 or motion is None or motion.load is None:
             words += f", eccentricity {float(np.hypot(*solved[0].displacement)):.4g}"
         height = 5.6 + MAP_HEIGHT * len(solved)
-        figure = new_figure(found.case.title or found.case.name, words, height=height)
+        figure = new_figure(found.case.heading, words, height=height)
         parts: Any = figure.subfigures(2, 1, height_ratios=(5.2, MAP_HEIGHT * len(solved) + 0.4))
         above, below = parts
         _draw_lines(above, solved)

@@ -22,7 +22,7 @@ def history_figure(found: KinematicTest) -> Figure:
         words = f"{found.test} with {motion.frequency:g} Hz, eccentricity {motion.eccentricity:g}"
         if motion.speed:
             words += f", journal turns with {motion.speed:g} Hz"
-        figure = new_figure(found.case.title or found.case.name, words, height=HEIGHT)
+        figure = new_figure(found.case.heading, words, height=HEIGHT)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
         for number, result in enumerate(found.results):
             history = result.history

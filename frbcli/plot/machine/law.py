@@ -36,7 +36,7 @@ def law_figure(case: Case) -> Picture:
     film, cavity = case.film, case.oil.cavitation_pressure
     with styled():
         words = f"oil fraction over pressure; the case's model: {label_of(film.cavitation)}"
-        figure = new_figure(case.title or case.name, words, height=4.6)
+        figure = new_figure(case.heading, words, height=4.6)
         left, right = figure.subplots(1, 2, sharey=True)
         _draw_steps(left, case)
         _draw_models(right, case)

@@ -31,7 +31,7 @@ def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> 
     case = found.case
     count = len(found.films)
     with styled():
-        figure = new_figure(case.title or case.name, "resting positions and limit cycles", 7.2, 2.6 + 2.0 * count)
+        figure = new_figure(case.heading, "resting positions and limit cycles", 7.2, 2.6 + 2.0 * count)
         panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
         for film, axes in enumerate(panels[:-1]):
             _film(axes, found, film)

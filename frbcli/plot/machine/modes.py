@@ -19,7 +19,7 @@ def modes_figure(modes: Modes) -> Figure:
     springs = ", ".join(display(spring, "N/m") for spring in dict.fromkeys(modes.stiffness_N_m))
     on = f"on bearings of {springs}" if springs else "free rotor"
     with styled():
-        figure = new_figure(case.title or case.name, f"natural modes, undamped, {on}", width=9.0, height=5.0)
+        figure = new_figure(case.heading, f"natural modes, undamped, {on}", width=9.0, height=5.0)
         grid = figure.add_gridspec(SHOWN, 2, width_ratios=(1.3, 1.0))
         campbell = figure.add_subplot(grid[:, 0])
         _draw_campbell(campbell, modes)

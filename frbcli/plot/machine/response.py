@@ -31,7 +31,7 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
     """
     case = found.case
     with styled():
-        figure = new_figure(case.title or case.name, "linear unbalance response about the resting position", 9.6, 10.8)
+        figure = new_figure(case.heading, "linear unbalance response about the resting position", 9.6, 10.8)
         amplitude, phase, polar, force, largest, highest = figure.subplots(3, 2).ravel()
         draw_amplitude(amplitude, found)
         for number in range(len(found.points)):

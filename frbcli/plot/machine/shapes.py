@@ -26,7 +26,7 @@ def shapes_figure(found: DampedModes) -> Figure:
     rows = math.ceil(len(shown) / COLUMNS) or 1
     with styled():
         words = f"damped modes about the resting position at {found.speed_Hz:.4g} Hz"
-        figure = new_figure(case.title or case.name, words, width=3.3 * max(columns, 2), height=0.5 + 3.0 * rows)
+        figure = new_figure(case.heading, words, width=3.3 * max(columns, 2), height=0.5 + 3.0 * rows)
         for number, mode in enumerate(shown):
             axes: Any = figure.add_subplot(rows, max(columns, 1), number + 1, projection="3d")
             draw_shape(axes, found, mode)

@@ -26,7 +26,7 @@ def stability_map_figure(found: StabilityMap) -> Figure:
     """The curves with the first number to the right and the second one upwards; shaded where rest is unstable."""
     case = found.case
     with styled():
-        figure = new_figure(case.title or case.name, "curves of Hopf points and folds of limit cycles")
+        figure = new_figure(case.heading, "curves of Hopf points and folds of limit cycles")
         axes = figure.subplots()
         _shade(axes, found)
         for curve in found.curves:

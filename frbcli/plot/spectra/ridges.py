@@ -36,7 +36,7 @@ def fit_figure(found: Fit) -> Figure:
         ("measured", found.measured, MEASURED), ("before", found.before, BEFORE), ("after", found.after, COMPUTED),
     ]  # fmt: skip
     with styled():
-        figure = new_figure(case.title or case.name, numbers, height=7.4)
+        figure = new_figure(case.heading, numbers, height=7.4)
         panels = figure.subplots(3, 1, sharex=True)
         _draw_ridges(panels, drawn)
         legend_below(figure, panels[0])

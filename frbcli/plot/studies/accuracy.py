@@ -31,7 +31,7 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
             f"{name}: error over cost of a run-up, first {window:.3g} s, "
             f"tolerances from {tolerances[0]:.0e} to {tolerances[-1]:.0e}"
         ).replace("e-0", "e-")
-        figure = new_figure(ladder.case.title or ladder.case.name, subtitle, height=4.8)
+        figure = new_figure(ladder.case.heading, subtitle, height=4.8)
         axes = figure.subplots()
         axes.margins(x=0.08, y=0.08)
         axes.set_xscale("log")

@@ -37,7 +37,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
     spans = [ends(run) for run in runs]
     count = len(runs)
     with styled():
-        title = comparison.case.title or comparison.case.name
+        title = comparison.case.heading
         models = {(result.variant.cavitation, result.variant.theory) for result in comparison.results}
         what = "models of the films" if len(models) > 1 else "couplings of rotor and films"
         figure = new_figure(title, f"run-up with {count} {what}", height=4.4 + ROW_HEIGHT * count)

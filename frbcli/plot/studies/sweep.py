@@ -55,7 +55,7 @@ def sweep_figure(sweep: Sweep) -> Figure:
     scales = _scales(sweep)
     with styled():
         subtitle = f"{KINDS[sweep.method][1]}, {len(sweep.points)} points"
-        figure = new_figure(sweep.case.title or sweep.case.name, subtitle)
+        figure = new_figure(sweep.case.heading, subtitle)
         axes = figure.subplots()
         if len(scales) == 1:
             _draw_curve(axes, sweep, scales[0])

@@ -63,7 +63,7 @@ def header(
     units |= heat_units(case, system)
     units |= signal_units(system, case.output.signals)
     return Header(
-        title=case.title or case.name,
+        title=case.heading,
         command=command,
         case_name=case.name,
         case_text=case.source_text,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.expected_error import ExpectedError
     from frbcli.scene.planning.planned import Decision
 
-COLUMNS = 80
 TURN = 2.0 * math.pi
 TURNING_TOLD = 0.02  # of the gap
 
@@ -52,7 +50,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
     bare = [value for value in listed if value.bare]
     for value in bare:
-        _say(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.", terminal)
+        terminal.sentence(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
     films = operating_points(case)
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
@@ -105,7 +103,7 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
     try:
         warm = warm_machine(case)
     except NotConverged as error:
-        _say(f"No steady temperatures at the top speed: {error}", terminal)
+        terminal.sentence(f"No steady temperatures at the top speed: {error}")
         return {"problem": str(error)}
     tell_heat(terminal, warm, "heat at the top speed, when everything is warm")
     return heat_document(warm)
@@ -168,7 +166,7 @@ def _show_findings(found: Findings, terminal: Terminal) -> None:
     if found.mass is not None:
         frequencies = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
         natural = f"; natural frequencies {found.supported}: {frequencies} Hz" if frequencies else ""
-        _say(f"Rotor of {found.mass:.4g} kg{natural}.", terminal)
+        terminal.sentence(f"Rotor of {found.mass:.4g} kg{natural}.")
     rows = [
         (
             film.film,
@@ -212,23 +210,17 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
         terminal.table("films at the top speed", columns, rows)
     turbulent = ", ".join(f"{film.reynolds:.0f} in {film.name}" for film in films if not film.laminar)
     if turbulent:
-        _say(
+        terminal.sentence(
             f"Warning: Reynolds number {turbulent}, not below 2300: the flow is not laminar, as the Reynolds equation "
-            "assumes.",
-            terminal,
+            "assumes."
         )
     grown = [film for film in films if abs(film.turning) > TURNING_TOLD * film.clearance]
     if grown:
         changes = ", ".join(f"of {film.name} by {film.turning / film.clearance:+.0%}" for film in grown)
-        _say(
+        terminal.sentence(
             f"Note: centrifugal growth of a steel shaft and a brass ring changes the gap {changes}. Runs "
-            'include it with thermal.centrifugal_growth = "follows"; without it, add it to the clearance if needed.',
-            terminal,
+            'include it with thermal.centrifugal_growth = "follows"; without it, add it to the clearance if needed.'
         )
-
-
-def _say(text: str, terminal: Terminal) -> None:
-    terminal.result(fill(text, COLUMNS, break_long_words=False, break_on_hyphens=False))
 
 
 def _in_si(value: float | int | str, unit: str) -> str:

@@ -1,4 +1,4 @@
-"""How pictures look, by options that all commands share that draw: size, resolution, limits, speeds per minute."""
+"""The look of pictures, by options of all commands that draw: size, resolution, limits, speeds per minute."""
 
 from __future__ import annotations
 
@@ -75,14 +75,14 @@ class Span(click.ParamType[tuple[float, float]]):
         return low, high
 
 
-def picture_options(function: Function) -> Function:
+def look_options(function: Function) -> Function:
     """Give a command --size, --dpi, --xlim, --ylim and --rpm; its terminal knows them."""
     options = (
-        _option("--size", "size_in", type=Size(), metavar="SIZE", help='Of the picture, e.g. "160 mm x 90 mm".'),
-        _option("--dpi", "dpi", type=click.IntRange(30, 1200), metavar="N", help=f"Of a PNG. [{DPI}]"),
-        _option("--xlim", "x_limits", type=Span(), metavar="A,B", help="Limits of the axis to the right."),
-        _option("--ylim", "y_limits", type=Span(), metavar="A,B", help="Limits of the axis upwards."),
-        _option("--rpm", "rpm", is_flag=True, help="Rotor speeds of the picture in revolutions per minute."),
+        _option("--size", "size_in", type=Size(), metavar="SIZE", help='Size of the picture, e.g. "160 mm x 90 mm".'),
+        _option("--dpi", "dpi", type=click.IntRange(30, 1200), metavar="N", help=f"Resolution of a PNG. [{DPI}]"),
+        _option("--xlim", "x_limits", type=Span(), metavar="A,B", help="Limits of the horizontal axis."),
+        _option("--ylim", "y_limits", type=Span(), metavar="A,B", help="Limits of the vertical axis."),
+        _option("--rpm", "rpm", is_flag=True, help="Rotor speeds in revolutions per minute."),
     )
     for option in reversed(options):
         function = option(function)
@@ -90,7 +90,7 @@ def picture_options(function: Function) -> Function:
 
 
 def look_of(context: click.Context) -> Look:
-    """What the options of a command ask for."""
+    """The look that the options of a command ask for."""
     found = context.meta.get(_LOOK, Look())
     assert isinstance(found, Look)
     return found

@@ -1,0 +1,1 @@
+"""Case files: checked, listed, described to editors."""

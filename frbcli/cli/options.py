@@ -1,0 +1,115 @@
+"""Options that several commands have, each declared once, and the kinds of their values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, fields
+from functools import wraps
+from typing import Any, TypeVar
+
+import click
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class QuantityOption(click.ParamType[float]):
+    """A quantity with a unit, as in the example; a bare number is in `unit`, SI. positive: it must be above 0."""
+
+    name: str
+    unit: str
+    example: str
+    positive: bool = True
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        from frbcli.units import quantity
+
+        with suppress(ValueError):  # then it has a unit
+            value = float(str(value))
+        try:
+            found = quantity(value, self.unit, self.example)
+        except ValueError as fault:
+            self.fail(f"{value!r} {fault}", param, ctx)
+        if self.positive and found <= 0.0:
+            self.fail(f'{value!r} is not greater than 0. Write e.g. "{self.example}".', param, ctx)
+        return found
+
+
+SPEED_OPTION = QuantityOption("speed", "Hz", "25 Hz")
+TIME_OPTION = QuantityOption("time", "s", "0.2 s", positive=False)
+LENGTH_OPTION = QuantityOption("length", "m", "35 um")
+LOAD_OPTION = QuantityOption("load", "N", "30 N")
+STIFFNESS_OPTION = QuantityOption("stiffness", "N/m", "5e6 N/m")
+
+
+class Names(click.ParamType[tuple[str, ...]]):
+    """Names separated by commas."""
+
+    name = "names"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
+        names = value if isinstance(value, tuple) else str(value).split(",")
+        return tuple(name.strip() for name in names if name.strip())
+
+
+class Numbers(click.ParamType[tuple[float, ...]]):
+    """Numbers separated by commas."""
+
+    name = "numbers"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        if isinstance(value, tuple):
+            return value
+        try:
+            return tuple(float(number) for number in str(value).split(","))
+        except ValueError:
+            self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
+
+
+def _models(name: str, what: str, default: str = "that of CASE") -> Callable[[Function], Function]:
+    return click.option(name, type=Names(), default=(), metavar="A,B", help=f"{what}, separated by commas. [{default}]")
+
+
+cavitation_option = _models("--cavitation", "Cavitation models")
+coupling_option = _models("--coupling", "Couplings of rotor and films")
+thermal_option = _models("--thermal", "Models of heat, none or lumped")
+
+
+def theory_option(default: str) -> Callable[[Function], Function]:
+    """Give a command the option --theory."""
+    return _models("--theory", "Film theories", default)
+
+
+def speeds_option(default: str) -> Callable[[Function], Function]:
+    """Give a command the option --speed, which may be repeated; default: the speeds without it, for the help."""
+    words = f'Rotor speed, e.g. "25 Hz". Repeatable. [{default}]'
+    return click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED", help=words)
+
+
+def signal_option(default: str | None = "journal") -> Callable[[Function], Function]:
+    """Give a command the option --signal, a point of the rotor."""
+    words = "Point of the rotor: journal or disk; NAME of a bearing or disk."
+    return click.option("--signal", default=default, show_default=default is not None, metavar="POINT", help=words)
+
+
+def over_option(default: str | None) -> Callable[[Function], Function]:
+    """Give a command the option --over, the axis of a picture."""
+    words = "Horizontal axis." if default else "Horizontal axis. [time; speed with --order]"
+    return click.option("--over", type=click.Choice(["time", "speed"]), default=default,
+                        show_default=default is not None, help=words)  # fmt: skip
+
+
+def gathered(name: str, record: type) -> Callable[[Function], Function]:
+    """Give a command the options that are named as the fields of a dataclass as one argument; below the options."""
+    names = [field.name for field in fields(record)]
+
+    def decorated(function: Function) -> Function:
+        @wraps(function)
+        def command(**options: Any) -> Any:
+            options[name] = record(**{option: options.pop(option) for option in names})
+            return function(**options)
+
+        return command  # type: ignore[return-value]
+
+    return decorated

@@ -1,0 +1,192 @@
+"""Progress on the terminal: lines that are redrawn, or without a terminal one now and then; the compilation of kernels.
+
+Kernels are compiled at the first start and kept beside their sources.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from frbcli.cli.common import WIDTH, Terminal
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+    from frbcli.runs.march import Progress
+
+REFRESH_Hz = 8
+TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
+# What takes long is announced there as soon as the first numbers tell: after so much time, if so much is left.
+ANNOUNCED_s, LONG_s = 1.0, 5.0
+LONGEST_LEFT_s = 1e9  # longest time that is shown
+COMPILING_EVERY_s = 10.0  # between two lines of the compilation where there is no terminal
+# A little work of the kind that compiling is, and the CPU time in s that it took where compile_s was measured.
+PIECES, REPEATED, REFERENCE_s = 40, 10, 6.5e-3
+TRIALS = 5
+
+
+class Display:
+    """The lines of progress of a command.
+
+    draw: redraws lines on the terminal, None without one.
+    """
+
+    def __init__(self, terminal: Terminal, draw: Callable[[str], None] | None = None) -> None:
+        self._terminal, self._draw = terminal, draw
+
+    @property
+    def redraws(self) -> bool:
+        """Whether there is a terminal on which lines are redrawn."""
+        return self._draw is not None
+
+    def redraw(self, lines: str) -> None:
+        """Show lines in place of the last ones, where that is possible."""
+        if self._draw is not None:
+            self._draw(lines)
+
+    def line(self, line: str) -> None:
+        """Show a line in place of the last one, or print it."""
+        if self._draw is None:
+            self._terminal.remark(line)
+        else:
+            self._draw(line)
+
+    def now_and_then(self) -> NowAndThen:
+        """What redraws lines; without a terminal it prints them as one line, every TOLD_EVERY_s."""
+        return NowAndThen(self)
+
+    def counting(self, what: str = "") -> Callable[[int, int], None]:
+        """A function that shows a number of so many, and the time left.
+
+        The time left is that of the numbers since the first one, which compiles.
+        """
+        begun, first, announced, show = 0.0, 0, False, self.now_and_then()
+
+        def observe(number: int, count: int) -> None:
+            nonlocal begun, first, announced
+            if begun == 0.0:
+                begun, first = time.monotonic(), number
+            done, spent = number - first, time.monotonic() - begun
+            left = spent / done * (count - number) if done else 0.0
+            long = not announced and spent > ANNOUNCED_s and left > LONG_s
+            told = show(f"{what}{number} of {count}" + (f"  {_clock(left)} left" if done else ""), at_once=long)
+            announced = announced or told
+
+        return observe
+
+    def of_runs(self) -> Callable[[str, int, int, Progress], None]:
+        """A function that shows the progress of one of several runs: its name, its number, how many, its progress."""
+        show = self.now_and_then()
+
+        def observe(name: str, number: int, count: int, progress: Progress) -> None:
+            show(f"{number} of {count}: {name}\n{progress_line(progress)}")
+
+        return observe
+
+
+class NowAndThen:
+    """Shows lines of progress on a display; without a terminal only now and then, see TOLD_EVERY_s."""
+
+    def __init__(self, display: Display) -> None:
+        self._display, self._told_s = display, time.process_time()
+
+    def __call__(self, lines: str, at_once: bool = False) -> bool:
+        """Show lines; returns whether they were shown. at_once: also without a terminal."""
+        if self._display.redraws:
+            self._display.redraw(lines)
+            return True
+        if not at_once and time.process_time() <= self._told_s + TOLD_EVERY_s:
+            return False
+        self._told_s = time.process_time()
+        self._display.line(lines.replace("\n", ": "))
+        return True
+
+
+@contextmanager
+def display(terminal: Terminal) -> Iterator[Display]:
+    """A display on the terminal, whose lines vanish at the end."""
+    if not terminal.live:
+        yield Display(terminal)
+        return
+    from rich.live import Live
+    from rich.text import Text
+
+    with Live(console=terminal.live_console(), refresh_per_second=REFRESH_Hz, transient=True) as live:
+        yield Display(terminal, lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis")))
+
+
+@contextmanager
+def computing(terminal: Terminal, case: Case, also: Iterable[Case] = ()) -> Iterator[Display]:
+    """A display that also shows the progress of the compilation; case, also: what is computed, which determines the
+    kernels."""
+    with display(terminal) as shown, compilation_shown(shown, case, also):
+        yield shown
+
+
+@contextmanager
+def compilation_shown(shown: Display, case: Case, also: Iterable[Case] = ()) -> Iterator[None]:
+    """Within it, a display shows the progress of the compilation; case, also: see `computing`."""
+    from numba.core.event import Listener, install_listener  # heavy: only where kernels are used
+
+    from frbcli.scene.costs.preparation import compile_s
+
+    class Compilations(Listener):
+        """Counts the compiled functions, with those that they call."""
+
+        def __init__(self) -> None:
+            self._begun, self._told, self._count, self._about_s = 0.0, 0.0, 0, 0.0
+
+        def on_start(self, _event: Any) -> None:
+            if self._begun == 0.0:
+                self._about_s = compile_s([case, *also]) * slowness()
+                self._begun = self._told = time.monotonic()
+                shown.line(f"Compiling the kernels, once: about {self._about_s:.0f} s of CPU time.")
+
+        def on_end(self, _event: Any) -> None:
+            self._count += 1
+            now = time.monotonic()
+            if shown.redraws or now - self._told > COMPILING_EVERY_s:
+                self._told = now
+                line = f"Compiling the kernels, once: {self._count} functions in {now - self._begun:.0f} s"
+                shown.line(f"{line} of about {self._about_s:.0f}.")
+
+    with install_listener("numba:compile", Compilations()):
+        yield
+
+
+def slowness() -> float:
+    """CPU time of a little work over that on the reference machine: a compilation takes so much longer, since both
+    are work of the interpreter, and both are slower where other processes share the core."""
+    lines = "\n".join(f"    c{i} = a[{i}] + b * {i}.0 if a else (b, {i})" for i in range(PIECES))
+    text, spent = f"def f(a, b):\n{lines}\n    return c1\n", []
+    for _ in range(TRIALS):
+        began = time.process_time()
+        for _ in range(REPEATED):
+            compile(text, "work", "exec")
+        spent.append(time.process_time() - began)
+    return sorted(spent)[TRIALS // 2] / REFERENCE_s
+
+
+def progress_line(progress: Progress) -> str:
+    """One line of at most WIDTH columns: time, speed, eccentricity, steps per revolution, pace, time left."""
+    per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
+    whose, pace = ("its error: ", "") if progress.for_error else ("", f"{progress.simulated_ms_per_hour:.2g} ms/h  ")
+    eps = "" if math.isnan(progress.eccentricity) else f"eps {progress.eccentricity:5.3f}  "
+    line = (
+        f"{whose}{progress.t_s:.3f}/{progress.end_s:.4g} s  {progress.speed_Hz:5.1f} Hz  "
+        f"{eps}{per_turn} steps/rev  {pace}{_clock(progress.left_s)} left"
+    )
+    return line if len(line) <= WIDTH else line[: WIDTH - 1] + "…"
+
+
+def _clock(seconds: float) -> str:
+    """Minutes and seconds, hours or days: what fits in six columns."""
+    if not 0.0 <= seconds < LONGEST_LEFT_s:
+        return "?"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 100:
+        return f"{minutes}:{rest:02d}"
+    return f"{minutes // 60} h" if minutes < 6000 else f"{minutes // 1440} d"
