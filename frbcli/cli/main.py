@@ -114,7 +114,11 @@ COMMANDS = {
         "frb export run.h5 --format mat",
     ),
     "cases": ("frbcli.cli.casefiles.cases", "List, show or copy the shipped cases.", "frb cases jeffcott -o my.toml"),
-    "schema": ("frbcli.cli.casefiles.schema", "Print the JSON Schema of a case file for editors.", "frb schema > schema.json"),
+    "schema": (
+        "frbcli.cli.casefiles.schema",
+        "Print the JSON Schema of a case file for editors.",
+        "frb schema > schema.json",
+    ),
 }
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
