@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -20,15 +21,17 @@ if TYPE_CHECKING:
 AXES = "xy"
 ENTRIES = ("xx", "xy", "yx", "yy")  # heads of a matrix
 ZERO_CELSIUS = 273.15
-SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3}  # over SI
+SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6}  # over SI
 
 
 @dataclass(frozen=True)
 class Shown:
     """A column in a table of the terminal.
 
-    head: one, or as many as it has cells there; form: of a number as format() takes it, or a function to the cell (to
-    all of its cells, of several heads); unit: in which it is shown, that of the column without one; table: its name.
+    head: its head, or as many as it has cells there
+    form: the format of a number, or a function from the value to the cell, or to all cells of several heads
+    unit: the unit in which it is shown, by default that of the column
+    table: the name of the table
     """
 
     head: str | tuple[str, ...]
@@ -38,16 +41,16 @@ class Shown:
 
     @property
     def heads(self) -> tuple[str, ...]:
-        """Of its cells."""
+        """The heads of its cells."""
         return (self.head,) if isinstance(self.head, str) else self.head
 
     def unit_beside(self, unit: str = "") -> tuple[str, ...]:
-        """The shown unit, else this one, unless there is none or the head names it."""
+        """The shown unit, or this one without it; empty where there is none or the head names it."""
         told = self.unit or unit
         return (told,) if told and not self.heads[0].endswith(told) else ()
 
     def cells(self, value: Any) -> tuple[str, ...]:
-        """"-" for a number that is not known."""
+        """The cells of a value; "-" for a number that is not known."""
         if isinstance(self.head, str):
             return (self._cell(value),)
         if value is None:
@@ -72,11 +75,16 @@ class Shown:
 class Column:
     """One quantity of a result.
 
-    quantity: its name in whole words; unit: in SI, Hz or deg; meaning: a few words, to which `more` adds what documents
-    tell besides; value: from the item of a row, without it the item's attribute of that name, with or without the unit,
-    to a number, a text or an array of `shape`, which is (), (2,) or (2, 2) over x and y, None where there is none; key:
-    in JSON, with a dot inside of an object, the name without one, "" where JSON does not have it; flat: whether pandas
-    and CSV have it; of: what stands at the end of the names there, as the film of several.
+    quantity: its name in whole words
+    unit: in SI, Hz or deg
+    meaning: a few words, to which `more` adds what is only said in documents; "" for what only the terminal shows
+    value: a function from the item of a row to a number, a text or an array of `shape`, None where there is none;
+        without it the item's attribute of that name, with or without the unit, or its entry of that name in a dict
+    shape: (), (2,) over x and y, or (2, 2)
+    shown: where and how the terminal shows it
+    key: its name in JSON, with a dot inside of an object; the name without one; "" where JSON does not have it
+    flat: whether pandas and CSV have it
+    of: the end of its names there, such as the film of several
     """
 
     quantity: str
@@ -92,28 +100,35 @@ class Column:
 
     @property
     def name(self) -> str:
-        """The quantity with its unit: torque_N_m."""
-        return _joined(self.quantity, self.unit, self.of)
+        """The quantity with its unit, such as torque_N_m."""
+        return _joined(self.quantity, self.unit_name, self.of)
+
+    @property
+    def unit_name(self) -> str:
+        """The unit as it ends a name: N_m, m3_s."""
+        return re.sub("[/ *]", "_", self.unit.replace("^", ""))
 
     @property
     def path(self) -> str:
-        """In JSON."""
+        """The name in JSON, with a dot inside of an object."""
         return self.name if self.key is None else self.key
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all entries: stiffness_xx_N_m, stiffness_xy_N_m, ..."""
+        """The names of all entries: stiffness_xx_N_m, stiffness_xy_N_m, ..."""
         entries = map("".join, itertools.product(AXES, repeat=len(self.shape)))
-        return tuple(_joined(self.quantity, entry, self.unit, self.of) for entry in entries)
+        return tuple(_joined(self.quantity, entry, self.unit_name, self.of) for entry in entries)
 
     def value_of(self, item: Any) -> Any:
         """The value of an item."""
         if self.value is not None:
             return self.value(item)
+        if isinstance(item, Mapping):
+            return item.get(self.name)
         return getattr(item, self.quantity if hasattr(item, self.quantity) else self.name)
 
     def entries(self, value: Any) -> list[Any]:
-        """Of the names; NaN for those of an array that there is not."""
+        """The values of the names; NaN for those of an array that is None."""
         if not self.shape:
             return [value]
         return np.ravel(np.full(self.shape, math.nan) if value is None else value).tolist()
@@ -130,7 +145,7 @@ class Table:
     rows: tuple[tuple[Any, ...], ...]
 
     def to_pandas(self) -> pd.DataFrame:
-        """A column per entry of those that tables have."""
+        """The table for pandas, with a column per entry of the flat columns."""
         import pandas as pd
 
         return pd.DataFrame(
@@ -190,7 +205,7 @@ def document(columns: Columns, item: object) -> dict[str, Any]:
 
 
 def spread_table(columns: Columns, result: object) -> Table:
-    """A row per entry of the arrays of the columns, which are made of one shape; columns have no shape of their own."""
+    """A row per entry of the arrays of a result, which are broadcast to one shape; the columns are scalars."""
     values = np.broadcast_arrays(*(np.asarray(column.value_of(result)) for column in columns))
     return Table(tuple(columns), tuple(zip(*(value.ravel().tolist() for value in values), strict=True)))
 
@@ -201,12 +216,12 @@ def named(columns: Columns, of: str, value: Callable[[Any], Any]) -> tuple[Colum
 
 
 def keys(columns: Columns) -> list[str]:
-    """Of their object in JSON."""
+    """The keys of their object in JSON."""
     return list(dict.fromkeys(column.path.split(".")[0] for column in columns if column.path))
 
 
 def heads(columns: Columns, table: str = "") -> tuple[str, ...]:
-    """Of a table of the terminal."""
+    """The heads of a table of the terminal."""
     return tuple(head for column in columns for shown in _in(column, table) for head in shown.heads)
 
 
@@ -227,7 +242,8 @@ def short_number(value: float | None) -> str:
 
 
 def _joined(*words: str) -> str:
-    return "_".join(word.replace("^", "").replace("/", "_").replace(" ", "_") for word in words if word)
+    return "_".join(word for word in words if word)
+
 
 
 def _in(column: Column, table: str) -> list[Shown]:

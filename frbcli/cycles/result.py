@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.cycles.method.balance import motion_along
-
-if TYPE_CHECKING:
-    import pandas as pd
+from frbcli.html import Tabular
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -139,7 +137,7 @@ class Cost:
 
 
 @dataclass(frozen=True)
-class LimitCycles:
+class LimitCycles(Tabular):
     """The diagram of a case. over, unit: what it goes over, "speed" in Hz or a key of the case; films: their names;
     notes: what is to be said of it; synchronous: the nonlinear response to the unbalance, descending in speed."""
 
@@ -158,42 +156,14 @@ class LimitCycles:
         """The special points of a kind."""
         return tuple(point for point in self.special if point.kind == kind)
 
-    def to_pandas(self) -> pd.DataFrame:
-        """One row per resting position (branch -1) and cycle; of whirls with the unbalance `unbalance` is true, and the
-        columns `amplitude of` a line are over the clearance, of the film where it is largest."""
-        import pandas as pd
+    def table(self) -> Table:
+        """One row per resting position and cycle, and per whirl with unbalance, if they were asked for."""
+        from frbcli.cycles.columns import diagram_columns  # of what is declared here
 
-        rows: list[dict[str, object]] = [
-            self._over(point.value)
-            | {"branch": -1, "speed_Hz": point.speed_Hz, "frequency_Hz": math.nan, "stable": point.stable, "kind": ""}
-            | self._columns(point.eccentricity, point.ring_speeds_Hz)
-            for point in self.equilibria
-        ]
-        rows += [
-            self._over(point.value)
-            | {"branch": number, "speed_Hz": point.speed_Hz, "frequency_Hz": point.frequency_Hz, "stable": point.stable}
-            | {"kind": point.kind, "torque_N_m": point.torque_N_m}
-            | self._columns(point.eccentricity_max, point.ring_speeds_Hz)
-            for number, branch in enumerate(self.branches)
-            for point in branch.points
-        ]
-        rows += [
-            {"branch": number, "speed_Hz": whirl.speed_Hz, "frequency_Hz": whirl.frequency_Hz, "stable": whirl.stable}
-            | {"kind": "locked" if whirl.locked else "two frequencies", "unbalance": True}
-            | self._columns(whirl.eccentricity_max, whirl.ring_speeds_Hz)
-            | {f"amplitude of {line.name}": float(line.amplitude.max()) for line in whirl.lines}
-            for number, branch in enumerate(self.branches)
-            for whirl in branch.with_unbalance
-        ]
-        return pd.DataFrame(rows)
-
-    def _over(self, value: float) -> dict[str, object]:
-        return {} if self.over == SPEED else {self.over: value}
-
-    def _columns(self, eccentricities: Array, ring_speeds_Hz: Array) -> dict[str, object]:
-        several = len(self.films) > 1
-        named: dict[str, object] = {
-            f"eccentricity_max_{name}" if several else "eccentricity_max": float(value)
-            for name, value in zip(self.films, eccentricities, strict=True)
-        }
-        return named | {f"ring_speed_{ring}_Hz": float(speed) for ring, speed in enumerate(ring_speeds_Hz)}
+        numbered = list(enumerate(self.branches))
+        whirls = [(number, whirl) for number, branch in numbered for whirl in branch.with_unbalance]
+        rows: list[tuple[int, object]] = [(-1, point) for point in self.equilibria]
+        rows += [(number, point) for number, branch in numbered for point in branch.points]
+        rings = max((len(point.ring_speeds_Hz) for point in self.equilibria), default=0)
+        lines = list(dict.fromkeys(line.name for _, whirl in whirls for line in whirl.lines))
+        return table_of(diagram_columns(self.over, self.films, rings, lines, bool(whirls)), [*rows, *whirls])

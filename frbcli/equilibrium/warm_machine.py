@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,6 +76,13 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     return WarmMachines(case, plan, make_system(case, plan)).at(2.0 * math.pi * top)
 
 
+def film_temperatures(found: SteadyHeat, names: Sequence[str]) -> tuple[FilmTemperature, ...]:
+    """The films of these names, "" for a film that is alone, in a balance of heat."""
+    heat = found.films
+    rows = zip(found.temperatures, found.viscosities, found.clearances, heat.power, heat.flow, strict=False)
+    return tuple(FilmTemperature(name or "film", *map(float, row)) for name, row in zip(names, rows, strict=True))
+
+
 class WarmMachines:
     """Warm machines of a case at any speed; tables are made once."""
 
@@ -107,9 +115,6 @@ class WarmMachines:
 
     def _machine(self, system: System, resting: RestingPosition, found: SteadyHeat) -> WarmMachine:
         t, films = found.temperatures, found.films
-        rows = zip(t, found.viscosities, found.clearances, films.power, films.flow, strict=False)
-        names = (name or "film" for name in system.names)
-        named = tuple(FilmTemperature(name, *map(float, row)) for name, row in zip(names, rows, strict=True))
         rings = tuple(
             RingTemperature(
                 ring.name or "ring",
@@ -119,7 +124,7 @@ class WarmMachines:
             )
             for ring in self._heat.rings
         )
-        return WarmMachine(system, resting, found, named, rings)
+        return WarmMachine(system, resting, found, film_temperatures(found, system.names), rings)
 
 
 def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, Array]:

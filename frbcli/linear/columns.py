@@ -115,6 +115,22 @@ DAMPED_MODES = (
     Column("logarithmic_decrement", "", "logarithmic decrement", shown=(Shown("log. decrement", ".3g"),)),
 )  # fmt: skip
 
+# Of a Mode of a rotor on springs
+NATURAL_MODES = (
+    Column("frequency", "Hz", "natural frequency", shown=(Shown("Hz", ".4g"),)),
+    Column("direction", "", "`forward` or `backward`"),
+    Column("kind", "", "`conical`, `cylindrical` or `bending`", shown=(Shown("kind", "{:.3}".format),)),
+)
+
+# Of a Modes; the frequency is None for a free rotor
+REDUCTION = (
+    Column("modes", "", "modes of each plane after the reduction", attrgetter("kept")),
+    Column("frequency_relative", "", "change of the frequencies by the reduction",
+           lambda modes: None if modes.error is None else modes.error.frequency),
+    Column("missing_flexibility", "m/N", "flexibility that the reduction leaves out",
+           lambda modes: None if modes.error is None else modes.error.missing_flexibility),
+)
+
 _SPEEDS = replace(SPEED, value=lambda found: found.speeds_Hz[:, None])
 
 # Of a Response, over speeds and points

@@ -11,14 +11,15 @@ m, g and k being mass, gyroscopic term and stiffness of one plane. Rings are lef
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.columns import Column, Table, spread_table
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.modes import film_springs
@@ -29,14 +30,24 @@ from frbcli.scene.keys import element_keys
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.shafts.table import shaft_of
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 Array = NDArray[np.float64]
 
 STIFFNESSES = 61
 DECADES = (-3.0, 2.0)  # about the stiffness on which the rotor as a rigid mass has its highest speed as frequency
 SHOWN = 4  # slowest critical speeds of each direction
+
+
+
+def _nth(direction: str, number: int) -> Callable[[Any], Array]:
+    return lambda found: np.asarray(getattr(found, direction)[:, number])
+
+
+# Of a CriticalMap, over the stiffness
+CRITICAL_SPEEDS = (
+    Column("stiffness", "N/m", "stiffness of every bearing"),
+    *(Column(f"{direction}_{number + 1}", "Hz", f"critical speed of a {direction} whirl", _nth(direction, number))
+      for direction in ("forward", "backward") for number in range(SHOWN)),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -52,14 +63,9 @@ class CriticalMap(Tabular):
     film_speeds_Hz: Array
     film_stiffness: Array
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per stiffness."""
-        import pandas as pd
-
-        columns = {"stiffness_N_m": self.stiffness}
-        for name, values in (("forward", self.forward), ("backward", self.backward)):
-            columns |= {f"{name}_{number + 1}_Hz": values[:, number] for number in range(values.shape[1])}
-        return pd.DataFrame(columns)
+        return spread_table(CRITICAL_SPEEDS, self)
 
 
 def critical_map(

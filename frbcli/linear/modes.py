@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,8 +16,10 @@ from numpy.typing import NDArray
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
+from frbcli.columns import Table, named, table_of
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
+from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.order import first_largest, ranks
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, whirl_modes
 from frbcli.scene.film_faults import require_films
@@ -24,8 +27,6 @@ from frbcli.scene.machine.elements import element_springs
 from frbcli.scene.shafts.table import shaft_of
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from frbcli.equilibrium.coefficients import RestingFilm
 
 Array = NDArray[np.float64]
@@ -80,22 +81,10 @@ class Modes(Tabular):
     points: tuple[ModesAtSpeed, ...]
     error: ReductionError | None
 
-    def to_pandas(self) -> pd.DataFrame:
-        """A row per mode: speed_Hz, frequency_Hz, direction, kind."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            [
-                {
-                    "speed_Hz": point.speed_Hz,
-                    "frequency_Hz": mode.frequency_Hz,
-                    "direction": mode.direction,
-                    "kind": mode.kind,
-                }
-                for point in self.points
-                for mode in point.modes
-            ]
-        )
+    def table(self) -> Table:
+        """One row per mode."""
+        columns = *named((SPEED,), "", itemgetter(0)), *named(NATURAL_MODES, "", itemgetter(1))
+        return table_of(columns, ((point, mode) for point in self.points for mode in point.modes))
 
 
 def natural_modes(

@@ -31,10 +31,11 @@ from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
+from frbcli.results.columns import event_place
 from frbcli.results.files.kinds import PAGE
 from frbcli.results.files.place import require_places
 from frbcli.results.files.write import write
-from frbcli.results.records import SPEED, event_place
+from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 from frbcli.runs.errors.account import account
 from frbcli.runs.record.header import FILM_SIGNALS

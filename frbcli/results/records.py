@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
+from frbcli.columns import Column
+from frbcli.results.columns import MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.results.signals import Signal, pieces
 
 COMMANDS = ("runup", "rundown")
@@ -36,23 +38,16 @@ COST_OF_ALL = ("cpu_s", "steps", "rejected_steps", "steps_per_revolution", "film
 ERROR_OF_ALL = ("time_integration",)
 TOGETHER = {"oil_in_m3": "oil_out_m3", "heat_dissipated_J": "heat_carried_J", "eccentricity": "quiet_until_s"}
 
-_NAME = "(_[A-Za-z0-9_-]{1,60})?"  # of a film, a bearing or a wheel
-_UNITS = {
-    re.compile("time_s"): "s",
-    re.compile("speed_Hz"): "Hz",
-    re.compile(f"(eccentricity|oil_fraction){_NAME}"): "",
-    re.compile(f"(journal|disk|ring){_NAME}_[xy]_m"): "m",
-    re.compile(f"ring_speed{_NAME}_Hz"): "Hz",
-    re.compile(f"temperature{_NAME}_K"): "K",
-    re.compile(f"viscosity{_NAME}_Pa_s"): "Pa*s",
-    re.compile(f"clearance{_NAME}_m"): "m",
-    re.compile(f"flow{_NAME}_m3_s"): "m^3/s",
-    re.compile(f"film_force{_NAME}_[xy]_N"): "N",
-    re.compile(f"film_thickness{_NAME}_m"): "m",
-    re.compile(f"power{_NAME}_W"): "W",
-    re.compile(f"torque{_NAME}_N_m"): "N m",
-    re.compile(f"oil_flow{_NAME}_m3_s"): "m^3/s",
-}
+_NAME = "(_[A-Za-z0-9_-]{1,60})?"  # of a film, a bearing or a wheel, behind the quantity
+
+
+def _forms(signals: Iterable[Column], part: str) -> dict[re.Pattern[str], str]:
+    """The forms of the names of signals with their units; part: that of the name of a part."""
+    names = {s: (s.quantity + part, "[xy]" * len(s.shape), s.unit_name) for s in signals}
+    return {re.compile("_".join(filter(None, words))): signal.unit for signal, words in names.items()}
+
+
+_UNITS = _forms(MACHINE_SIGNALS, "") | _forms(PART_SIGNALS, _NAME)
 _KIND = re.compile("[a-z]{1,30}(-[a-z]{1,30}){0,3}")
 _KEY = re.compile("[A-Za-z][A-Za-z0-9_-]{0,99}")
 
@@ -84,12 +79,6 @@ def wrong_record(records: Mapping[str, Any]) -> str:
         ),
     }
     return next((name for name, holds in forms.items() if not holds(records[name])), "")
-
-
-def event_place(event: Mapping[str, Any]) -> str:
-    """Where an event was found: its film, or else the point whose motion shows it; "" of one that has neither, as in
-    files of earlier versions."""
-    return str(event["film"] or event.get("point") or "")
 
 
 def untold(cost: Mapping[str, Any], error: Mapping[str, Any]) -> str:

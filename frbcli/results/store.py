@@ -17,8 +17,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.columns import table_of
 from frbcli.html import html_table
 from frbcli.nearest import did_you_mean
+from frbcli.results.columns import EVENTS
 from frbcli.results.files import parts
 from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
 from frbcli.results.files.stored import RunPlace, Stored, StoredArrays
@@ -27,7 +29,6 @@ from frbcli.results.records import (
     MOST_EVENTS,
     MOST_SAMPLES,
     TIME,
-    event_place,
     wrong_event,
     wrong_record,
     wrong_text,
@@ -117,15 +118,10 @@ class Run:
 
     def _repr_html_(self) -> str:
         """In a notebook: how it ended, its events."""
-        columns = ("event", "film or point", "time in s", "rotor speed in Hz", "frequency in Hz", "ratio")
-        keys = ("t_s", "speed_Hz", "frequency_Hz", "frequency_ratio")
-        rows = [
-            [event["kind"], event_place(event) or "-", *("-" if event[key] is None else event[key] for key in keys)]
-            for event in self.events
-        ]
+        table = table_of(EVENTS, self.events)
         ended = f"{self.status} at {self.t_end_s:.4g} s"
         title = f"{self.title}: {ended}, {len(self)} samples of {len(self.signals)} signals"
-        return html_table(title, columns, rows, len(rows))
+        return html_table(title, table.heads(), table.cells(), len(table.rows))
 
     def to_pandas(self) -> pd.DataFrame:
         """The signals as a table with one column each, named as the signals are."""

@@ -2,24 +2,56 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from operator import attrgetter, itemgetter
+from typing import Any
 
 import numpy as np
 
 from frbcli.analysis.measured import events_at
 from frbcli.analysis.signals import Values, bearing_clearance, joined, located
 from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
+from frbcli.columns import Column, Shown, Table, named, spread_table
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 FEWEST = 4  # speeds that both runs have
+
+
+
+def _size(deviation: tuple[str, float, float], value: float) -> str:
+    if math.isnan(value):
+        return "-"
+    return f"{value:.3g} Hz" if deviation[0].startswith("frequency") else f"{1e6 * value:.3g} um"
+
+
+# Of a deviation: what deviates, root mean square of computed less measured, that of the measured ridge
+DEVIATIONS = (
+    Column("what", "", "amplitude or frequency that is compared", itemgetter(0), shown=(Shown("what"),)),
+    Column("rms", "", "root mean square of computed less measured, m or Hz", itemgetter(1)),
+    Column("of", "", "root mean square of the measured one", itemgetter(2)),
+    Column("deviation", "", "", lambda deviation: _size(deviation, deviation[1]), shown=(Shown("deviation, rms"),),
+           key="", flat=False),
+    Column("measured", "", "", lambda deviation: _size(deviation, deviation[2]), shown=(Shown("measured, rms"),),
+           key="", flat=False),
+)  # fmt: skip
+
+# Of the ridges of a run, over its speeds
+RIDGE = (
+    Column("synchronous_x", "m", "amplitude at the rotor speed in x", lambda ridge: ridge.synchronous[:, 0]),
+    Column("synchronous_y", "m", "amplitude at the rotor speed in y", lambda ridge: ridge.synchronous[:, 1]),
+    Column("whirl", "Hz", "frequency of the whirl", lambda ridge: np.where(ridge.whirls, ridge.whirl_Hz, np.nan)),
+    Column("whirl", "m", "amplitude of the whirl", lambda ridge: np.where(ridge.whirls, ridge.whirl, np.nan)),
+)
+RIDGES = (
+    Column("speed", "Hz", "rotor speed", attrgetter("computed.speed_Hz")),
+    *named(RIDGE, "computed", attrgetter("computed")),
+    *named(RIDGE, "measured", attrgetter("measured")),
+)
 
 
 @dataclass(frozen=True)
@@ -51,17 +83,9 @@ class AgainstMeasured(Tabular):
                      _rms(self.measured.whirl[both])))  # fmt: skip
         return tuple(rows)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per speed."""
-        import pandas as pd
-
-        columns: dict[str, Values] = {"speed_Hz": self.computed.speed_Hz}
-        for name, found in (("computed", self.computed), ("measured", self.measured)):
-            columns |= {f"synchronous_x_m_{name}": found.synchronous[:, 0]}
-            columns |= {f"synchronous_y_m_{name}": found.synchronous[:, 1]}
-            columns |= {f"whirl_Hz_{name}": np.where(found.whirls, found.whirl_Hz, np.nan)}
-            columns |= {f"whirl_m_{name}": np.where(found.whirls, found.whirl, np.nan)}
-        return pd.DataFrame(columns)
+        return spread_table(RIDGES, self)
 
 
 def against_measured(run: Run, measurement: Run, signal: str = "journal") -> AgainstMeasured:

@@ -104,6 +104,13 @@ class VariantResult:
         powers = [name for name in self.run.signals if name.startswith("power")]
         return float(sum(np.mean(_last(self.run, name)) for name in powers)) if powers else np.nan
 
+    @property
+    def temperatures_K(self) -> list[float]:
+        """Temperatures of the films at the end."""
+        flows = [name for name in self.run.signals if name.startswith("flow")]
+        names = [name.replace("flow", "temperature").removesuffix("_m3_s") + "_K" for name in flows]
+        return [float(self.run[name][-1]) for name in names]
+
     def first(self, kind: str) -> dict[str, Any] | None:
         """The first event of a kind, None if there is none."""
         return next((event for event in self.run.events if event["kind"] == kind), None)

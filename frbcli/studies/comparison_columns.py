@@ -7,7 +7,7 @@ from collections.abc import Callable
 from operator import attrgetter
 from typing import Any
 
-from frbcli.columns import Column, Shown
+from frbcli.columns import ZERO_CELSIUS, Column, Shown
 
 MODELS, COUPLINGS = "models", "couplings"  # tables of the terminal
 
@@ -68,4 +68,20 @@ VARIANT = (
            shown=(Shown("ms/h", ".2g", table=COUPLINGS),)),
     Column("cpu", "s", "CPU time", _of("cost", "cpu_s"), key="",
            shown=(Shown("CPU", ".2f", table=MODELS), Shown("CPU", ".3g", table=COUPLINGS))),
+)  # fmt: skip
+
+
+def _joined(form: str) -> Callable[[Any], str]:
+    return lambda values: ", ".join(form.format(value) for value in values) or "-"
+
+
+# Of a VariantResult with heat, at the end of its run
+HEAT = (
+    Column("name", "", "", attrgetter("variant.name"), shown=(Shown("films"),), key="", flat=False),
+    Column("thermal", "", "model of heat", attrgetter("variant.thermal")),
+    Column("ring_speed_ratios", "", "speeds of the rings over that of the rotor", attrgetter("ring_ratios"),
+           shown=(Shown("ring over rotor", lambda ratios: _joined("{:.4f}")(ratios.values())),), flat=False),
+    Column("loss", "W", "power that all films take", shown=(Shown("loss, W", ".4g"),)),
+    Column("temperatures", "", "", lambda result: [value - ZERO_CELSIUS for value in result.temperatures_K],
+           shown=(Shown("films, degC", _joined("{:.1f}")),), key="", flat=False),
 )  # fmt: skip

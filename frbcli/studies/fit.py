@@ -14,7 +14,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +24,7 @@ from frbcli.analysis.spectra.spectrum import window_length
 from frbcli.case.machine_keys import machine_fault
 from frbcli.case.reading.listing import values as listed
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, FrbError, InputError
 from frbcli.html import Tabular
 from frbcli.nearest import did_you_mean
@@ -32,9 +32,7 @@ from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.film_faults import require_films
-
-if TYPE_CHECKING:
-    import pandas as pd
+from frbcli.studies.fit_columns import FITTED
 
 SPAN = 3.0  # factor by which a number may move either way, if no bounds are given
 STEP = 0.01  # relative change of a number for its derivatives: above what steps and onsets scatter by
@@ -83,16 +81,9 @@ class Fit(Tabular):
     runs: int
     chi: float
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per number."""
-        import pandas as pd
-
-        rows = [
-            {"key": n.key, "unit": n.unit, "start": n.start, "value": n.value, "error": n.error, "low": n.low,
-             "high": n.high}
-            for n in self.numbers
-        ]  # fmt: skip
-        return pd.DataFrame(rows)
+        return table_of(FITTED, self.numbers)
 
 
 def fit(

@@ -14,7 +14,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from frbcli.case.schema import Case
+from frbcli.columns import Column, Shown, Table, table_of
 from frbcli.errors import FrbError, InputError
+from frbcli.html import Tabular
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
@@ -45,8 +47,24 @@ class OnsetRun:
     problem: str = ""
 
 
+def _onset(run: OnsetRun) -> str:
+    if run.problem:
+        return f"not run: {run.problem}"
+    return f"none until {run.to_Hz:.1f}" if math.isnan(run.onset_Hz) else f"{run.onset_Hz:.1f}"
+
+
+# Of an OnsetRun
+ONSET_RUNS = (
+    Column("changed", "", "difference from the run", shown=(Shown("run"),)),
+    Column("onset", "Hz", "rotor speed at which its first whirl begins"),
+    Column("onset", "", "", _onset, shown=(Shown("speed in Hz"),), key="", flat=False),
+    Column("to", "Hz", "last rotor speed"),
+    Column("problem", "", "why there is no such run"),
+)
+
+
 @dataclass(frozen=True)
-class OnsetSpread:
+class OnsetSpread(Tabular):
     """Rotor speeds in Hz at which the first whirl begins. onset_Hz: of the run; threshold_Hz: of linear stability, None
     where there is none, and note then says why; runs: the ensemble."""
 
@@ -54,6 +72,10 @@ class OnsetSpread:
     threshold_Hz: float | None
     note: str
     runs: tuple[OnsetRun, ...]
+
+    def table(self) -> Table:
+        """One row per run of the ensemble."""
+        return table_of(ONSET_RUNS, self.runs)
 
     @property
     def interval_Hz(self) -> tuple[float, float]:

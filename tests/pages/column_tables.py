@@ -6,26 +6,99 @@ A table stands on a page below its mark, a comment `<!-- columns: NAME -->`.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 from paths import DOCS
 
 from frbcli.bearing_tests.columns import MOMENTS, RESULT
 from frbcli.columns import Column, Columns
-from frbcli.linear.columns import DAMPED_MODES, FILM, MODES, POINT, RESPONSE_POINTS, SHEET
-from frbcli.studies.comparison_columns import VARIANT
+from frbcli.cycles.columns import (
+    cycle_columns,
+    diagram_columns,
+    equilibrium_columns,
+    line_columns,
+    map_columns,
+    map_point_columns,
+    special_columns,
+    whirl_columns,
+)
+from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
+from frbcli.linear.columns import (
+    DAMPED_MODES,
+    FILM,
+    MODES,
+    NATURAL_MODES,
+    POINT,
+    REDUCTION,
+    RESPONSE_COEFFICIENTS,
+    RESPONSE_FILMS,
+    RESPONSE_FORCES,
+    RESPONSE_POINTS,
+    SHEET,
+)
+from frbcli.linear.critical_map import CRITICAL_SPEEDS
+from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
+from frbcli.scene.machine.findings import FILM_LOADS
+from frbcli.scene.machine.operating import FILM_OPERATION
+from frbcli.studies.against import DEVIATIONS, RIDGES
+from frbcli.studies.comparison_columns import HEAT, VARIANT
+from frbcli.studies.fit_columns import FITTED
+from frbcli.studies.hard.columns import HARD_CASE, HARD_RESULT
 from frbcli.studies.ladder_columns import LADDER
+from frbcli.studies.onset_spread import ONSET_RUNS
+from frbcli.studies.sweep.columns import point_columns
+
+
+def of_pandas(columns: Columns) -> Columns:
+    """Columns that JSON does not have."""
+    return [replace(column, key="") for column in columns]
+
+
+def of_json(columns: Columns) -> Columns:
+    """Columns that pandas and CSV do not have."""
+    return [replace(column, flat=False) for column in columns]
+
 
 TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
     "stability": (*POINT[:2], *FILM, *POINT[2:]),
-    "modes": MODES,
+    "modes": of_json(MODES),
     "damped modes": DAMPED_MODES,
     "response": RESPONSE_POINTS,
     "kinematic tests": RESULT,
     "moments": MOMENTS,
     "accuracy": LADDER,
     "comparison": VARIANT,
+    "comparison with heat": of_json(HEAT),
+    "natural modes": NATURAL_MODES,
+    "reduction": of_json(REDUCTION),
+    "forces": of_json(RESPONSE_FORCES),
+    "films of the response": of_json(RESPONSE_FILMS),
+    "coefficients of the response": of_json(RESPONSE_COEFFICIENTS),
+    "critical speeds": of_pandas(CRITICAL_SPEEDS),
+    "diagram": of_pandas(diagram_columns("speed", ("",), 1, ("Omega",), unbalance=True)),
+    "resting positions": of_json(equilibrium_columns(())),
+    "cycles": of_json(cycle_columns(())),
+    "whirls": of_json(whirl_columns(())),
+    "lines": of_json(line_columns(())),
+    "special points": of_json(special_columns(())),
+    "map": of_pandas(map_columns("KEY", "", "KEY of --and", "")),
+    "map points": of_json(map_point_columns(())),
+    "sweep": point_columns(("KEY",), "runup"),
+    "fit": FITTED,
+    "deviations": of_json(DEVIATIONS),
+    "ridges": of_pandas(RIDGES),
+    "onset spread": ONSET_RUNS,
+    "hard cases": HARD_CASE,
+    "hard results": HARD_RESULT,
+    "events": of_json(EVENTS),
+    "signals": MACHINE_SIGNALS + PART_SIGNALS,
+    "warm films": of_json(WARM_FILMS),
+    "warm rings": of_json(WARM_RINGS),
+    "balance": of_json(HEAT_BALANCE),
+    "loads": of_json(FILM_LOADS),
+    "operation": of_json(FILM_OPERATION),
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import click
 
 from frbcli.cli.bearings.heat import heat_document, tell_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.columns import documents, table_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.expected_error import ExpectedError
     from frbcli.scene.planning.planned import Decision
 
-TURN = 2.0 * math.pi
 TURNING_TOLD = 0.02  # of the gap
 
 
@@ -37,7 +36,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     from frbcli.scene.costs.limits import require_affordable
     from frbcli.scene.costs.preparation import compile_B
     from frbcli.scene.machine.findings import findings
-    from frbcli.scene.machine.operating import operating_points
+    from frbcli.scene.machine.operating import FILM_OPERATION, operating_points
     from frbcli.scene.planning.expected_error import expected_error
     from frbcli.scene.planning.plan import make_plan
     from frbcli.scene.planning.profiles import run_up_profile
@@ -87,7 +86,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
             "values": [{"key": value.key, "value": value.value, "unit": value.unit} for value in listed],
             "findings": _told_findings(found),
             "bare_numbers": [{"key": value.key, "value": value.value, "unit": value.unit} for value in bare],
-            "films": [_told_film(film) for film in films],
+            "films": documents(FILM_OPERATION, films),
             "plan": [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in decisions],
             "expected": expected,
         }
@@ -110,32 +109,13 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
 
 
 def _told_findings(found: Findings) -> dict[str, object]:
+    from frbcli.scene.machine.findings import FILM_LOADS
+
     return {
         "mass_kg": found.mass,
         "natural_frequencies_Hz": found.frequencies_Hz,
         "supported": found.supported,
-        "films": [
-            {
-                "film": film.film,
-                "load_N": film.load,
-                "mean_pressure_Pa": film.mean_pressure,
-                "sommerfeld_number": film.sommerfeld_number,
-            }
-            for film in found.films
-        ],
-    }
-
-
-def _told_film(film: FilmOperation) -> dict[str, object]:
-    return {
-        "film": film.name,
-        "clearance_m": film.clearance,
-        "viscosity_Pa_s": film.viscosity,
-        "speed_Hz": film.omega / TURN,
-        "reynolds_number": film.reynolds,
-        "laminar": film.laminar,
-        "warming_m": film.warming,
-        "turning_m": film.turning,
+        "films": documents(FILM_LOADS, found.films),
     }
 
 
@@ -163,22 +143,14 @@ def _expectations(
 
 
 def _show_findings(found: Findings, terminal: Terminal) -> None:
+    from frbcli.scene.machine.findings import FILM_LOADS
+
     if found.mass is not None:
         frequencies = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
         natural = f"; natural frequencies {found.supported}: {frequencies} Hz" if frequencies else ""
         terminal.sentence(f"Rotor of {found.mass:.4g} kg{natural}.")
-    rows = [
-        (
-            film.film,
-            f"{film.load:.4g}",
-            f"{1e-5 * film.mean_pressure:.3g}",
-            "-" if math.isnan(film.sommerfeld_number) else f"{film.sommerfeld_number:.3g}",
-            film.supply,
-        )
-        for film in found.films
-    ]
-    if rows:
-        terminal.table("static loads, at the top speed", ("film", "N", "N/(D B), bar", "So", "supply"), rows)
+    if found.films:
+        terminal.show("static loads, at the top speed", table_of(FILM_LOADS, found.films))
 
 
 def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:
@@ -193,21 +165,10 @@ def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:
 
 
 def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
-    columns = ("film", "gap, um", "by heat, um", "by turning", "mPa*s", "Hz", "Re (3.3)")
-    rows = [
-        (
-            film.name,
-            f"{1e6 * film.clearance:.4g}",
-            f"{1e6 * film.warming:+.3g}",
-            f"{1e6 * film.turning:+.2g}",
-            f"{1e3 * film.viscosity:.4g}",
-            f"{film.omega / TURN:.4g}",
-            f"{film.reynolds:.0f}",
-        )
-        for film in films
-    ]
-    if rows:
-        terminal.table("films at the top speed", columns, rows)
+    from frbcli.scene.machine.operating import FILM_OPERATION
+
+    if films:
+        terminal.show("films at the top speed", table_of(FILM_OPERATION, films))
     turbulent = ", ".join(f"{film.reynolds:.0f} in {film.name}" for film in films if not film.laminar)
     if turbulent:
         terminal.sentence(

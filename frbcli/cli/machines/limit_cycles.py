@@ -14,16 +14,16 @@ from frbcli.cli.files import INPUTS, here
 from frbcli.cli.options import gathered, speeds_option
 from frbcli.cli.outputs import OutputOptions, Outputs, outputs_options
 from frbcli.cli.progress import Display, computing
+from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.cycles.maps.stability_map import MapPoint, StabilityMap
-    from frbcli.cycles.result import CyclePoint, LimitCycles, SpecialPoint, SpectralLine, UnbalancedWhirl
+    from frbcli.cycles.maps.stability_map import StabilityMap
+    from frbcli.cycles.result import CyclePoint, LimitCycles, UnbalancedWhirl
     from frbcli.plot.spectra.run_track import RunTrack
     from frbcli.plot.style import Picture
 
 ASKED = "asked"
-MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
 
 @dataclass(frozen=True)
@@ -171,6 +171,8 @@ def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
 
 
 def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, object]:
+    from frbcli.cycles.columns import map_point_columns, special_columns
+
     return {
         "command": "limit-cycles",
         "case": found.case.name,
@@ -181,7 +183,7 @@ def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, obje
         "rows": [
             {
                 "value": row.value,
-                "special": [_special(names, point) for point in row.special],
+                "special": documents(special_columns(names), row.special),
                 "problem": row.problem or None,
             }
             for row in found.rows
@@ -189,25 +191,12 @@ def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, obje
         "curves": [
             {
                 "kind": curve.kind,
-                "points": [_map_point(names, point) for point in curve.points],
+                "points": documents(map_point_columns(names), curve.points),
                 "notes": curve.notes,
             }
             for curve in found.curves
         ],
-        "special": [_map_point(names, point) for point in found.special],
-    }
-
-
-def _map_point(names: tuple[str, ...], point: MapPoint) -> dict[str, object]:
-    return {
-        "over_value": point.over,
-        "value": point.value,
-        "speed_Hz": point.speed_Hz,
-        "frequency_Hz": point.frequency_Hz,
-        "eccentricity_max": dict(zip(names, point.eccentricity_max, strict=True)),
-        "criticality": point.criticality,
-        "lyapunov_1_s": point.lyapunov,
-        "kind": point.kind or None,
+        "special": documents(map_point_columns(names), found.special),
     }
 
 
@@ -226,20 +215,9 @@ def _showing(shown: Display) -> Callable[[int, float, float], None]:
 
 
 def _tell(terminal: Terminal, found: LimitCycles) -> None:
-    rows = [
-        (
-            point.kind,
-            "-" if point.branch is None else str(point.branch + 1),
-            f"{point.value:.2f}" if found.over == "speed" else f"{point.value:.6g}",
-            f"{point.frequency_Hz:.2f}",
-            f"{point.frequency_Hz / point.speed_Hz:.4f}",
-            f"{point.eccentricity_max.max():.4f}",
-            point.criticality or "",
-        )
-        for point in found.special
-    ]
-    columns = ("point", "branch", found.unit or found.over, "whirl Hz", "ratio", "eps max", "")
-    terminal.table(found.case.heading, columns, rows)
+    from frbcli.cycles.columns import special_columns
+
+    terminal.show(found.case.heading, table_of(special_columns(found.films, found.over, found.unit), found.special))
     for number, branch in enumerate(found.branches):
         values = [point.value for point in branch.points]
         if not values:
@@ -262,29 +240,14 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
 
 def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
     """A table of the whirls with unbalance, if there are any."""
-    rows = [
-        (
-            f"{number + 1}",
-            f"{whirl.speed_Hz:.2f}",
-            f"{whirl.frequency_Hz:.3f}",
-            f"{whirl.eccentricity_max.max():.4f}",
-            f"{whirl.lines[0].amplitude.max():.4f}",
-            f"{whirl.lines[1].amplitude.max():.2g}",
-            "locks in" if whirl.locked else ", ".join(_told(line) for line in whirl.lines[2:3]),
-        )
-        for number, branch in enumerate(found.branches)
-        for whirl in branch.with_unbalance
-    ]
-    if not rows:
+    from frbcli.cycles.columns import WHIRLS
+
+    whirls = [(number, whirl) for number, branch in enumerate(found.branches) for whirl in branch.with_unbalance]
+    if not whirls:
         return
-    columns = ("branch", "Hz", "whirl Hz", "eps max", "at nu", "at Omega", "largest other line")
-    terminal.table("With unbalance", columns, rows)
-    if any(not whirl.locked for branch in found.branches for whirl in branch.with_unbalance):
+    terminal.show("With unbalance", table_of(WHIRLS, whirls))
+    if any(not whirl.locked for _, whirl in whirls):
         terminal.result("Whether whirls of two frequencies are stable is not computed.")
-
-
-def _told(line: SpectralLine) -> str:
-    return f"{line.amplitude.max():.2g} at {line.name}"
 
 
 def _left_out(found: LimitCycles) -> list[str]:
@@ -302,86 +265,41 @@ def _left_out(found: LimitCycles) -> list[str]:
 
 
 def _document(found: LimitCycles) -> dict[str, object]:
+    from frbcli.cycles.columns import equilibrium_columns, special_columns
+
+    films = found.films
+    special = documents(special_columns(films), found.special)
     return {
         "command": "limit-cycles",
         "case": found.case.name,
         "over": found.over,
         "unit": found.unit,
-        "equilibria": [
-            {
-                "value": point.value,
-                "speed_Hz": point.speed_Hz,
-                "displacement": point.displacement[0],
-                "stable": point.stable,
-                "films": dict(zip(found.films, point.displacement, strict=True)),
-                "ring_speeds_Hz": point.ring_speeds_Hz,
-            }
-            for point in found.equilibria
-        ],
+        "equilibria": documents(equilibrium_columns(films), found.equilibria),
         "branches": [
             {
-                "from": None if branch.start is None else _special(found.films, found.special[branch.start]),
+                "from": None if branch.start is None else special[branch.start],
                 "points": [_cycle(found, point) for point in branch.points],
                 "note": branch.note,
-                "with_unbalance": [_whirl(found.films, whirl) for whirl in branch.with_unbalance],
+                "with_unbalance": [_whirl(films, whirl) for whirl in branch.with_unbalance],
             }
             for branch in found.branches
         ],
         "synchronous": [_cycle(found, point) for point in found.synchronous],
-        "special": [_special(found.films, point) for point in found.special],
+        "special": special,
         "notes": found.notes,
         "cost": {"cpu_s": found.cost.cpu_s, "cycles": found.cost.cycles},
     }
 
 
 def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
-    return {
-        "value": point.value,
-        "speed_Hz": point.speed_Hz,
-        "frequency_Hz": point.frequency_Hz,
-        "eccentricity_max": dict(zip(found.films, point.eccentricity_max, strict=True)),
-        "stable": point.stable,
-        "multipliers": [[value.real, value.imag] for value in point.multipliers[:MULTIPLIERS].tolist()],
-        "ring_speeds_Hz": point.ring_speeds_Hz,
-        "torque_N_m": point.torque_N_m,
-        "kind": point.kind or None,
-    } | ({"orbits": _orbits(found, point)} if point.kind == ASKED else {})
+    """A cycle in JSON, with its orbits where it was asked for."""
+    from frbcli.cycles.columns import cycle_columns
+
+    orbits = {name: point.orbit(film) for film, name in enumerate(found.films)} if point.kind == ASKED else None
+    return document(cycle_columns(found.films), point) | ({} if orbits is None else {"orbits": orbits})
 
 
 def _whirl(films: tuple[str, ...], whirl: UnbalancedWhirl) -> dict[str, object]:
-    return {
-        "speed_Hz": whirl.speed_Hz,
-        "frequency_Hz": whirl.frequency_Hz,
-        "locked": whirl.locked,
-        "eccentricity_max": dict(zip(films, whirl.eccentricity_max, strict=True)),
-        "ring_speeds_Hz": whirl.ring_speeds_Hz,
-        "lines": [
-            {
-                "name": line.name,
-                "frequency_Hz": line.frequency_Hz,
-                "amplitude": dict(zip(films, line.amplitude, strict=True)),
-            }
-            for line in whirl.lines
-        ],
-        "stable": whirl.stable,
-    }
+    from frbcli.cycles.columns import line_columns, whirl_columns
 
-
-def _orbits(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
-    return {name: point.orbit(film) for film, name in enumerate(found.films)}
-
-
-def _special(films: tuple[str, ...], point: SpecialPoint) -> dict[str, object]:
-    largest = dict(zip(films, point.eccentricity_max, strict=True))
-    return {
-        "kind": point.kind,
-        "branch": point.branch,
-        "value": point.value,
-        "speed_Hz": point.speed_Hz,
-        "frequency_Hz": point.frequency_Hz,
-        "criticality": point.criticality,
-        "lyapunov_1_s": point.lyapunov,
-        "lyapunov_uncertainty_1_s": point.lyapunov_uncertainty,
-        "speed_uncertainty_Hz": point.uncertainty_Hz,
-        "eccentricity_max": largest,
-    }
+    return document(whirl_columns(films), whirl) | {"lines": documents(line_columns(films), whirl.lines)}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from frbcli.cli.machines.stability_table import tell_largest_error
 from frbcli.cli.progress import computing
+from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,32 +80,24 @@ def tell_modes(terminal: Terminal, modes: Modes) -> None:
 
 
 def _cells(modes: Sequence[Mode]) -> list[str]:
-    cells = [f"{mode.frequency_Hz:.4g} {mode.kind[:3]}" for mode in modes[:TOLD]]
+    from frbcli.linear.columns import NATURAL_MODES
+
+    cells = [" ".join(row) for row in table_of(NATURAL_MODES, modes[:TOLD]).cells()]
     return cells + [""] * (TOLD - len(cells))
 
 
 def modes_document(modes: Modes) -> dict[str, object]:
     """The modes in JSON."""
-    error = modes.error
+    from frbcli.linear.columns import NATURAL_MODES, REDUCTION
+
     return {
-        "stiffness_N_m": list(modes.stiffness_N_m),
+        "stiffness_N_m": modes.stiffness_N_m,
         "mass_kg": modes.mass_kg,
-        "free_bending_Hz": list(modes.free_Hz),
+        "free_bending_Hz": modes.free_Hz,
         "points": [
-            {
-                "speed_Hz": point.speed_Hz,
-                "modes": [
-                    {"frequency_Hz": mode.frequency_Hz, "direction": mode.direction, "kind": mode.kind}
-                    for mode in point.modes
-                ],
-            }
-            for point in modes.points
+            {"speed_Hz": point.speed_Hz, "modes": documents(NATURAL_MODES, point.modes)} for point in modes.points
         ],
-        "reduction": {
-            "modes": modes.kept,
-            "frequency_relative": None if error is None else error.frequency,
-            "missing_flexibility_m_N": None if error is None else error.missing_flexibility,
-        },
+        "reduction": document(REDUCTION, modes),
     }
 
 
@@ -128,7 +121,7 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs
             "threshold": None,
             "speed_Hz": speed_Hz,
             "error": {"coefficients_relative": found.coefficient_error},
-            "modes": [document | {"motion": motion} for document, motion in zip(modes, motions, strict=True)],
+            "modes": [mode | {"motion": motion} for mode, motion in zip(modes, motions, strict=True)],
             **places.write(terminal, found.to_pandas, lambda: _shapes_figure(found), "mode shapes"),
         }
     )

@@ -13,8 +13,8 @@ from frbcli.cli.files import INPUT, beside, check_outputs
 from frbcli.cli.looks import Span, look_options
 from frbcli.cli.options import TIME_OPTION, Numbers, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
-from frbcli.cli.runs.events import EVENT_COLUMNS, event_row
 from frbcli.cli.studies.measured import measured_options, run_of, show_columns
+from frbcli.columns import table_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -79,6 +79,8 @@ def command(
 
     RUN is a run file, or a measurement as CSV, WAV, MAT or UFF, whose columns --x, --speed and so on name.
     """
+    from frbcli.results.columns import EVENTS
+
     if listed:
         show_columns(run_file, terminal)
         return
@@ -120,7 +122,7 @@ def command(
     if measurement is not None:
         told["events"] = run.events
         if run.events:
-            terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
+            terminal.show("events", table_of(EVENTS, run.events))
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
     terminal.emit({**document, "direction": view.direction, **told})
 

@@ -16,8 +16,8 @@ from frbcli.cli.looks import look_options
 from frbcli.cli.options import gathered
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
-from frbcli.cli.runs.events import EVENT_COLUMNS, event_row
 from frbcli.cli.studies.onset_spread import spread_shown
+from frbcli.columns import table_of
 from frbcli.errors import FrbError
 
 if TYPE_CHECKING:
@@ -222,6 +222,7 @@ def exit_code(status: str) -> int:
 
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
+    from frbcli.results.columns import EVENTS
     from frbcli.runs.advice import run_advice, run_end
     from frbcli.runs.errors.account import account
 
@@ -229,5 +230,5 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     for sentence in run_advice(case, run_end(run)):
         terminal.remark(wrapped(sentence))
     if run.events:
-        terminal.table("events", EVENT_COLUMNS, map(event_row, run.events))
+        terminal.show("events", table_of(EVENTS, run.events))
     terminal.table("cost and error", ("", "", ""), account(run))

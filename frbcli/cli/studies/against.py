@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from frbcli.cli.common import Terminal
 from frbcli.cli.files import beside
 from frbcli.cli.outputs import OutputOptions
 from frbcli.cli.studies.measured import run_of
+from frbcli.columns import documents, table_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -25,7 +25,7 @@ def beside_measured(
 ) -> None:  # fmt: skip
     """Tables, picture and JSON of a run and a measurement."""
     from frbcli.results.store import read_run
-    from frbcli.studies.against import against_measured
+    from frbcli.studies.against import DEVIATIONS, against_measured
 
     places = outputs.check(beside(run_file, "-measured.png"))
     found = against_measured(read_run(run_file), run_of(file, measurement), signal)
@@ -36,9 +36,7 @@ def beside_measured(
             "run": run_file,
             "measured": file,
             "events": {"computed": found.computed_events, "measured": found.measured_events},
-            "deviations": [
-                {"what": what, "rms": rms, "of": size} for what, rms, size in found.deviations()
-            ],
+            "deviations": documents(DEVIATIONS, found.deviations()),
             **places.write(terminal, found.to_pandas, lambda: _figure(found)),
         }
     )
@@ -51,6 +49,8 @@ def _figure(found: AgainstMeasured) -> Picture:
 
 
 def _tell(terminal: Terminal, found: AgainstMeasured) -> None:
+    from frbcli.studies.against import DEVIATIONS
+
     rows = []
     for kind in KINDS:
         speeds = [
@@ -61,12 +61,4 @@ def _tell(terminal: Terminal, found: AgainstMeasured) -> None:
             rows.append((kind, *("-" if speed is None else f"{speed:.1f} Hz" for speed in speeds)))
     where = found.point.replace("_", " ")
     terminal.table(f"first events of the {where}, rotor speed", ("event", "computed", "measured"), rows)
-    terminal.table("ridges", ("what", "deviation, rms", "measured, rms"), [
-        (what, _shown(rms, what), _shown(size, what)) for what, rms, size in found.deviations()
-    ])
-
-
-def _shown(value: float, what: str) -> str:
-    if math.isnan(value):
-        return "-"
-    return f"{value:.3g} Hz" if what.startswith("frequency") else f"{1e6 * value:.3g} um"
+    terminal.show("ridges", table_of(DEVIATIONS, found.deviations()))

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -24,13 +23,14 @@ from frbcli.cli.progress import computing
 from frbcli.cli.runs.transient import exit_code
 from frbcli.cli.studies.against import beside_measured
 from frbcli.cli.studies.measured import measured_options
+from frbcli.columns import table_of
 from frbcli.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
     from frbcli.plot.style import Picture
-    from frbcli.studies.compare import Comparison, VariantResult
+    from frbcli.studies.compare import Comparison
 
 
 @dataclass(frozen=True)
@@ -77,6 +77,7 @@ def command(
     """
     from frbcli.bearing_tests.plan import TESTS, with_model
     from frbcli.studies.compare import compare
+    from frbcli.studies.comparison_columns import HEAT
 
     if isinstance(case, Path) or file is not None:
         if not isinstance(case, Path) or file is None or any(vars(models).values()) or test != "runup" or keep:
@@ -94,10 +95,11 @@ def command(
             models.coupling, models.thermal,
         )  # fmt: skip
     _report(found, bool(models.coupling), terminal)
+    warm = table_of(HEAT, found.results)
     if models.thermal:
-        _report_heat(found, terminal)
-    results = [document | (_heat(result) if result.variant.thermal else {})
-               for document, result in zip(found.table().documents(), found.results, strict=True)]  # fmt: skip
+        terminal.show("at the end", warm)
+    results = [told | (heat if heat["thermal"] else {})
+               for told, heat in zip(found.table().documents(), warm.documents(), strict=True)]  # fmt: skip
     whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
     if not all(len(result.run) > 1 for result in found.results):
         places = replace(places, picture=None)
@@ -148,33 +150,3 @@ def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
             terminal.result(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
     if found.status != "finished":
         terminal.result(f"Not all models were run: {' '.join(found.message.split()) or found.status}")
-
-
-def _report_heat(found: Comparison, terminal: Terminal) -> None:
-    """What heat changes at the end of the runs."""
-    rows = [
-        (
-            result.variant.name,
-            ", ".join(f"{ratio:.4f}" for ratio in result.ring_ratios.values()) or "-",
-            "-" if math.isnan(result.loss) else f"{result.loss:.4g}",
-            ", ".join(f"{hottest:.1f}" for hottest in _hottest(result)) or "-",
-        )
-        for result in found.results
-    ]
-    terminal.table("at the end", ("films", "ring over rotor", "loss, W", "films, degC"), rows)
-
-
-def _heat(result: VariantResult) -> dict[str, Any]:
-    """What heat changes at the end, in JSON."""
-    return {
-        "thermal": result.variant.thermal,
-        "ring_speed_ratios": result.ring_ratios,
-        "loss_W": None if math.isnan(result.loss) else result.loss,
-    }
-
-
-def _hottest(result: VariantResult) -> list[float]:
-    """Temperatures of the films in degC at the end."""
-    names = [name.replace("flow", "temperature").removesuffix("_m3_s") + "_K" for name in result.run.signals
-             if name.startswith("flow")]  # fmt: skip
-    return [float(result.run[name][-1]) - 273.15 for name in names]

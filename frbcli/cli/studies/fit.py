@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
     from frbcli.plot.style import Picture
-    from frbcli.studies.fit import Fit, Fitted
+    from frbcli.studies.fit import Fit
 
 EXPLANATION = (
-    "error: standard error; what lies at a bound has none. The errors are of the\n"
-    "measurement's scatter: what the case leaves out is not in them."
+    "error: standard error; what lies at a bound has none. The errors are of the measurement's scatter: what the case "
+    "leaves out is not in them."
 )
 POOR = 2.0  # times the scatter of the measurement: the case does not describe it
 
@@ -75,18 +75,14 @@ def command(
         {
             "command": "fit",
             "case": case.name,
-            "numbers": [
-                {"key": n.key, "unit": n.unit, "start": n.start, "value": n.value, "error": n.error, "low": n.low,
-                 "high": n.high, "at_bound": n.at_bound}
-                for n in found.numbers
-            ],
+            "numbers": found.table().documents(),
             "correlation": found.correlation,
             "chi": found.chi,
             "runs": found.runs,
             "case_file": save,
             **places.write(terminal, found.to_pandas, lambda: _figure(found)),
         }
-    )  # fmt: skip
+    )
 
 
 def _figure(found: Fit) -> Picture:
@@ -96,22 +92,11 @@ def _figure(found: Fit) -> Picture:
 
 
 def _tell(terminal: Terminal, found: Fit) -> None:
-    columns = ("key", "at first", "found", "error", "between")
-    terminal.table(found.case.heading, columns, map(_row, found.numbers))
-    terminal.result(EXPLANATION)
+    terminal.show(found.case.heading, found.table())
+    terminal.sentence(EXPLANATION)
     terminal.result(f"{found.runs} runs; residuals of {found.chi:.2g} times the scatter of the measurement.")
     if found.chi > POOR:
         terminal.result("They are larger than the scatter: the case does not describe all of what was measured.")
-
-
-def _row(number: Fitted) -> tuple[str, ...]:
-    def shown(value: float) -> str:
-        from frbcli.units import display
-
-        return display(float(f"{value:.5g}"), number.unit) if number.unit else f"{value:.5g}"
-
-    error = "at a bound" if number.at_bound else f"{100.0 * number.error / number.value:.2g} %"
-    return number.key, shown(number.start), shown(number.value), error, f"{shown(number.low)} to {shown(number.high)}"
 
 
 def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]]:

@@ -3,29 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-from frbcli.case.reading.hard import HardCase, hard_cases
+from frbcli.case.reading.hard import hard_cases
 from frbcli.cli.common import Terminal
 from frbcli.cli.progress import display
-from frbcli.columns import short_number
+from frbcli.columns import table_of
 from frbcli.errors import INTERRUPTED
 from frbcli.studies.hard.cases import HardResult, run_hard_cases
+from frbcli.studies.hard.columns import HARD_CASE, LIST
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
-COLUMNS = ("case", "difficulty", "end", "error", "stated", "CPU s")
-EXPLANATION = """\
-error: largest deviation of the eccentricities from a fine reference until a
-whirl begins or the run ends; relative deviation of a force; stated: error that
-the run or test states. `frb cases --hard NAME` prints a case."""
+EXPLANATION = (
+    "error: largest deviation of the eccentricities from a fine reference until a whirl begins or the run ends; "
+    "relative deviation of a force; stated: error that the run or test states. `frb cases --hard NAME` prints a case."
+)
 
 
 def list_hard(terminal: Terminal) -> None:
     """The table of all hard cases."""
-    found = hard_cases()
-    terminal.table("hard cases", ("case", "difficulty", "ends"), [(h.name, h.hard, h.end) for h in found])
+    found = table_of(HARD_CASE, hard_cases())
+    terminal.show("hard cases", found, LIST)
     terminal.remark("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
-    terminal.emit({"command": "cases", "hard": [_entry(hard) for hard in found]})
+    terminal.emit({"command": "cases", "hard": found.documents()})
 
 
 def hard_text(name: str) -> str:
@@ -41,8 +40,8 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
     """Run hard cases, all of them for no name, and report; returns the exit code."""
     with display(terminal) as shown:
         found = run_hard_cases(names, lambda *told: shown.line(_progress(*told)))
-    terminal.table("hard cases", COLUMNS, map(_cells, found.results))
-    terminal.result(EXPLANATION)
+    terminal.show("hard cases", found.table())
+    terminal.sentence(EXPLANATION)
     for result in found.results:
         if result.message:
             terminal.sentence(f"{result.hard.name}: {cause_of(result)}")
@@ -55,8 +54,7 @@ def run_hard(names: Sequence[str], terminal: Terminal) -> int:
     if not found.complete:
         terminal.result("Interrupted: the other cases were not run.")
     whole = {} if found.complete else {"status": "interrupted"}
-    documents = [_document(result) for result in found.results]
-    terminal.emit({"command": "cases", **whole, "hard": documents, "ok": found.ok})
+    terminal.emit({"command": "cases", **whole, "hard": found.table().documents(), "ok": found.ok})
     if not found.complete:
         return INTERRUPTED
     return 0 if found.ok else NOT_AS_LISTED
@@ -69,36 +67,3 @@ def _progress(result: HardResult, done: int, whole: int) -> str:
 def cause_of(result: HardResult) -> str:
     """Why a case ended early: its message, and the cause from the list."""
     return "; ".join(text.rstrip(".") for text in (result.message, result.hard.why) if text)
-
-
-def _cells(result: HardResult) -> tuple[str, ...]:
-    hard = result.hard
-    end = result.status if result.status == hard.end else f"{result.status}, not {hard.end}"
-    return hard.name, hard.hard, end, short_number(result.error), short_number(result.reported), f"{result.cpu_s:.1f}"
-
-
-def _entry(hard: HardCase) -> dict[str, object]:
-    return {"name": hard.name, "topic": hard.topic, "hard": hard.hard, "command": hard.words, "expected": hard.end,
-            "why": hard.why}  # fmt: skip
-
-
-def _document(result: HardResult) -> dict[str, Any]:
-    """A result in JSON."""
-    hard = result.hard
-    return {
-        "name": hard.name,
-        "topic": hard.topic,
-        "hard": hard.hard,
-        "command": hard.words,
-        "expected": hard.end,
-        "status": result.status,
-        "message": result.message,
-        "events": result.events,
-        "error": result.error,
-        "reported": result.reported,
-        "certain": result.certain,
-        "until_s": result.until_s,
-        "cpu_s": result.cpu_s,
-        "ok": result.ok,
-        "problems": result.problems,
-    }

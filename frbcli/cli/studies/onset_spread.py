@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from frbcli.cli.common import Terminal
     from frbcli.results.store import Run
     from frbcli.runs.march import Progress
-    from frbcli.studies.onset_spread import OnsetRun, OnsetSpread
+    from frbcli.studies.onset_spread import OnsetSpread
 
 
 def spread_shown(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
@@ -39,31 +39,19 @@ def spread_shown(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
         "onset_Hz": found.onset_Hz,
         "threshold_Hz": found.threshold_Hz,
         "lowest_Hz": low,
-        "highest_Hz": high if math.isfinite(high) else None,
+        "highest_Hz": high,
         "cpu_s": found.cpu_s,
-        "runs": [
-            {"changed": each.changed, "onset_Hz": _number(each.onset_Hz), "to_Hz": each.to_Hz, "problem": each.problem}
-            for each in found.runs
-        ],
+        "runs": found.table().documents(),
     }
 
 
 def _show(found: OnsetSpread, terminal: Terminal) -> None:
     low, high = found.interval_Hz
-    rows = [("this run", f"{found.onset_Hz:.1f}"), *((each.changed, _onset(each)) for each in found.runs)]
+    table = found.table()
+    rows = [("this run", f"{found.onset_Hz:.1f}"), *table.cells()]
     if found.threshold_Hz is not None:
         rows.append(("linear threshold of stability", f"{found.threshold_Hz:.1f}"))
-    terminal.table("onset of the first whirl", ("run", "speed in Hz"), rows)
+    terminal.table("onset of the first whirl", table.heads(), rows)
     most = f"{high:.1f} Hz" if math.isfinite(high) else "the end of a run without one"
     told = f"The onset lies between {low:.1f} Hz and {most} ({found.cpu_s:.3g} s of CPU time). {found.note}".strip()
     terminal.sentence(told)
-
-
-def _onset(run: OnsetRun) -> str:
-    if run.problem:
-        return f"not run: {run.problem}"
-    return f"none until {run.to_Hz:.1f}" if math.isnan(run.onset_Hz) else f"{run.onset_Hz:.1f}"
-
-
-def _number(value: float) -> float | None:
-    return None if math.isnan(value) else value

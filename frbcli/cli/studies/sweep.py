@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from frbcli.studies.sweep.distributions import Distribution
     from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
-LONGEST_REASON = 100  # letters
 LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
 
 
@@ -76,8 +74,8 @@ class Machines:
 @click.option("--samples", type=int, default=64, show_default=True, metavar="N",
               help="Machines, a power of 2, of keys that scatter: KEY=normal(MEAN, DEVIATION), uniform(LOW, HIGH) or "
               "truncated(MEAN, DEVIATION, LOW, HIGH).")  # fmt: skip
-@click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R", help="Correlation of two of them. Repeatable.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the scrambled Sobol sequence of the machines.")
+@click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R", help="Of two of them. Repeatable.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the Sobol sequence of the machines.")
 @click.option("--below", type=SPEED_OPTION, metavar="SPEED",
               help="Speed below which the share of machines that whirl is given. [the highest of CASE]")  # fmt: skip
 @click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
@@ -129,7 +127,7 @@ def command(
     _report(found, terminal)
     write_table(found, table, kept.table_format)
     terminal.result(f"table: {table}")
-    document: dict[str, Any] = {"command": "sweep", "case": case.name, "points": list(map(_document, found.points))}
+    document: dict[str, Any] = {"command": "sweep", "case": case.name, "points": found.table().documents()}
     if distributions and any(point.status != "interrupted" for point in found.points):
         document["scatter"], drawn = of_machines(found, machines.below, target if kept.picture else None, terminal)
     else:
@@ -226,11 +224,8 @@ def _result(point: SweepPoint) -> str:
 
 
 def _report(found: Sweep, terminal: Terminal) -> None:
-    event = "threshold" if found.method == "stability" else "onset"
-    columns = ("", *found.keys, event, "frequency", "status", *(["reason"] if any(map(_reason, found.points)) else []))
-    with_reason = "reason" in columns
-    rows = [_cells(point, found.keys, event, with_reason) for point in found.points[:LONGEST_TABLE]]
-    terminal.table(found.case.heading, columns, rows)
+    table = found.table()
+    terminal.table(found.case.heading, table.heads(), table.cells()[:LONGEST_TABLE])
     if len(found.points) > LONGEST_TABLE:
         terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
     failed = [point for point in found.points if point.status != "finished"]
@@ -242,23 +237,6 @@ def _report(found: Sweep, terminal: Terminal) -> None:
         )
 
 
-def _cells(point: SweepPoint, keys: Sequence[str], kind: str, with_reason: bool) -> tuple[str, ...]:
-    event = point.first(kind)
-    speed, frequency = ("-", "-") if event is None else (_hertz(event["speed_Hz"]), _hertz(event["frequency_Hz"]))
-    reason = [_reason(point)] if with_reason else []
-    return (str(point.number), *(point.settings.get(key, "") for key in keys), speed, frequency, point.status, *reason)
-
-
-def _reason(point: SweepPoint) -> str:
-    """Why a point has no result, no longer than a cell of a table; its file has the whole."""
-    event = point.first("threshold") or point.first("onset")
-    return "" if event is not None else textwrap.shorten(point.message, LONGEST_REASON, placeholder=" ...")
-
-
-def _hertz(value: float | None) -> str:
-    return "-" if value is None else f"{value:.1f} Hz"
-
-
 def _picture(found: Sweep, target: Path, terminal: Terminal) -> Path | None:
     from frbcli.plot.studies.sweep import can_draw, sweep_figure
 
@@ -266,17 +244,6 @@ def _picture(found: Sweep, target: Path, terminal: Terminal) -> Path | None:
         terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
         return None
     return draw(terminal, lambda: sweep_figure(found), target)
-
-
-def _document(point: SweepPoint) -> dict[str, Any]:
-    return {
-        "set": point.settings,
-        "status": point.status,
-        "message": point.message,
-        "events": point.events,
-        "cost": point.cost,
-        "run": point.run,
-    }
 
 
 def _exit_code(found: Sweep) -> int:

@@ -7,13 +7,14 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.cycles.branch import FOLD, HOPF, Cycle, amplitude, eccentricities
+from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
@@ -29,11 +30,9 @@ from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
 from frbcli.cycles.method.criticality import lyapunov_coefficient
 from frbcli.cycles.method.equilibria import hopf_at, settled
-from frbcli.cycles.result import SPEED, SpecialPoint, hertz
+from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.errors import Fault, InputError, NotConverged
-
-if TYPE_CHECKING:
-    import pandas as pd
+from frbcli.html import Tabular
 
 Array = NDArray[np.float64]
 
@@ -90,7 +89,7 @@ class Growth:
 
 
 @dataclass(frozen=True)
-class StabilityMap:
+class StabilityMap(Tabular):
     """over, over_unit: the first number, "speed" in Hz or a key; key, unit: the second one; curves: of Hopf points and
     folds; rows: ascending in the value of the key, in `unit`."""
 
@@ -109,26 +108,11 @@ class StabilityMap:
         """The points where the criticality changes, and the cusps."""
         return tuple(point for curve in self.curves for point in curve.points if point.kind)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per point of a curve."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            {
-                **({} if self.over == SPEED else {self.over: point.over, "over_unit": self.over_unit}),
-                self.key: point.value,
-                "unit": self.unit,
-                "curve": number,
-                "kind": point.kind or curve.kind,
-                "speed_Hz": point.speed_Hz,
-                "frequency_Hz": point.frequency_Hz,
-                "eccentricity_max": float(point.eccentricity_max.max()),
-                "criticality": point.criticality,
-                "lyapunov_1_s": point.lyapunov,
-            }
-            for number, curve in enumerate(self.curves)
-            for point in curve.points
-        )
+        columns = map_columns(self.over, self.over_unit, self.key, self.unit)
+        points = ((number, curve.kind, point) for number, curve in enumerate(self.curves) for point in curve.points)
+        return table_of(columns, points)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.columns import Column, Shown
 from frbcli.errors import NotConverged
 from frbcli.film.operating import sommerfeld_number
 from frbcli.rotor.held import held_rotor
@@ -27,6 +28,16 @@ class FilmLoad:
     mean_pressure: float
     sommerfeld_number: float
     supply: str
+
+
+# Of a FilmLoad
+FILM_LOADS = (
+    Column("film", "", "name of the film", shown=(Shown("film"),)),
+    Column("load", "N", "static load", shown=(Shown("N", ".4g"),)),
+    Column("mean_pressure", "Pa", "load over width and diameter", shown=(Shown("N/(D B), bar", ".3g", "bar"),)),
+    Column("sommerfeld_number", "", "Sommerfeld number (3.14) at the top speed", shown=(Shown("So", ".3g"),)),
+    Column("supply", "", "oil supply", shown=(Shown("supply"),), key=""),
+)
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from operator import attrgetter
 
 from frbcli.case.bearing import ColdClearance, FilmGeometry, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
+from frbcli.columns import Column, Shown
 from frbcli.film.operating import (
     LAMINAR_BELOW,
     RING_SPEED,
@@ -37,6 +39,20 @@ class FilmOperation:
     def laminar(self) -> bool:
         """Whether (3.3) holds."""
         return self.reynolds < LAMINAR_BELOW
+
+
+# Of a FilmOperation
+FILM_OPERATION = (
+    Column("film", "", "name of the film", attrgetter("name"), shown=(Shown("film"),)),
+    Column("clearance", "m", "clearance", shown=(Shown("gap, um", ".4g", "um"),)),
+    Column("warming", "m", "what heat has added to it", shown=(Shown("by heat, um", "+.3g", "um"),)),
+    Column("turning", "m", "what centrifugal growth would add", shown=(Shown("by turning", "+.2g", "um"),)),
+    Column("viscosity", "Pa s", "viscosity of the oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
+    Column("speed", "Hz", "speed of journal and shell together", lambda film: film.omega / (2.0 * math.pi),
+           shown=(Shown("Hz", ".4g"),)),
+    Column("reynolds_number", "", "Reynolds number (3.3)", attrgetter("reynolds"), shown=(Shown("Re (3.3)", ".0f"),)),
+    Column("laminar", "", "whether (3.3) holds"),
+)  # fmt: skip
 
 
 def operating_points(case: Case) -> tuple[FilmOperation, ...]:

@@ -9,7 +9,6 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +16,13 @@ from numpy.typing import NDArray
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
 from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import InputError, NotConverged
+from frbcli.html import Tabular
 from frbcli.results.store import Run
 from frbcli.runs.run import rundown, runup
+from frbcli.studies.hard.columns import HARD_RESULT
 from frbcli.studies.hard.worker import DIED, HUNG, Worker
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 FINISHED, INPUT_ERROR, NOT_CONVERGED, ERROR = "finished", "input-error", "not-converged", "error"
 RUNS = {"runup": runup, "rundown": rundown}
@@ -65,7 +64,7 @@ Observer = Callable[[HardResult, int, int], None]  # a result, how many are done
 
 
 @dataclass(frozen=True)
-class HardResults:
+class HardResults(Tabular):
     """All results, in the order of the list; complete: not interrupted before the last of them."""
 
     results: tuple[HardResult, ...]
@@ -76,16 +75,9 @@ class HardResults:
         """Whether all cases ended as they have to."""
         return all(result.ok for result in self.results)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per case."""
-        import pandas as pd
-
-        return pd.DataFrame([
-            {"name": r.hard.name, "topic": r.hard.topic, "expected": r.hard.end, "status": r.status, "ok": r.ok,
-             "error": r.error, "reported": r.reported, "certain": r.certain, "until_s": r.until_s,
-             "cpu_s": r.cpu_s, "problems": "; ".join(r.problems)}
-            for r in self.results
-        ])  # fmt: skip
+        return table_of(HARD_RESULT, self.results)
 
 
 def run_hard_cases(names: Sequence[str] = (), observe: Observer | None = None) -> HardResults:

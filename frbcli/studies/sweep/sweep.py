@@ -5,16 +5,16 @@ All results are in one directory: `sweep.jsonl`, from which an interrupted sweep
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from frbcli.case.schema import Case
+from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.results.files import tables
@@ -22,23 +22,17 @@ from frbcli.results.files.kinds import TABLES
 from frbcli.results.files.lock import locked
 from frbcli.results.files.write import written
 from frbcli.scene.planning.plan import make_plan
+from frbcli.studies.sweep.columns import point_columns, reason
 from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid
 from frbcli.studies.sweep.task import INPUT_ERROR, INTERRUPTED, METHODS, SweepPoint, Task, one_line, solve
 from frbcli.studies.sweep.workers import Workers, check_workers, solved
 from frbcli.version import __version__
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 __all__ = ["Observer", "Sweep", "SweepPoint", "Workers", "check_table_format", "sweep", "write_table"]
 
 LOG, RUNS = "sweep.jsonl", "runs"
 TABLE_FORMATS = ("csv", "parquet")
-EVENTS = {
-    "runup": ("critical-speed", "self-excited", "onset", "offset", "lock-in", "contact"),
-    "stability": ("threshold",),
-}
 # decisions of a plan that choose the kernels
 COMPILED_FOR = ("bearings", "theory", "cavitation", "coupling", "film", "integrator")
 WARM_UP_s = 1e-3
@@ -59,11 +53,9 @@ class Sweep(Tabular):
         """The keys that the points set, in the order in which they first appear."""
         return tuple(dict.fromkeys(key for point in self.points for key in point.settings))
 
-    def to_pandas(self) -> pd.DataFrame:
+    def table(self) -> Table:
         """One row per point: number, values set as text, status, message, first event of each kind, cost."""
-        import pandas as pd
-
-        return pd.DataFrame([_row(point, self.keys, EVENTS[self.method]) for point in self.points])
+        return table_of(point_columns(self.keys, self.method, any(map(reason, self.points))), self.points)
 
 
 def sweep(
@@ -196,20 +188,6 @@ def _make(folder: Path) -> None:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise _refuse("--output", str(folder), f"cannot be made: {reason}.", "Choose another directory.") from error
-
-
-def _row(point: SweepPoint, keys: Sequence[str], kinds: Sequence[str]) -> dict[str, Any]:
-    row: dict[str, Any] = {"point": point.number} | {key: point.settings.get(key) for key in keys}
-    row |= {"status": point.status, "message": point.message}
-    for kind in kinds:
-        event = point.first(kind) or {}
-        name = kind.replace("-", "_").removesuffix("_speed")
-        row |= {f"{name}_{value}": _number(event.get(value)) for value in ("speed_Hz", "frequency_Hz")}
-    return row | {name: _number(point.cost.get(name)) for name in ("cpu_s", "wall_s")}
-
-
-def _number(value: Any) -> float:
-    return math.nan if value is None else float(value)
 
 
 def _refuse(key: str, value: str, problem: str, remedy: str) -> InputError:

@@ -1,0 +1,224 @@
+"""What limit cycles tell: the columns of resting positions, cycles, whirls with unbalance, special points and maps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from operator import attrgetter, itemgetter
+from typing import Any
+
+from frbcli.columns import Column, Shown, named
+from frbcli.cycles.result import SPEED, CyclePoint, RestingPoint, UnbalancedWhirl
+
+MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
+
+SPEED_COLUMN = Column("speed", "Hz", "rotor speed")
+FREQUENCY = Column("frequency", "Hz", "frequency of the cycle")
+STABLE = Column("stable", "", "whether all disturbances decay; none where it is not known")
+VALUE = Column("value", "", "value of the number that is varied", flat=False)
+RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
+CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
+LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
+
+
+def by_film(films: Sequence[str], array: Any) -> dict[str, Any]:
+    """The values of an array (F, ...) by the names of the films."""
+    return dict(zip(films, array, strict=True))
+
+
+def _largest(films: Sequence[str]) -> Column:
+    return Column("eccentricity_max", "", "largest eccentricity, by film",
+                  lambda point: by_film(films, point.eccentricity_max), flat=False)  # fmt: skip
+
+
+def equilibrium_columns(films: Sequence[str]) -> tuple[Column, ...]:
+    """The columns of a RestingPoint in JSON."""
+    return (
+        VALUE,
+        SPEED_COLUMN,
+        Column("displacement", "", "displacement of the first journal over the clearance",
+               lambda point: point.displacement[0], flat=False),
+        STABLE,
+        Column("films", "", "displacements, by film", lambda point: by_film(films, point.displacement), flat=False),
+        RINGS,
+    )  # fmt: skip
+
+
+def cycle_columns(films: Sequence[str]) -> tuple[Column, ...]:
+    """The columns of a CyclePoint in JSON."""
+    return (
+        VALUE,
+        SPEED_COLUMN,
+        FREQUENCY,
+        _largest(films),
+        STABLE,
+        Column("multipliers", "", "Floquet multipliers, real and imaginary part: the trivial one, then the largest",
+               lambda point: [[value.real, value.imag] for value in point.multipliers[:MULTIPLIERS].tolist()],
+               flat=False),
+        RINGS,
+        Column("torque", "N m", "mean torque that turns the rotor against its films"),
+        Column("kind", "", "kind of a special point, `asked` at a speed that was asked for", lambda p: p.kind or None),
+    )  # fmt: skip
+
+
+def line_columns(films: Sequence[str]) -> tuple[Column, ...]:
+    """The columns of a SpectralLine in JSON."""
+    return (
+        Column("name", "", "name of the line, such as `Omega - nu`"),
+        FREQUENCY,
+        Column("amplitude", "", "half the longer axis of its ellipse over the clearance, by film",
+               lambda line: by_film(films, line.amplitude), flat=False),
+    )  # fmt: skip
+
+
+def whirl_columns(films: Sequence[str]) -> tuple[Column, ...]:
+    """The columns of an UnbalancedWhirl in JSON, without its lines."""
+    return (
+        SPEED_COLUMN,
+        FREQUENCY,
+        Column("locked", "", "whether the whirl has locked in at half the speed"),
+        _largest(films),
+        RINGS,
+        STABLE,
+    )
+
+
+def _other_line(whirl: UnbalancedWhirl) -> str:
+    others = whirl.lines[2:3]
+    return "locks in" if whirl.locked else ", ".join(f"{line.amplitude.max():.2g} at {line.name}" for line in others)
+
+
+# Of the number of a branch and one of its whirls with unbalance, for the terminal
+WHIRLS = (
+    Column("branch", "", "number of the branch", lambda item: item[0] + 1, shown=(Shown("branch"),)),
+    *named((replace(SPEED_COLUMN, shown=(Shown("Hz", ".2f"),)), replace(FREQUENCY, shown=(Shown("whirl Hz", ".3f"),)),
+            Column("eccentricity_max", "", "largest eccentricity", lambda whirl: whirl.eccentricity_max.max(),
+                   shown=(Shown("eps max", ".4f"),)),
+            Column("at_nu", "", "amplitude of the whirl", lambda whirl: whirl.lines[0].amplitude.max(),
+                   shown=(Shown("at nu", ".4f"),)),
+            Column("at_omega", "", "amplitude at the rotor speed", lambda whirl: whirl.lines[1].amplitude.max(),
+                   shown=(Shown("at Omega", ".2g"),)),
+            Column("other", "", "largest other line", _other_line, shown=(Shown("largest other line"),))),
+           "", itemgetter(1)),
+)  # fmt: skip
+
+
+def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -> tuple[Column, ...]:
+    """The columns of a SpecialPoint of a diagram over the speed or another number."""
+    return (
+        Column("kind", "", "`hopf`, `fold`, `flip` or `torus`", shown=(Shown("point"),)),
+        Column("branch", "", "number of the branch, from 0; none where none was followed"),
+        Column("branch", "", "", lambda point: None if point.branch is None else point.branch + 1,
+               shown=(Shown("branch"),), key="", flat=False),
+        replace(VALUE, shown=(Shown(unit or over, ".2f" if over == SPEED else ".6g"),)),
+        SPEED_COLUMN,
+        replace(FREQUENCY, shown=(Shown("whirl Hz", ".2f"),)),
+        Column("ratio", "", "frequency over the rotor speed", lambda point: point.frequency_Hz / point.speed_Hz,
+               shown=(Shown("ratio", ".4f"),), key="", flat=False),
+        _largest(films),
+        Column("largest", "", "", lambda point: point.eccentricity_max.max(), shown=(Shown("eps max", ".4f"),), key="",
+               flat=False),
+        CRITICALITY,
+        Column("criticality", "", "", lambda point: point.criticality or "", shown=(Shown(""),), key="", flat=False),
+        LYAPUNOV,
+        Column("lyapunov_uncertainty", "1/s", "its uncertainty"),
+        Column("speed_uncertainty", "Hz", "uncertainty of the speed of a Hopf point", attrgetter("uncertainty_Hz")),
+    )  # fmt: skip
+
+
+def map_point_columns(films: Sequence[str]) -> tuple[Column, ...]:
+    """The columns of a MapPoint in JSON."""
+    return (
+        Column("over_value", "", "value of the first number", attrgetter("over")),
+        replace(VALUE, meaning="value of the second number"),
+        SPEED_COLUMN,
+        FREQUENCY,
+        _largest(films),
+        CRITICALITY,
+        LYAPUNOV,
+        Column("kind", "", "`bautin` or `cusp`", lambda point: point.kind or None),
+    )
+
+
+def map_columns(over: str, over_unit: str, key: str, unit: str) -> tuple[Column, ...]:
+    """The columns of a map in pandas: of the number of a curve, its kind and one of its points."""
+    first = (
+        Column(over, "", "value of the first number", lambda item: item[2].over),
+        Column("over_unit", "", "its unit", lambda _: over_unit),
+    )
+    return (
+        *(() if over == SPEED else first),
+        Column(key, "", "value of the second number", lambda item: item[2].value),
+        Column("unit", "", "its unit", lambda _: unit),
+        Column("curve", "", "number of the curve, from 0", itemgetter(0)),
+        Column("kind", "", "`hopf` or `fold`, `bautin` or `cusp` on a curve", lambda item: item[2].kind or item[1]),
+        *named((SPEED_COLUMN, FREQUENCY,
+                Column("eccentricity_max", "", "largest eccentricity of all films",
+                       lambda point: float(point.eccentricity_max.max())),
+                CRITICALITY, LYAPUNOV), "", itemgetter(2)),
+    )  # fmt: skip
+
+
+def diagram_columns(
+    over: str, films: Sequence[str], rings: int, lines: Sequence[str], unbalance: bool
+) -> tuple[Column, ...]:
+    """The columns of a diagram in pandas: of the number of a branch, -1 for none, and one of its points.
+
+    over: the number that is varied; films: their names; rings: their number; lines: names of those of whirls with
+    unbalance; unbalance: whether there are any.
+    """
+
+    def of_point(*columns: Column, film: str = "") -> tuple[Column, ...]:
+        return named(columns, film, itemgetter(1))
+
+    value = Column(over, "", "value of the number that is varied", lambda point: getattr(point, "value", math.nan))
+    whirl = Column("unbalance", "", "true of a whirl with unbalance",
+                   lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip
+    several = len(films) > 1
+    return (
+        *of_point(*(() if over == SPEED else (value,))),
+        Column("branch", "", "number of the branch, from 0; -1 of a resting position", itemgetter(0)),
+        *of_point(
+            SPEED_COLUMN,
+            replace(FREQUENCY, value=lambda point: getattr(point, "frequency_Hz", math.nan)),
+            STABLE,
+            Column("kind", "", "kind of a special point, or `asked`; `locked` or `two frequencies` of a whirl with "
+                   "unbalance", _kind),
+        ),
+        *(column for film, name in enumerate(films)
+          for column in of_point(Column("eccentricity_max", "", "largest eccentricity", _eccentricity(film)),
+                                 film=name if several else "")),
+        *of_point(
+            *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _ring_speed(ring)) for ring in range(rings)),
+            Column("torque", "N m", "mean torque of a cycle that turns the rotor against its films",
+                   lambda point: getattr(point, "torque_N_m", math.nan)),
+            *([whirl] if unbalance else []),
+            *(Column(f"amplitude of {line}", "", "amplitude of a line over the clearance, of the film where it is "
+                     "largest", _amplitude(line)) for line in lines),
+        ),
+    )  # fmt: skip
+
+
+def _kind(point: RestingPoint | CyclePoint | UnbalancedWhirl) -> str:
+    if isinstance(point, UnbalancedWhirl):
+        return "locked" if point.locked else "two frequencies"
+    return point.kind if isinstance(point, CyclePoint) else ""
+
+
+def _eccentricity(film: int) -> Callable[[Any], float]:
+    return lambda point: float(
+        point.eccentricity[film] if isinstance(point, RestingPoint) else point.eccentricity_max[film]
+    )
+
+
+def _ring_speed(ring: int) -> Callable[[Any], float]:
+    return lambda point: float(point.ring_speeds_Hz[ring])
+
+
+def _amplitude(name: str) -> Callable[[Any], float]:
+    def value(point: Any) -> float:
+        lines = point.lines if isinstance(point, UnbalancedWhirl) else ()
+        return next((float(line.amplitude.max()) for line in lines if line.name == name), math.nan)
+
+    return value
