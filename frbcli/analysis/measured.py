@@ -166,7 +166,7 @@ def _column(columns: Columns, name: str, one: float | None, unit: str, option: s
 
 
 def _in_si(stated: str, unit: str) -> float | None:
-    """What a unit in a file is in SI, None if it is no unit, or another kind of one."""
+    """The SI value of a unit in a file; None if it is no unit, or another kind of one."""
     for spelled in (stated, SPELLINGS.get(stated.lower(), stated.lower())):
         try:
             return quantity(f"1 {spelled}", unit)

@@ -31,7 +31,7 @@ class SignalColumn(Protocol):
 
 
 class RunLike(Protocol):
-    """What is read of a run: its signals by name, lengths in m to compare them with, how it ended."""
+    """A run as the analysis reads it: its signals by name, lengths in m to compare them with, how it ended."""
 
     @property
     def signals(self) -> Iterable[str]: ...
@@ -136,7 +136,7 @@ def joined(*words: str) -> str:
 
 
 def points(names: Iterable[str], kind: str) -> Iterator[str]:
-    """Of each "journal", "disk" or "ring" what follows this word: "" alone, or the name of a bearing or a wheel."""
+    """The names behind "journal", "disk" or "ring" in the signals: "" of one alone, or that of a bearing or a wheel."""
     for name in names:
         if name.endswith(END) and (name == kind + END or name.startswith(kind + "_")):
             yield name[len(kind) + 1 : -len(END)]

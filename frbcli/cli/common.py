@@ -1,4 +1,4 @@
-"""What every command shares: CASE with --set, --json and --quiet, and the terminal they speak to.
+"""The argument CASE with --set, the options --json and --quiet, and the terminal of all commands.
 
 A command is written as
 
@@ -200,7 +200,7 @@ def case_argument(
 
 
 def case_or_run_argument(function: Function) -> Function:
-    """As case_argument; a file of a run, RUN.h5, is given as its path."""
+    """Give a command the argument CASE or RUN.h5, and --set; it receives the loaded case or the path of the run."""
     return case_argument(function, _load_or_path, "CASE|RUN.h5")
 
 

@@ -151,7 +151,7 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """As click does; a name that is no command is told with the nearest ones."""
+        """Find a command as click does; the error for an unknown name proposes the nearest ones."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
             ctx.fail(f"No such command {name!r}. {did_you_mean(name, COMMANDS, '`frb --help` lists them.')}")

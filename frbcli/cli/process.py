@@ -27,7 +27,7 @@ IMPORTS = "<frozen importlib._bootstrap>"  # where Python imports a module
 
 
 class Interruption:
-    """What the signals do. asked: the one that came, 0 if none did.
+    """The handler of the signals. asked: the one that came, 0 if none did.
 
     An import is not interrupted, at least not for WITHIN_s: libraries drop what is raised there, or show it and raise
     something else.

@@ -81,7 +81,7 @@ def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time") -> Axes:
 
 
 def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over: Over = "time") -> Axes:
-    """What a run has recorded of its films by `output.signals`; part: 0 and 1 are x and y of "force"."""
+    """A film signal that a run has recorded by `output.signals`; part: 0 and 1 are x and y of "force"."""
     ax = _axes(ax)
     draw_film_signal(ax, [run], kind, part, over)
     finish(ax, over)

@@ -2,30 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from frbcli.plot.run.envelope import Envelope, EnvelopeColumn, curve, extremes
-from frbcli.plot.signals import cut, labels
-from frbcli.plot.style import COLOURS
+from frbcli.plot.signals import cut, heading, labels
+from frbcli.plot.style import COLOURS, legend_below, new_figure, styled
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED
-from frbcli.results.signals import pieces
+from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
 
 Values = NDArray[np.float64]
 Over = Literal["time", "speed"]
 Span = tuple[float | None, float | None]
 
+HEIGHT = 4.4  # inches of a picture
 STANDS = 1e-6  # of the highest speed per sample: less is no change of speed
 MANY = 200_000  # samples; of more, each may change the speed by less
 OVERLAID = 0.75  # opacity of curves that lie upon each other
 WORDS = {"time": "time in s", "speed": "rotor speed in Hz"}
 WAYS = {"run-up": 1.0, "run-down": -1.0}
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """A signal in another unit, read in pieces like a signal."""
+
+    signal: Signal
+    factor: float
+    offset: float = 0.0
+
+    def __len__(self) -> int:
+        return len(self.signal)
+
+    def __getitem__(self, part: slice, /) -> Values:
+        return np.asarray(self.factor * self.signal[part] + self.offset)
+
+
+def curves_figure(
+    runs: Sequence[Run], panels: Sequence[Callable[[Axes], None]], over: Over, height: float = HEIGHT
+) -> Figure:
+    """A picture of runs with a panel for each function that draws one, above a common axis; height: in inches."""
+    with styled():
+        figure = new_figure(*heading(runs), height=height)
+        axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+        for panel, draw in zip(axes, panels, strict=True):
+            draw(panel)
+        finish(axes[-1], over)
+        legend_below(figure, axes[0])
+    return figure
 
 
 def draw_curves(

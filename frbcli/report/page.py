@@ -106,7 +106,7 @@ def report(run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal") -
 
 
 def _machine(run: Run) -> dict[str, Any]:
-    """What the page tells of the case, as far as its text is one of this version."""
+    """The case on the page, as far as its text is one of this version."""
     nothing: dict[str, Any] = {
         "sketch": "", "sketch_note": "", "films": (), "mass": "", "loads": (), "values": (), "plan": (), "problem": "",
     }  # fmt: skip

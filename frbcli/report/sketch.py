@@ -253,7 +253,7 @@ def _arrow(shaft: list[tuple[float, float]]) -> list[str]:
 
 
 def _gap(film: FilmGeometry, phi: float) -> float:
-    """Of the centred journal over the clearance, see frbcli/film/gap.py."""
+    """The gap of the centred journal over the clearance, see frbcli/film/gap.py."""
     lobes = film.lobes
     if lobes is None:
         return 1.0

@@ -30,7 +30,7 @@ class Waterfall:
 
 
 def page_waterfall(found: Levels, clearance: float, events: Sequence[dict[str, Any]]) -> Waterfall:
-    """Of the levels of a run over the clearance in m; events: of the run, numbered from 1 on."""
+    """The waterfall of the levels of a run over the clearance in m; events: of the run, numbered from 1 on."""
     return Waterfall(_picture(found, events), _numbers(found, clearance))
 
 

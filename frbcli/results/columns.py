@@ -1,4 +1,4 @@
-"""What a run file tells: the columns of its events and of its signals."""
+"""The columns of a run file: its events and its signals."""
 
 from __future__ import annotations
 

@@ -170,7 +170,7 @@ def _is_label(value: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    """Of a cost or an error: NaN and infinities stand for what was not to be had, counts are those of a processor."""
+    """Whether a value can stand in a cost or an error. NaN and infinities are unknown; counts fit a processor."""
     return isinstance(value, float) or (
         isinstance(value, int) and not isinstance(value, bool) and value.bit_length() < LONGEST_COUNT
     )

@@ -54,7 +54,7 @@ UNREADABLE = (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeE
 
 @dataclass(frozen=True)
 class Header:
-    """What is known of a run before it starts.
+    """The head of a run file, which is known before the run starts.
 
     units: name of each signal -> its unit; references: what pictures and events refer to, in SI, e.g.
     {"clearance_m": 35e-6, "clearance_step_1_s": 3.0}; versions: program -> version.

@@ -18,7 +18,7 @@ from frbcli.solve.state import ERROR_BEFORE, STEP, STEP_BEFORE, STEP_DONE, TIME,
 
 
 def largest_eccentricity(system: System, state: State) -> float:
-    """Of all journals, over their clearances."""
+    """The largest eccentricity of all journals."""
     return max(math.hypot(*displacement(system, state, i)) for i in range(len(system.names)))
 
 

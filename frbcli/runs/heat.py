@@ -65,7 +65,7 @@ class RunHeat:
 
     @property
     def kind(self) -> LumpedHeat | NoHeat:
-        """What the loop is given of it."""
+        """The data for the time loop."""
         return NO_HEAT if self._loop is None else self._loop
 
     def buffer(self, rows: int) -> Array:
@@ -93,7 +93,7 @@ class RunHeat:
         return FilmNumbers(clearances.copy(), made[DRAG] * thicker * narrower, thicker * narrower**2)
 
     def snapshot(self) -> dict[str, Array]:
-        """What a checkpoint holds of it."""
+        """The arrays of a checkpoint."""
         return {"heat": self._loop.state.copy()} if self._loop is not None else {}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
@@ -119,7 +119,7 @@ class RunHeat:
         }
 
     def balance(self) -> dict[str, float | None]:
-        """What is left over of the dissipated heat, relative; empty without heat."""
+        """The dissipated heat that is unaccounted for, relative; empty without heat."""
         found = self.passed()
         if not found:
             return {}

@@ -259,7 +259,7 @@ class March:
         check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step)
 
     def cost(self) -> dict[str, float]:
-        """What the run has cost so far, without compilation and without tabulating the films."""
+        """The cost of the run so far, without compilation and without tabulating the films."""
         numbers = self._state.numbers
         wall = max(self._wall_s, 1e-9)
         return {

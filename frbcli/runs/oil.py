@@ -19,7 +19,7 @@ def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None
 
 
 def displacement(system: System, state: State, film: int) -> tuple[float, float]:
-    """Of a film's journal, over the clearance."""
+    """The displacement of a film's journal over the clearance."""
     x, y = system.rotor.journals[film] @ state.q / system.clearances[film]
     return float(x), float(y)
 

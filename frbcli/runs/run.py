@@ -60,7 +60,7 @@ def rundown(
 
 
 def run_cost(command: str, case: Case) -> ExpectedCost:
-    """What a "runup" or "rundown" of a case is expected to cost. Raises InputError for a case that cannot be modelled
+    """The expected cost of a "runup" or "rundown" of a case. Raises InputError for a case that cannot be modelled
     or afforded."""
     return _planned(command, case)[2]
 
@@ -156,7 +156,7 @@ def _interrupted(march: March, writer: RunWriter) -> Run:
 
 
 def _critical_speeds(segments: Sequence[Segment]) -> tuple[float, ...] | None:
-    """Of the linearised machine in all segments of a run, in Hz; None if those of one are not known."""
+    """Critical speeds of the linearised machine in all segments of a run, Hz; None if those of one are not known."""
     found = [linear_critical_speeds(segment.case) for segment in segments]
     known = [speeds for speeds in found if speeds is not None]
     return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(found) else None

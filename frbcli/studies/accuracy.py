@@ -100,7 +100,7 @@ def accuracy(
 
 
 def planned_rung(plan: Plan) -> Rung:
-    """What the plan of a case chooses."""
+    """The rung that the plan of a case chooses."""
     mesh = plan.form.mesh_of(plan)
     return Rung(plan.theory, plan.cavitation, mesh if plan.theory == "finite" else None, plan.tolerance, plan.coupling)
 

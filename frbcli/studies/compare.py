@@ -78,7 +78,7 @@ class Deviation:
 
 @dataclass(frozen=True)
 class VariantResult:
-    """What one model says. The run's file is gone unless it was to be kept; the run itself is not."""
+    """The run of one model. The run's file is deleted unless it was to be kept; the run itself stays in memory."""
 
     variant: Variant
     run: Run

@@ -1,4 +1,4 @@
-"""What a comparison of models tells: the columns of its variants."""
+"""The columns of a comparison of models."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class Difference:
 
 
 def difference(run: Run, reference: Run) -> Difference:
-    """Of two runs with the same speeds and output times."""
+    """The difference of two runs with the same speeds and output times."""
     until = min(quiet_until(one.events, one.t_end_s) for one in (run, reference))
     count = min(int(np.searchsorted(run["time_s"], until, side="right")), len(run), len(reference))
     if count < 2:

@@ -157,7 +157,7 @@ class _Trial:
         return {n.key: n.start * math.exp(change) for n, change in zip(self._numbers, x.tolist(), strict=True)}
 
     def ridges(self, x: Values) -> Ridges:
-        """Of the run with these numbers. Raises FrbError if there is none."""
+        """The ridges of the run with these numbers. Raises FrbError if the run fails."""
         key = tuple(x.tolist())
         if key not in self._known:
             case = self.case_at(x)

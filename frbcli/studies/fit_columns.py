@@ -1,4 +1,4 @@
-"""What a fit tells: the columns of its numbers."""
+"""The columns of a fit: its numbers."""
 
 from __future__ import annotations
 

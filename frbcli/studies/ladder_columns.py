@@ -1,4 +1,4 @@
-"""What a ladder of speed against error tells: the columns of its rungs."""
+"""The columns of a ladder of speed against error: its rungs."""
 
 from __future__ import annotations
 

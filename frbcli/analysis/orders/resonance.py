@@ -48,13 +48,13 @@ class Vibration:
 
 
 def resonant(kind: str, name: str) -> tuple[Tracked, ...]:
-    """What has to be tracked of a disk or journal whose resonance is sought: synchronous motion, background, whirl."""
+    """The tracks of a disk or journal whose resonance is sought: synchronous motion, background, whirl."""
     orders = (1.0, WITHOUT_MOTION, WHIRL)
     return tuple(Tracked(kind, name, order, REVOLUTIONS) for order in orders)
 
 
 def beside(kind: str, name: str) -> tuple[Tracked, ...]:
-    """What has to be tracked where vibrations beside the synchronous one are sought: two windows, both senses."""
+    """The tracks in which vibrations beside the synchronous one are sought: two windows, both senses."""
     return tuple(Tracked(kind, name, order, window) for order in (1.0, -1.0) for window in (WIDE, NARROW))
 
 

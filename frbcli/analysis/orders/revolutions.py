@@ -58,7 +58,7 @@ class Revolutions:
 
 @dataclass(frozen=True)
 class Tracked:
-    """What is to be tracked: the order of a point's motion x + iy under windows of so many revolutions, Hann windows or
+    """A track: the order of a point's motion x + iy under windows of so many revolutions, Hann windows or
     a power of them.
 
     An order is positive for motion that turns with the rotor, also where that turns the other way round.

@@ -142,7 +142,7 @@ def _combination(index: int, frequencies: Values, amplitudes: Values, window_s: 
 
 
 def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
-    """What onset, lock-in and offset of floating rings belong to, "" for other events, in the order of the events.
+    """The whirls that onset, lock-in and offset of floating rings belong to, "" for other events, in their order.
 
     Of a symmetric rotor Sub_i and Sub_o, after the film; of a rotor in several bearings Sub 1, the first whirl of an
     inner film, Sub 2, the next ones, and Sub 3 of an outer film.

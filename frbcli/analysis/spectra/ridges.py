@@ -27,7 +27,9 @@ LARGEST_OVERLAP = 0.8
 
 @dataclass(frozen=True)
 class Ridges:
-    """Of the way up. speed_Hz: (n,) ascending; synchronous: (n, 2) peak amplitudes of x and y with the rotor speed, m;
+    """Ridges of the way up.
+
+    speed_Hz: (n,) ascending; synchronous: (n, 2) peak amplitudes of x and y with the rotor speed, m;
     whirl_Hz, whirl: (n,) frequency and amplitude in m of the largest line of x within BAND of the rotor speed, which is
     a whirl where `whirls` (n,); onset_Hz: rotor speed at the first onset of whirl, NaN if there is none. What lies
     outside of the run is NaN."""

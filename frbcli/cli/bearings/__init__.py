@@ -1,1 +1,1 @@
-"""What is printed of bearings and their films."""
+"""Commands for bearings and their films."""

@@ -1,1 +1,1 @@
-"""What is printed of a machine at rest: stability, modes, response, limit cycles."""
+"""Commands for the machine about its resting position: stability, modes, response, limit cycles."""

@@ -129,7 +129,7 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
 
 
 def _doubts(found: Response) -> list[str]:
-    """What is to be said of motions that linear coefficients do not describe."""
+    """Sentences on motions that linear coefficients do not describe."""
     from frbcli.linear.response import BEYOND_GAP, DOUBTFUL, DOUBTFUL_MOTION
 
     sentences = []

@@ -1,1 +1,1 @@
-"""What is made of a run: pictures, tables and pages."""
+"""Commands that make pictures, tables and pages of a run."""

@@ -46,7 +46,7 @@ def shortage(error: BaseException) -> OutOfMemory | None:
 
 
 def _limits() -> str:
-    """What is allowed and what is taken, if anything limits it."""
+    """A sentence on the memory that is allowed and that a run takes; empty without a limit."""
     if _allowed() == math.inf:
         return ""
     return f" This process may use {_allowed() / 1e6:.0f} MB (ulimit -v); a usual run takes {_enough() / 1e6:.0f} MB."

@@ -39,7 +39,7 @@ SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow
 
 @dataclass(frozen=True)
 class RunOptions:
-    """What is asked of a run, see run_options."""
+    """The options of a run, see run_options."""
 
     output: Path | None
     resume: bool
@@ -202,7 +202,7 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
 
 
 def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
-    """What causes the whirls of a run, as text and for the JSON document."""
+    """The causes of the whirls of a run, as text and for the JSON document."""
     from frbcli.cycles.explain import explanations
     from frbcli.cycles.limit_cycles import limit_cycles
 

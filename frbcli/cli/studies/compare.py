@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Models:
-    """What is compared, see the options of the command."""
+    """The models that are compared, see the options of the command."""
 
     cavitation: tuple[str, ...]
     theory: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""What `--onset-spread` shows: the rotor speeds between which a whirl begins in runs that differ a little."""
+"""The output of `--onset-spread`: rotor speeds between which a whirl begins in runs that differ a little."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Any
 
 
 def _radius(run: Run, bearing: str) -> float:
-    """Of the circle around a journal in um, 0 without a film."""
+    """The radius of the circle around a journal in um, 0 without a film."""
     return MICRO * (shell(run, bearing) or 0.0)
 
 

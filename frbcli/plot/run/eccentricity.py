@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films, joined
-from frbcli.plot.curves import Over, Span, draw_curves, finish
-from frbcli.plot.signals import heading
-from frbcli.plot.style import legend_below, new_figure, styled
+from frbcli.plot.curves import HEIGHT, Over, Span, curves_figure, draw_curves
 from frbcli.results.store import Run
 
 SIDES = ("inner", "outer")
@@ -25,17 +24,14 @@ def eccentricity_figure(
     Inner and outer films of floating rings have a panel each. Over speed, a run-down shows its hysteresis. Raises
     RunFileError if a run has no eccentricity.
     """
-    groups = _groups(runs[0])
-    with styled():
-        figure = new_figure(*heading(runs), height=max(4.4, 0.8 + PANEL_HEIGHT * len(groups)))
-        panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
-        for axes, (side, names) in zip(panels, groups, strict=True):
-            draw_eccentricity(axes, runs, names, (from_time, to_time), over)
-            if side:
-                axes.set_title(f"{side} film")
-        finish(panels[-1], over)
-        legend_below(figure, panels[0])
-    return figure
+
+    def panel(side: str, names: list[str], axes: Axes) -> None:
+        draw_eccentricity(axes, runs, names, (from_time, to_time), over)
+        if side:
+            axes.set_title(f"{side} film")
+
+    panels = [partial(panel, *group) for group in _groups(runs[0])]
+    return curves_figure(runs, panels, over, max(HEIGHT, 0.8 + PANEL_HEIGHT * len(panels)))
 
 
 def draw_eccentricity(

@@ -1,4 +1,4 @@
-"""What a picture shows of a signal with many samples: the lowest and the highest value of each short span.
+"""The envelope of a signal with many samples: the lowest and the highest value of each short span.
 
 A run is read a piece at a time, so that a long run needs no more memory than a short one.
 """

@@ -1,19 +1,16 @@
-"""What a run records of its films by choice: forces, film thickness, power, torque, oil flow."""
+"""Film signals that a run records on request: forces, film thickness, power, torque, oil flow."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films
-from frbcli.plot.curves import Over, Span, draw_curves, finish
-from frbcli.plot.signals import heading
-from frbcli.plot.style import legend_below, new_figure, styled
+from frbcli.plot.curves import HEIGHT, Over, Scaled, Span, curves_figure, draw_curves
 from frbcli.results.files.container import refuse
-from frbcli.results.signals import Signal, Values
 from frbcli.results.store import Run
 from frbcli.runs.record.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
 
@@ -28,34 +25,17 @@ AXES = {
 }
 
 
-@dataclass(frozen=True)
-class _Scaled:
-    """A signal in another unit, read slice by slice."""
-
-    signal: Signal
-    factor: float
-
-    def __len__(self) -> int:
-        return len(self.signal)
-
-    def __getitem__(self, where: slice, /) -> Values:
-        return self.factor * self.signal[where]
-
-
 def film_signal_figure(
     runs: Sequence[Run], kind: str, from_time: float | None = None, to_time: float | None = None, over: Over = "time"
 ) -> Figure:
     """One of FILM_SIGNALS of each film, the runs overlaid, from from_time to to_time in s; x and y of a force have a
     panel each. Raises RunFileError if a run has not recorded it."""
-    count = len(signal_names(kind, ""))
-    with styled():
-        figure = new_figure(*heading(runs), height=max(4.4, 0.8 + PANEL_HEIGHT * count))
-        panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-        for part, axes in enumerate(panels):
-            draw_film_signal(axes, runs, kind, part, over, (from_time, to_time))
-        finish(panels[-1], over)
-        legend_below(figure, panels[0])
-    return figure
+
+    def panel(part: int, axes: Axes) -> None:
+        draw_film_signal(axes, runs, kind, part, over, (from_time, to_time))
+
+    panels = [partial(panel, part) for part in range(len(signal_names(kind, "")))]
+    return curves_figure(runs, panels, over, max(HEIGHT, 0.8 + PANEL_HEIGHT * len(panels)))
 
 
 def draw_film_signal(
@@ -69,7 +49,7 @@ def draw_film_signal(
             raise refuse(run.path, f"has not recorded {FILM_SIGNALS[kind][0].replace('_', ' ')}.", remedy)
     words, factor = AXES[kind]
     curves = [
-        (name.replace("_", " "), [_Scaled(run.signal(signal_names(kind, name)[part]), factor) for run in runs])
+        (name.replace("_", " "), [Scaled(run.signal(signal_names(kind, name)[part]), factor) for run in runs])
         for name in names
     ]
     draw_curves(axes, runs, curves, over, span)

@@ -3,41 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from frbcli.plot.curves import Over, draw_curves, finish
-from frbcli.plot.signals import heading
-from frbcli.plot.style import legend_below, new_figure, styled
+from frbcli.columns import ZERO_CELSIUS
+from frbcli.plot.curves import Over, Scaled, curves_figure, draw_curves
 from frbcli.results.files.container import refuse
-from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 
-Values = NDArray[np.float64]
-
-ZERO_CELSIUS = 273.15
 PANELS = (
     ("temperature", "_K", "temperature in degC", 1.0, -ZERO_CELSIUS),
     ("viscosity", "_Pa_s", "viscosity in mPa s", 1e3, 0.0),
     ("power", "_W", "loss in W", 1.0, 0.0),
     ("flow", "_m3_s", "side flow in ml/s", 1e6, 0.0),
 )
-
-
-@dataclass(frozen=True)
-class _ScaledHeat:
-    """A signal in other units."""
-
-    signal: Signal
-    factor: float
-    offset: float
-
-    def __getitem__(self, part: slice) -> Values:
-        return np.asarray(self.factor * self.signal[part] + self.offset)
 
 
 def heat_figure(
@@ -48,22 +29,19 @@ def heat_figure(
     for run in runs:
         if not _told(run, *PANELS[0][:2]) or set(_told(run, *PANELS[0][:2])) != set(_told(runs[0], *PANELS[0][:2])):
             raise refuse(run.path, "has no such heat.", "Draw a run of a case with [thermal].")
-    with styled():
-        figure = new_figure(*heading(runs), height=9.0)
-        panels = figure.subplots(len(PANELS), 1, sharex=True)
-        for axes, (quantity, end, words, factor, offset) in zip(panels, PANELS, strict=True):
-            curves = [
-                (name[len(quantity) + 1 : -len(end)].replace("_", " ") or "film",
-                 [_ScaledHeat(run.signal(name), factor, offset) for run in runs])
-                for name in _told(runs[0], quantity, end)
-            ]  # fmt: skip
-            draw_curves(axes, runs, curves, over, (from_time, to_time))
-            if len(runs) == 1:  # several are told apart by their lines
-                _part(axes)
-            axes.set_ylabel(words)
-        finish(panels[-1], over)
-        legend_below(figure, panels[0])
-    return figure
+
+    def panel(quantity: str, end: str, words: str, factor: float, offset: float, axes: Axes) -> None:
+        curves = [
+            (name[len(quantity) + 1 : -len(end)].replace("_", " ") or "film",
+             [Scaled(run.signal(name), factor, offset) for run in runs])
+            for name in _told(runs[0], quantity, end)
+        ]  # fmt: skip
+        draw_curves(axes, runs, curves, over, (from_time, to_time))
+        if len(runs) == 1:  # several are told apart by their lines
+            _part(axes)
+        axes.set_ylabel(words)
+
+    return curves_figure(runs, [partial(panel, *told) for told in PANELS], over, 9.0)
 
 
 def _part(axes: Axes) -> None:

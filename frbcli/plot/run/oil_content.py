@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.film.cavitation.table import laws, names
-from frbcli.plot.curves import Over, draw_curves, finish
-from frbcli.plot.signals import heading
-from frbcli.plot.style import legend_below, new_figure, styled
+from frbcli.plot.curves import Over, curves_figure, draw_curves
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
 
@@ -31,12 +30,10 @@ def oil_content_figure(
             remedy = f"Run the case with a mass-conserving model: {keeping}."
             raise refuse(run.path, "has no oil fraction.", remedy)
     curves = [(name[len(SIGNAL) + 1 :].replace("_", " "), [run.signal(name) for run in runs]) for name in told]
-    with styled():
-        figure = new_figure(*heading(runs))
-        axes = figure.subplots()
+
+    def panel(axes: Axes) -> None:
         draw_curves(axes, runs, curves, over, (from_time, to_time))
         axes.set_ylim(top=1.0 + ROOM)
         axes.set_ylabel("oil fraction")
-        finish(axes, over)
-        legend_below(figure, axes)
-    return figure
+
+    return curves_figure(runs, [panel], over)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -13,10 +14,10 @@ from frbcli.analysis.signals import joined, points
 from frbcli.case.reading.load import load_case_text
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
-from frbcli.plot.curves import Over, draw_curves, finish
+from frbcli.plot.curves import Over, curves_figure, draw_curves
 from frbcli.plot.run.envelope import extremes
-from frbcli.plot.signals import case_tables, ends, heading
-from frbcli.plot.style import GREY, legend_below, new_figure, styled
+from frbcli.plot.signals import case_tables, ends
+from frbcli.plot.style import GREY
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED
 from frbcli.results.signals import Signal
@@ -44,30 +45,33 @@ def ring_speed_figure(
             raise refuse(run.path, "has no ring that turns.", "Draw a run of a case with floating rings.")
     names = _turning(runs[0])
     curves = [(name, [_Ratio.of(run, name) for run in runs]) for name in names]
-    with styled():
-        figure = new_figure(*heading(runs))
-        axes = figure.subplots()
+    concentric = _concentric(runs[0]) if len({run.case_text for run in runs}) == 1 else {}
+    highest = max(
+        extremes(ratio, int(START * len(run)), len(run))[1]
+        for _, each in curves
+        for run, ratio in zip(runs, each, strict=True)
+    )
+
+    def panel(axes: Axes) -> None:
         draw_curves(axes, runs, curves, over, (from_time, to_time))
-        concentric = _concentric(runs[0]) if len({run.case_text for run in runs}) == 1 else {}
-        highest = max(
-            extremes(ratio, int(START * len(run)), len(run))[1]
-            for _, each in curves
-            for run, ratio in zip(runs, each, strict=True)
-        )
-        for value in sorted(set(concentric.values())):
-            alike = [name for name, own in concentric.items() if own == value]
-            told = alike[0] if len(alike) < len(concentric) else ""
-            axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
-            axes.annotate(
-                " ".join(word for word in ("concentric", told) if word) + f" {value:.3f}",
-                (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
-                ha="right", va="bottom", color=GREY, bbox=PAPER,
-            )  # fmt: skip
+        _draw_concentric(axes, concentric)
         axes.set_ylim(0.0, ROOM * max(highest, *concentric.values(), 1e-3))
         axes.set_ylabel("ring speed over rotor speed")
-        finish(axes, over)
-        legend_below(figure, axes)
-    return figure
+
+    return curves_figure(runs, [panel], over)
+
+
+def _draw_concentric(axes: Axes, concentric: dict[str, float]) -> None:
+    """A dashed line for each ratio of concentric surfaces, with the ring that has it where they differ."""
+    for value in sorted(set(concentric.values())):
+        alike = [name for name, own in concentric.items() if own == value]
+        told = alike[0] if len(alike) < len(concentric) else ""
+        axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
+        axes.annotate(
+            " ".join(word for word in ("concentric", told) if word) + f" {value:.3f}",
+            (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
+            ha="right", va="bottom", color=GREY, bbox=PAPER,
+        )  # fmt: skip
 
 
 def _turning(run: Run) -> list[str]:
@@ -95,7 +99,7 @@ class _Ratio:
 
 
 def _concentric(run: Run) -> dict[str, float]:
-    """Of the run's case, none if this version of frb would not run it."""
+    """The ring speeds of the run's case, none if this version of frb would not run it."""
     case_tables(run)
     try:
         return concentric_ratios(load_case_text(run.case_text))

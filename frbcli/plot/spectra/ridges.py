@@ -69,7 +69,7 @@ def against_figure(found: AgainstMeasured) -> Figure:
 
 
 def _draw_ridges(panels: Sequence[Axes], drawn: Sequence[Drawn]) -> None:
-    """Of several runs on three axes: synchronous amplitude of x, frequency and amplitude of the whirl."""
+    """Ridges of several runs on three axes: synchronous amplitude of x, frequency and amplitude of the whirl."""
     above, middle, below = panels
     for name, found, look in drawn:
         whirl = np.where(found.whirls, 1.0, np.nan)

@@ -1,4 +1,4 @@
-"""What a diagram over the speed shows of a run: the largest eccentricity of each film in each short span of time."""
+"""A run in a diagram over the speed: the largest eccentricity of each film in each short span of time."""
 
 from __future__ import annotations
 

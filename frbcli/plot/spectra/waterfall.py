@@ -43,7 +43,7 @@ TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
 
 @dataclass(frozen=True)
 class LevelScale:
-    """What the colours of a waterfall, or the heights of its cascade, stand for.
+    """The scale of the colours of a waterfall, or of the heights of its cascade.
 
     linear: amplitudes in µm in place of levels in dB; limits: in that unit, None for LEVELS_dB or up to the largest;
     orders: of the lines that are drawn in, None for those of free whirls.
@@ -148,7 +148,7 @@ def _apart(run: Run, signal: str) -> float | None:
 
 
 def level_label(run: Run, signal: str) -> str:
-    """What the levels of a signal are relative to."""
+    """The label of the levels of a signal, with the length that they are relative to."""
     if "length_m" in run.references:
         return f"amplitude relative to {1e6 * clearance(run):.3g} µm in dB"
     ringed = bearing_of(run, signal) in points(run.signals, "ring")

@@ -65,7 +65,7 @@ def text(inside: h5py.Group, name: str) -> str:
 
 
 def record(inside: h5py.Group, name: str) -> Any:
-    """What a text in JSON says. Raises WrongPart."""
+    """The value of a text in JSON. Raises WrongPart."""
     try:
         return json.loads(text(inside, name))
     except (ValueError, RecursionError):

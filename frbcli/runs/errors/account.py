@@ -1,4 +1,4 @@
-"""What a run cost and how exact it is, in words."""
+"""The cost and the errors of a run, in words."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def account(run: Run) -> list[tuple[str, str, str]]:
 
 
 def _of(run: Run) -> str:
-    """What the error of the time integration is of."""
+    """The quantity that the error of the time integration is of."""
     if "length_m" not in run.references:
         return "of the eccentricity"
     return f"of displacements, over {1e6 * run.references['length_m']:.4g} um"

@@ -22,7 +22,7 @@ QUANTILE = 0.9  # quantile of the errors, weighted with the force
 
 @dataclass(frozen=True)
 class FilmErrors:
-    """Of the forces of all films at sampled states of a run. times: (m,) s; errors, sizes: (m,) N."""
+    """Errors and sizes of the forces of all films at sampled states of a run. times: (m,) s; errors, sizes: (m,) N."""
 
     times: Array
     errors: Array

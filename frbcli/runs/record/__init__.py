@@ -1,1 +1,1 @@
-"""What a run records, and how it is taken up again."""
+"""Records of a run, and how it is resumed from them."""

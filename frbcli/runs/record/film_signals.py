@@ -1,4 +1,4 @@
-"""What a run records of its films by choice (`output.signals`), at the samples of its file.
+"""Film signals that a run records on request (`output.signals`), at the samples of its file.
 
 The force of a film is what the equation of the rotor leaves for it: with the accelerations at the ends of the steps it
 is that of the time loop, whatever the film, and in contact the force of the surfaces is part of it.

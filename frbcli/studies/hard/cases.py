@@ -132,7 +132,7 @@ class Outcome:
 
 
 def outcome(command: str, case: Case) -> Outcome:
-    """Of a run or a test. Raises what they raise."""
+    """The outcome of a run or a test. Raises what they raise."""
     if command in RUNS:
         with TemporaryDirectory(prefix="frb-hard-") as folder:
             return _run_outcome(RUNS[command](case, Path(folder) / "run.h5"))

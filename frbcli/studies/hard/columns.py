@@ -1,4 +1,4 @@
-"""What hard cases tell: the columns of the list and of the results."""
+"""The columns of hard cases: their list and their results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep tells: the columns of its points."""
+"""The columns of a sweep: its points."""
 
 from __future__ import annotations
 

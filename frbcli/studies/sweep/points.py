@@ -54,7 +54,7 @@ def linked(axes: Mapping[str, Sequence[str]]) -> tuple[Settings, ...]:
 
 
 def split_values(text: str, mark: str = ",") -> tuple[str, ...]:
-    """What stands between the commas, or other marks, of `text`; those in quotes and brackets do not separate."""
+    """The values between the commas, or other marks, of `text`; those in quotes and brackets do not separate."""
     values, depth, quote = [""], 0, ""
     for letter in text:
         if quote:

@@ -50,7 +50,7 @@ class SweepPoint:
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker needs. method: one of METHODS; run: where the run is kept, None for nowhere."""
+    """The work of a worker. method: one of METHODS; run: the file in which the run is kept, None for none."""
 
     number: int
     settings: dict[str, str]
