@@ -58,12 +58,12 @@ def run_test(
     with computing(terminal, case) as shown:
         found = tests[test](case, cavitation, shown.counting())
     _report(found, terminal)
-    if not _can_draw(found, terminal):
-        outputs = replace(outputs, picture=None)
-    written = outputs.write(terminal, found.to_pandas, lambda: _figure(found))
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
     whole = {} if found.complete else {"status": "interrupted"}
-    terminal.emit({**head, **whole, "results": list(map(_document, found.results)), **written})
+    terminal.emit({**head, **whole, "results": list(map(_document, found.results))})
+    if not _can_draw(found, terminal):
+        outputs = replace(outputs, picture=None)
+    outputs.write(terminal, found.to_pandas, lambda: _figure(found))
     if not found.complete:
         return INTERRUPTED
     return NotConverged.exit_code if any(result.status != "ok" for result in found.results) else None

@@ -44,9 +44,10 @@ def command(
         tell = shown.of_runs()
         found = accuracy(case, until, theory, coupling, lambda rung, *rest: tell(rung.name, *rest))
     _report(found, terminal)
+    terminal.emit(_document(found))
     if not found.ladder:
         places = replace(places, picture=None)
-    terminal.emit(_document(found) | places.write(terminal, found.to_pandas, lambda: _figure(found)))
+    places.write(terminal, found.to_pandas, lambda: _figure(found))
     return 0 if found.complete else INTERRUPTED
 
 

@@ -101,10 +101,10 @@ def command(
     results = [told | (heat if heat["thermal"] else {})
                for told, heat in zip(found.table().documents(), warm.documents(), strict=True)]  # fmt: skip
     whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
+    terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results})
     if not all(len(result.run) > 1 for result in found.results):
         places = replace(places, picture=None)
-    written = places.write(terminal, found.to_pandas, lambda: _figure(found))
-    terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results, **written})
+    places.write(terminal, found.to_pandas, lambda: _figure(found))
     return max(exit_code(status) for status in (found.status, *(result.run.status for result in found.results)))
 
 

@@ -1,0 +1,37 @@
+"""Options that several commands have are one option; the example in each help can be called."""
+
+from __future__ import annotations
+
+import shlex
+
+import click
+import pytest
+
+from frbcli.cli.main import COMMANDS, command_named
+
+SHARED = ("--set", "--json", "--quiet", "--csv", "--picture", "--size", "--dpi", "--xlim", "--ylim", "--rpm",
+          "--signal", "--cavitation", "--theory", "--coupling", "--format")  # fmt: skip
+OWN = {("sweep", "--set"), ("sweep", "--format"), ("plot", "--set")}  # values of a grid; formats; of a law alone
+
+
+def options(name: str) -> dict[str, click.Option]:
+    params = command_named(name).params
+    return {opt: param for param in params if isinstance(param, click.Option) for opt in param.opts}
+
+
+@pytest.mark.parametrize("option", SHARED)
+def test_an_option_means_one_thing(option: str) -> None:
+    found = {name: options(name)[option] for name in COMMANDS if option in options(name) and (name, option) not in OWN}
+    assert found
+    helps = {(each.help or "").partition(" [")[0] for each in found.values()}
+    assert len(helps) == 1
+    assert len({(type(each.type), each.metavar, tuple(each.opts)) for each in found.values()}) == 1
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_example_of_a_command_can_be_called(name: str) -> None:
+    program, command, *words = shlex.split(COMMANDS[name][2].partition(" > ")[0])
+    assert (program, command) == ("frb", name)
+    with command_named(name).make_context(f"frb {name}", words):
+        pass
+    assert COMMANDS[name][2] in command_named(name).get_help(click.Context(command_named(name)))
