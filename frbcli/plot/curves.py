@@ -32,7 +32,7 @@ WAYS = {"run-up": 1.0, "run-down": -1.0}
 
 
 @dataclass(frozen=True)
-class Scaled:
+class ScaledSignal:
     """A signal in another unit, read in pieces like a signal."""
 
     signal: Signal

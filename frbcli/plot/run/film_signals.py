@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films
-from frbcli.plot.curves import HEIGHT, Over, Scaled, Span, curves_figure, draw_curves
+from frbcli.plot.curves import HEIGHT, Over, ScaledSignal, Span, curves_figure, draw_curves
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
 from frbcli.runs.record.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
@@ -49,7 +49,7 @@ def draw_film_signal(
             raise refuse(run.path, f"has not recorded {FILM_SIGNALS[kind][0].replace('_', ' ')}.", remedy)
     words, factor = AXES[kind]
     curves = [
-        (name.replace("_", " "), [Scaled(run.signal(signal_names(kind, name)[part]), factor) for run in runs])
+        (name.replace("_", " "), [ScaledSignal(run.signal(signal_names(kind, name)[part]), factor) for run in runs])
         for name in names
     ]
     draw_curves(axes, runs, curves, over, span)

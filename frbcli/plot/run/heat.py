@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.columns import ZERO_CELSIUS
-from frbcli.plot.curves import Over, Scaled, curves_figure, draw_curves
+from frbcli.plot.curves import Over, ScaledSignal, curves_figure, draw_curves
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
 
@@ -33,7 +33,7 @@ def heat_figure(
     def panel(quantity: str, end: str, words: str, factor: float, offset: float, axes: Axes) -> None:
         curves = [
             (name[len(quantity) + 1 : -len(end)].replace("_", " ") or "film",
-             [Scaled(run.signal(name), factor, offset) for run in runs])
+             [ScaledSignal(run.signal(name), factor, offset) for run in runs])
             for name in _told(runs[0], quantity, end)
         ]  # fmt: skip
         draw_curves(axes, runs, curves, over, (from_time, to_time))
