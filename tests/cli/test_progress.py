@@ -54,7 +54,7 @@ def test_without_a_terminal_what_takes_long_is_announced(
     """Once, after the first numbers: the response of a shaft with hundreds of modes took 26 s without a word."""
     now = [100.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
-    observe = counting(Terminal(), None)
+    observe = Display(Terminal()).counting()
     for number in range(1, 30):
         observe(number, 120)
         now[0] += each_s
