@@ -325,6 +325,7 @@ def test_a_small_synchronous_motion_is_the_linear_response() -> None:
     settings = ["film.theory=short", "rotor.unbalance=1e-3 g*mm", "speed.from=120 Hz", "speed.to=185 Hz"]
     case = frbcli.load_case("jeffcott", settings)
     points = frbcli.limit_cycles(case).synchronous[::4]
+    assert {point.stable for point in points} == {True, False}
     linear = frbcli.response(case, sorted(point.speed_Hz for point in points))
     journal = linear.points.index("journal")
     for number, point in enumerate(reversed(points)):

@@ -80,6 +80,7 @@ def test_critical_speeds_of_a_turbocharger_are_those_of_its_campbell_diagram() -
     for k in (1e6, 1e8):
         found = critical_map(case, [k])
         for direction, speeds in (("forward", found.forward[0]), ("backward", found.backward[0])):
+            assert len(speeds) > 0
             for speed in speeds[:2]:
                 modes = frbcli.natural_modes(case, k, [speed]).points[0].directed(direction)
                 assert min(abs(mode.frequency_Hz - speed) for mode in modes) < 1e-6 * speed

@@ -101,12 +101,13 @@ def test_no_result_replaces_a_case_a_run_or_a_measurement(
 
 
 def test_a_directory_of_results_is_made_of_no_file() -> None:
-    for option in OPTIONS:
-        if option.folder:
-            for target in (CASE, RUN, "points.csv"):
-                before = Path(target).read_bytes()
-                assert frb([*CALLS[option.command], option.name, target]) == 2
-                assert Path(target).read_bytes() == before
+    folders = [option for option in OPTIONS if option.folder]
+    assert folders
+    for option in folders:
+        for target in (CASE, RUN, "points.csv"):
+            before = Path(target).read_bytes()
+            assert frb([*CALLS[option.command], option.name, target]) == 2
+            assert Path(target).read_bytes() == before
 
 
 def test_a_list_in_place_of_the_table_of_its_sweep_is_kept(capsys: pytest.CaptureFixture[str]) -> None:

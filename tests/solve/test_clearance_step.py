@@ -139,6 +139,7 @@ def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(name: str, sett
             found.append(march.chunk()[1])
         again = under_way(case)
         again.restore(march.snapshot())
+        assert again.time == march.time
         status, rest = finish(again)
         assert status == FINISHED
         for signal, values in signals.items():

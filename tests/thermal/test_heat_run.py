@@ -348,6 +348,7 @@ def test_a_run_that_was_interrupted_goes_on_as_if_it_had_not() -> None:
     for _ in range(12):
         first.chunk()
     second.restore({name: array.copy() for name, array in first.snapshot().items()})
+    assert second.time == first.time > 0.0  # from its start it would end alike, too
     for one in (whole, second):
         while one.chunk()[0] == RUNNING:
             pass
