@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import signal
 
+import pytest
+
 # Ignored signals are inherited: under nohup, and in the background of a script, processes that a test interrupts would
 # not hear of it and run on.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -16,3 +18,20 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
 # the CPU time. Also of the processes that tests start; set before numpy is imported.
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Files that take longest, first: a worker that began one of them last would be waited for alone.
+LONGEST = (
+    "test_oil_cycles", "test_command_line", "test_two_frequencies", "test_heat_run", "test_coefficients_element",
+    "test_sweep", "test_heat", "test_work_lost", "test_streams", "test_pressed_contact", "test_limit_cycles",
+)  # fmt: skip
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have pytest-xdist keep the order below; its own one begins with the files of most tests."""
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    order = {name: number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(order)))
