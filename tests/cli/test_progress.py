@@ -64,8 +64,9 @@ def test_without_a_terminal_what_takes_long_is_announced(
 def test_stability_is_told_speed_by_speed() -> None:
     seen: list[tuple[int, int]] = []
     case = frbcli.load_case("jeffcott", ["film.theory=short"])
-    frbcli.stability(case, [40.0, 50.0, 60.0], lambda *told: seen.append(told))
-    assert seen == [(1, 3), (2, 3), (3, 3)]
+    frbcli.stability(case, [50.0], lambda *told: seen.append(told))
+    assert len(seen) > 1  # the speed asked for, and those that the threshold is looked for at
+    assert seen == [(number, len(seen)) for number in range(1, len(seen) + 1)]
 
 
 def test_a_squeeze_is_told_moment_by_moment_and_a_rotation_model_by_model() -> None:
