@@ -115,7 +115,7 @@ class FilmGeometry(Model):
 
 
 class BearingWalls(Model):
-    """What a bearing may have of its own in place of the keys of [thermal]."""
+    """Keys of a bearing that take the place of those of [thermal]."""
 
     shaft: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.shaft")
     housing: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.housing")

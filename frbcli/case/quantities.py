@@ -56,7 +56,7 @@ class Quantity:
         return value
 
     def _beside(self, value: float, bound: float) -> str:
-        """A value as it is told beside a bound that it is beyond: with all of its digits where both print alike."""
+        """A value that violates a bound, in words: with all of its digits where both print alike."""
         shown = display(value, self.unit)
         if value == bound or shown != display(bound, self.unit):
             return shown

@@ -175,7 +175,7 @@ def _checked(columns: Columns) -> Columns:
 
 
 def over_speed_problem(speeds: Sequence[float], masses: Sequence[Sequence[float]]) -> str:
-    """What is wrong with speeds in Hz and masses xx, xy, yx, yy at them, or nothing."""
+    """The fault of speeds in Hz and masses xx, xy, yx, yy at them, or nothing."""
     for below, above in itertools.pairwise(speeds):
         if above <= below:
             return f"has {above:g} Hz after {below:g} Hz: the speeds do not ascend."

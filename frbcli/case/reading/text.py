@@ -25,7 +25,7 @@ def as_text(case: Model, name: str, bearing_names: Sequence[str]) -> str:
 
 
 def as_tables(model: Model) -> dict[str, Any]:
-    """What is set in `model`, by the keys of the case file."""
+    """The values that are set in `model`, by the keys of the case file."""
     tables: dict[str, Any] = {}
     for name, field in type(model).model_fields.items():
         value = getattr(model, name)

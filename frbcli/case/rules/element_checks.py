@@ -19,7 +19,7 @@ OF_FILMS = (
 
 
 def has_films(data: Mapping[str, Any]) -> bool:
-    """Whether a bearing of the tables may have a film: of what cannot be read, it may."""
+    """Whether a bearing of the tables may have a film: true for tables that cannot be read."""
     found = tables(data, "bearing")
     return not found or any(bearing.get("kind") != "coefficients" for _, bearing in found)
 

@@ -140,7 +140,7 @@ def _fields(model: type[Model]) -> dict[str, FieldInfo]:
 
 
 def _parts(annotation: Any, base: type[Any]) -> tuple[Any, ...]:
-    """What of `base` an annotation is made of: subclasses of it, or instances of it."""
+    """The parts of an annotation that derive from `base`: subclasses of it, or instances of it."""
     if isinstance(annotation, base) or (isinstance(annotation, type) and issubclass(annotation, base)):
         return (annotation,)
     return tuple(part for argument in get_args(annotation) for part in _parts(argument, base))

@@ -12,7 +12,7 @@ from frbcli.case.supplies.supply import MIDDLE, Openings, Outline, PressureSuppl
 from frbcli.errors import Fault
 from frbcli.film.gap import Edge
 
-SHOWN = 0.06  # half of its width over that of the bearing in a sketch: a case does not tell it
+SHOWN = 0.06  # half of its width over that of the bearing in a sketch: a case does not have it
 ONE_LAND = 0.25  # flow of one land of the whole width over that of two lands of half of it
 
 

@@ -1,4 +1,4 @@
-"""What every supply of oil is asked: all that differs between the kinds stands in their own files.
+"""The contract of all supplies of oil: what differs between the kinds stands in their own files.
 
 Angles are phi of the developed gap, z counts from the end of the bearing in m. The pressure of a supply is absolute in
 the case file; everything that is made of it takes the gauge pressure, over the ambient one, 0 where nothing supplies.
@@ -83,7 +83,7 @@ class OilSupply(Model):
 
     @property
     def surface(self) -> Literal["journal", "shell", "housing"]:
-        """What its openings turn with: the journal, the body around the film, or nothing."""
+        """The body with which its openings turn: the journal, the body around the film, or none."""
         return "housing"
 
     @property
@@ -98,7 +98,7 @@ class OilSupply(Model):
 
     @property
     def splits(self) -> bool:
-        """Whether it parts the width into two equal films."""
+        """Whether it divides the width into two equal films."""
         return False
 
     @property
@@ -134,16 +134,16 @@ class OilSupply(Model):
 
     @property
     def words(self) -> str:
-        """What it is and its pressure, for tables."""
+        """Its name and its pressure, for tables."""
         return self.kind.replace("-", " ")
 
     @property
     def gap(self) -> tuple[str, str]:
-        """What a plan says of the gap of a film without lobes: its shape, and why."""
+        """The line of the plan on the gap of a film without lobes: its shape, and the reason."""
         return "developed gap", f"with openings: {self.kind}"
 
     def faults(self, key: str) -> list[Fault]:
-        """What no film can be made of; key: of the supply."""
+        """Faults of which no film can be made; key: that of the supply."""
         return []
 
     @classmethod
