@@ -8,13 +8,13 @@ import numpy as np
 
 from frbcli.bearing_tests.history import Course, History
 from frbcli.bearing_tests.journal_path import Path
-from frbcli.bearing_tests.plan import KinematicPlan
 from frbcli.bearing_tests.steady_film import Array, FilmMoment
 from frbcli.case.schema import Case
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion
 from frbcli.film.rectangles.film import evaluate
 from frbcli.scene.machine.bearing_model_films import bearing_film
+from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 UNKNOWN = math.nan
 

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from frbcli.bearing_tests.journal_path import Path
 from frbcli.bearing_tests.march import FilmAt, Moment, march
-from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
@@ -19,6 +18,7 @@ from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, refe
 from frbcli.film.cells.loads import FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion, path_seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 
 Array = NDArray[np.float64]
 

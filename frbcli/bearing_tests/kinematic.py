@@ -9,14 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.bearing_tests.bearing_model import model_course, model_moment
 from frbcli.bearing_tests.columns import MOMENTS, RESULT
-from frbcli.bearing_tests.history import History, film_course
+from frbcli.bearing_tests.history import History
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
-from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan, with_model
-from frbcli.bearing_tests.published import published_course, published_moment, resting_in_published
-from frbcli.bearing_tests.resting import resting_displacement
-from frbcli.bearing_tests.steady_film import FilmField, film_moment
+from frbcli.bearing_tests.steady_film import FilmField
+from frbcli.bearing_tests.tested_film import tested_film
 from frbcli.bearing_tests.warm import warm_film
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
@@ -26,6 +23,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
 from frbcli.film.published.solution import NodeState
 from frbcli.html import Tabular
+from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.scene.remedies import advised, film_advice
 from frbcli.thermal.steady import SteadyHeat
 
@@ -162,12 +160,7 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
         lasting, start = _lasting(case, plan)
         displacement = lasting.d
         with advised(with_model(case, plan.cavitation)):
-            if plan.model is not None:
-                moment = model_moment(case, plan, lasting)
-            elif plan.published:
-                moment = published_moment(case, plan, lasting, start)
-            else:
-                moment = film_moment(case, plan, lasting, plan.cells)
+            moment = tested_film(case, plan).moment(lasting, start)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
     if tell is not None:
@@ -196,10 +189,7 @@ def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]
     start: NodeState | None = None
     omega = 2.0 * math.pi * (motion.speed or 0.0)
     if motion.load is not None:
-        if plan.published:
-            found, start = resting_in_published(case, plan, motion.load, omega)
-        else:
-            found = resting_displacement(case, plan, motion.load, omega)
+        found, start = tested_film(case, plan).rest(motion.load, omega)
         return Motion((float(found[0]), float(found[1])), (0.0, 0.0), omega), start
     e, angle = motion.eccentricity or 0.0, motion.angle
     along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
@@ -220,12 +210,7 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
     times = np.linspace(0.0, motion.periods / motion.frequency, count + 1)
     try:
         with advised(with_model(case, plan.cavitation)):
-            if plan.model is not None:
-                course = model_course(case, plan, path, times)
-            elif plan.published:
-                course = published_course(case, plan, path, times, tell)
-            else:
-                course = film_course(case, plan, path, times, tell)
+            course = tested_film(case, plan).course(path, times, tell)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
     worst = int(np.argmax(np.hypot(*course.history.force.T)))

@@ -20,7 +20,6 @@ from frbcli.bearing_tests.history import (
     peak_error,
 )
 from frbcli.bearing_tests.journal_path import Path
-from frbcli.bearing_tests.plan import KinematicPlan
 from frbcli.bearing_tests.steady_film import FilmField, FilmMoment, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
@@ -32,6 +31,7 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.solution import NodeState, PublishedSolution
 from frbcli.scene.machine.machine_films import published_film
+from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Array = NDArray[np.float64]
 

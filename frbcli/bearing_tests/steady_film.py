@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.bearing_tests.plan import KinematicPlan, law_at
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.balance.side_flow import outflow
@@ -19,6 +18,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
+from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 
 Array = NDArray[np.float64]
 

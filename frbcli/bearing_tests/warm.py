@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
 from frbcli.bearing_tests.steady_film import film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.warm import warm_case
+from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
 Placed = Callable[[Case, KinematicPlan], Motion]

@@ -10,7 +10,7 @@ from dataclasses import replace
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
-from frbcli.cycles.faults import check, check_unbalance, keeps_oil
+from frbcli.cycles.faults import check, check_unbalance
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.parts.machine import make_machine
@@ -19,6 +19,7 @@ from frbcli.cycles.shooting.diagram import limit_cycles_with_oil
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
 from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.scene.gate.static import keeps_oil
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.equilibrium.under_load import largest_share
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.parabola import share_within
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.rotor.held import HeldRotor, held_rotor
 from frbcli.scene.machine.system import System
@@ -118,7 +118,9 @@ def _newton(
         if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
             break
         step = -np.linalg.solve(slope, residual).reshape(-1, 2)
-        share, length = _largest_share(position / clearances, step / clearances), np.abs(step / clearances).max()
+        pairs = zip(position / clearances, step / clearances, strict=True)
+        share = min([1.0, *(largest_share(d, change, SMALLEST_GAP_CHANGE) for d, change in pairs)])
+        length = np.abs(step / clearances).max()
         while share > SMALLEST_SHARE:
             following = position + share * step
             new_residual, new_slope, new_forces = _balance(system, held, omega, following, forces)
@@ -132,15 +134,6 @@ def _newton(
             resting = np.linalg.norm(position / clearances, axis=1).max() < LARGEST_ECCENTRICITY
             return position, None if resting else float(np.linalg.norm(residual)), forces
     return position, float(np.linalg.norm(residual)), forces
-
-
-def _largest_share(position: Array, step: Array) -> float:
-    """Largest share of a step, at most 1, after which each journal keeps some of its gap; both over the clearance."""
-    share = 1.0
-    for d, change in zip(position, step, strict=True):
-        limit = 1.0 - SMALLEST_GAP_CHANGE * (1.0 - float(np.linalg.norm(d)))
-        share = min(share, share_within(d, change, limit))
-    return share
 
 
 def _balance(

@@ -12,7 +12,7 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.errors import Fault, InputError
 from frbcli.film.grid import Array
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.heat import Heat, heat_of
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.machine.warm import warm_system
@@ -67,7 +67,7 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
 
     Raises InputError for a case that cannot be modelled or has no heat, NotConverged where its heat does not balance.
     """
-    require_films(case)
+    require(case)
     if case.heat is None:
         remedy = 'Add the table [thermal] with model = "lumped".'
         raise InputError(case.name or "case", (Fault("thermal", "", None, "is missing.", remedy),))

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, resting_film
@@ -27,10 +26,9 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import SHEET
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.rotor.held import held_rotor
-from frbcli.scene.film_faults import film_faults
 from frbcli.scene.films import film_places
-from frbcli.scene.forms.published import is_published
-from frbcli.scene.machine.elements import require_a_film
+from frbcli.scene.gate.analysis import BEARING
+from frbcli.scene.gate.gate import require
 from frbcli.scene.remedies import advised
 
 Observer = Callable[[int, int], None]
@@ -146,19 +144,7 @@ def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: fl
 
 def check_sheet(case: Case) -> None:
     """Raises InputError if the bearings of a case have no sheet."""
-    require_a_film(case, "the sheet is of films")
-    faults = film_faults(case)
-    if case.film.bearing_model:
-        problem = "is a bearing model: it tells the force, and neither pressures nor oil."
-        faults.append(Fault("film.theory", case.film.theory, None, problem, "Write finite or auto."))
-    if is_published(case):
-        problem = "creates oil: the flows and losses of a sheet would hang on how much."
-        faults.append(Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".'))
-    if case.given_rotor is None and (len(case.bearings) != 1 or not isinstance(case.bearings[0], SingleFilmBearing)):
-        problem = "has more than one film: their loads follow from a rotor, which is missing."
-        faults.append(Fault("bearing", f"{len(film_places(case))} films", None, problem, "Add [rotor] and [speed]."))
-    if faults:
-        raise InputError(case.name or "case", tuple(faults))
+    require(case, BEARING)
 
 
 def _speeds(case: Case) -> tuple[float, ...]:

@@ -25,7 +25,7 @@ from frbcli.html import Tabular
 from frbcli.linear.modes import film_springs
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import Link, assembled
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.keys import element_keys
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.shafts.table import shaft_of
@@ -73,7 +73,7 @@ def critical_map(
 ) -> CriticalMap:
     """The map of the rotor of a case over a stiffness in N/m of each of its bearings, by default STIFFNESSES over
     DECADES; resting: of the case, for the stiffness of its films. Raises InputError if a stiffness is not positive."""
-    require_films(case)
+    require(case)
     if case.elements:
         problem = "has coefficients of its own, and the map is of a rotor on springs of one stiffness."
         key = f"{element_keys(case)[0]}.kind"

@@ -22,7 +22,7 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.order import first_largest, ranks
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, whirl_modes
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_springs
 from frbcli.scene.shafts.table import shaft_of
 
@@ -97,7 +97,7 @@ def natural_modes(
     speeds, by default from standstill to the highest speed of the case. Raises InputError if the case has another
     rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not as many as bearings.
     """
-    require_films(case)
+    require(case)
     free = shaft_of(case).free()
     speeds = np.linspace(0.0, max(case.speed.start, case.speed.end), SPEEDS) if speeds_Hz is None else speeds_Hz
     springs = _springs(case, stiffness)

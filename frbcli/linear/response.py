@@ -31,7 +31,7 @@ from frbcli.linear.columns import RESPONSE_POINTS
 from frbcli.linear.stability import default_speeds, stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.linear import LinearRotor, without_spins
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_forces
 
 Array = NDArray[np.float64]
@@ -144,7 +144,7 @@ def response(
     observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, has
     films that eight coefficients do not describe, or rests nowhere.
     """
-    require_films(case)
+    require(case)
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
     system, points = stability_points(case, asked, observe)
     resting = [point for point in points if point.rests]

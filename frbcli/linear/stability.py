@@ -13,19 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.film.cavitation.table import law_named
 from frbcli.html import Tabular
 from frbcli.linear.columns import point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest
 from frbcli.linear.threshold import Threshold, find_threshold
-from frbcli.scene.channels import coupled
-from frbcli.scene.film_faults import require_films
-from frbcli.scene.keys import bearing_key, cavitation_keys
+from frbcli.scene.gate.analysis import STABILITY
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
 
@@ -63,7 +60,7 @@ def stability(
 
     Raises InputError if the case cannot be modelled or a speed is not positive.
     """
-    require_films(case)
+    require(case)
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
@@ -89,10 +86,9 @@ def stability_points(
 
 def check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
     """Raises InputError if a case cannot be modelled, a speed is not positive, or a film has no eight coefficients."""
-    require_films(case)
+    require(case)
     _check_speeds(case, speeds_Hz)
-    if faults := _without_coefficients(case):
-        raise InputError(case.name or "case", tuple(faults))
+    require(case, STABILITY)
 
 
 def _sweep(
@@ -128,21 +124,6 @@ def _point(
             return point_at_rest(machine, speed), machine
     except NotConverged as error:
         return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), near
-
-
-def _without_coefficients(case: Case) -> list[Fault]:
-    """The faults of films that eight coefficients do not describe."""
-    faults = []
-    for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
-            problem = "couples the two films of a ring: neither has coefficients of its own."
-            key = f"{bearing_key(case, index)}.channels"
-            faults.append(Fault(key, "coupled", None, problem, 'Write channels = "pressure" here.'))
-    problem = "is mass-conserving: eight coefficients per speed do not determine stability."
-    remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
-    named = dict(cavitation_keys(case))
-    faults += [Fault(key, name, None, problem, remedy) for key, name in named.items() if law_named(name).keeps_oil]
-    return faults
 
 
 def _check_speeds(case: Case, speeds: Sequence[float]) -> None:

@@ -20,7 +20,7 @@ from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
 from frbcli.scene.coupling import COUPLINGS
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import require_a_film
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
@@ -56,7 +56,7 @@ def accuracy(
     reference raises NotConverged. Raises InputError for names that there are not, and for
     a case that cannot be modelled.
     """
-    require_films(case)
+    require(case)
     _check_names(case, theories, couplings)
     require_a_film(case, "the ladder is of films")
     if case.film.bearing_model:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.bearing_tests.plan import TESTS as KINEMATIC_TESTS
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged
@@ -28,8 +27,9 @@ from frbcli.runs.record.header import POWER
 from frbcli.runs.record.standing import earlier_run, is_interrupted, standing_run
 from frbcli.runs.run import runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import require_a_film
+from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
 
@@ -158,7 +158,7 @@ def compare(
     Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
     allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
     """
-    require_films(case)
+    require(case)
     require_a_film(case, "the comparison is of models of films")
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings, thermals)

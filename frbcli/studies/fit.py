@@ -31,7 +31,7 @@ from frbcli.nearest import did_you_mean
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 from frbcli.studies.fit_columns import FITTED
 
 SPAN = 3.0  # factor by which a number may move either way, if no bounds are given
@@ -99,7 +99,7 @@ def fit(
     """
     from scipy.optimize import least_squares  # scipy.optimize takes longer to import than a plan to make
 
-    require_films(case)
+    require(case)
     numbers = _numbers(case, keys, bounds or {})
     with TemporaryDirectory(prefix="frb-fit-") as folder:
         trial = _Trial(case, measurement, numbers, signal, Path(folder) / "run.h5", observe)

@@ -12,13 +12,13 @@ from paths import DATA
 from frbcli import load_case, rotation, squeeze, whirl
 from frbcli.bearing_tests.journal_path import whirl_path
 from frbcli.bearing_tests.kinematic import KinematicResult
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure, supplied
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import evaluate, make_film
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 SQUEEZE = list(csv.DictReader((DATA / "squeeze-forces.csv").read_text().splitlines()))
 AT = "motion={eccentricity=0.6, angle='-60 deg', speed='20 Hz'}"

@@ -17,7 +17,7 @@ from frbcli import load_case, rotation
 from frbcli.bearing_tests.history import History, film_course
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
 from frbcli.bearing_tests.kinematic import KinematicResult
-from frbcli.bearing_tests.plan import kinematic_plan
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 FREQUENCY, PERIOD, STEPS, PERIODS = 10.0, 0.1, 100, 3
 STEP_MS = 1e3 * PERIOD / STEPS

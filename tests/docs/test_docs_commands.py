@@ -16,10 +16,10 @@ import pytest
 from paths import ROOT
 
 import frbcli
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.schema import Case
 from frbcli.cli.main import COMMANDS, frb
 from frbcli.errors import InputError
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 OWN_TEST = ("command-line.md",)  # its lines are run by test_command_line.py
 PLACEHOLDERS = {

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 from validation import chapter6, chapter6_rows, chapter_7, chapter_7_page, measures, validate
 
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import shipped_names
 from frbcli.runs.run import runup
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
 
 PRINTED = {row["id"]: row for row in validate.printed_rows()}

@@ -15,12 +15,12 @@ from paths import DATA
 
 from frbcli import load_case, rotation
 from frbcli.bearing_tests import resting
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.bearing_tests.resting import resting_displacement
 from frbcli.bearing_tests.steady_film import film_force
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.motion import Motion
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}
 WEIGHT = 6.1 * 9.81 / 2  # N per bearing

@@ -12,7 +12,6 @@ from volume_films import ROTATION, polar_motion, section_of
 
 from frbcli import load_case
 from frbcli.bearing_tests.march import march
-from frbcli.bearing_tests.plan import KinematicPlan, kinematic_plan
 from frbcli.cli.main import run
 from frbcli.errors import InputError
 from frbcli.film.cavitation.elrod import Elrod
@@ -29,6 +28,7 @@ from frbcli.film.gap import AxialGroove, Hole, LobedShell, Section, gap_height, 
 from frbcli.film.operating import reynolds_number, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import BRASS, STEEL
 from frbcli.scene.machine.operating import operating_points
+from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan
 
 TURN = 2.0 * math.pi
 PLAIN = section_of("none")

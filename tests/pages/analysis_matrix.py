@@ -5,19 +5,16 @@ Each cell asks the gate that the analysis itself passes, with a case that has th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from paths import DOCS
 
 import frbcli
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.reading.load import load_case
-from frbcli.case.schema import Case
-from frbcli.cycles.faults import check
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
-from frbcli.linear.bearing_sheet import check_sheet
-from frbcli.linear.stability import check_machine
+from frbcli.scene.gate.analysis import BEARING, OIL_CYCLES, ROTATION, RUN, SQUEEZE, STABILITY, WHIRL
+from frbcli.scene.gate.gate import require
 
 PAGE = DOCS / "matrix.md"
 MODEL = "own"
@@ -88,18 +85,14 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
 }  # fmt: skip
 
 
-def _kinematic(test: str) -> Callable[[Case], object]:
-    return lambda case: kinematic_plan(case, None, test)
-
-
-ANALYSES: dict[str, Callable[[Case], object]] = {
-    "run": frbcli.make_plan,
-    "rotation": _kinematic("rotation"),
-    "squeeze": _kinematic("squeeze"),
-    "whirl": _kinematic("whirl"),
-    "bearing": check_sheet,
-    "stability, response": lambda case: check_machine(case, [50.0]),
-    "limit cycles": lambda case: check(case, with_oil=True),
+ANALYSES: dict[str, str] = {
+    "run": RUN,
+    "rotation": ROTATION,
+    "squeeze": SQUEEZE,
+    "whirl": WHIRL,
+    "bearing": BEARING,
+    "stability, response": STABILITY,
+    "limit cycles": OIL_CYCLES,
 }
 HEAD = """# What goes with what
 
@@ -117,11 +110,11 @@ def page() -> str:
         names = list(ANALYSES)
         rows = ["| | " + " | ".join(names) + " |", "|" + " --- |" * (len(names) + 1)]
         for name, (case, settings) in FILMS.items():
-            asked = ((case, [*settings, *_motion(analysis)], gate) for analysis, gate in ANALYSES.items())
+            asked = ((case, [*settings, *_motion(analysis)], analysis) for analysis in ANALYSES.values())
             rows.append(f"| {name} | " + " | ".join(_cell(reasons, refused(*each)) for each in asked) + " |")
         rows += ["", "Two features together in a run:", "", "| | run |", "| --- | --- |"]
         for name, (case, settings) in PAIRS.items():
-            rows.append(f"| {name} | {_cell(reasons, refused(case, settings, frbcli.make_plan))} |")
+            rows.append(f"| {name} | {_cell(reasons, refused(case, settings, RUN))} |")
     finally:
         frbcli.remove_bearing(MODEL)
     notes = [f"{number}. {told}" for number, told in enumerate(reasons, start=1)]
@@ -135,10 +128,10 @@ def _cell(reasons: list[str], faults: Sequence[Fault]) -> str:
     return f"no ({', '.join(str(reasons.index(each) + 1) for each in told)})" if told else "yes"
 
 
-def refused(name: str, settings: Sequence[str], gate: Callable[[Case], object]) -> tuple[Fault, ...]:
+def refused(name: str, settings: Sequence[str], analysis: str) -> tuple[Fault, ...]:
     """The faults of a case in an analysis; empty if it can be computed."""
     try:
-        gate(load_case(name, settings))
+        require(load_case(name, settings), analysis)
     except InputError as error:
         return error.faults
     return ()

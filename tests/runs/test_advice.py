@@ -10,12 +10,12 @@ import pytest
 from synthetic_run import as_run
 
 from frbcli.bearing_tests.kinematic import rotation
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved, NotConverged
 from frbcli.runs.advice import RunEnd, run_advice, run_end
 from frbcli.runs.run import runup
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
 from frbcli.scene.supply import unfed_films

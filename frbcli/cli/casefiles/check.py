@@ -30,7 +30,6 @@ TURNING_TOLD = 0.02  # of the gap
 @output_options
 def command(case: Case, everything: bool, terminal: Terminal) -> None:
     """Validate CASE; show what it amounts to and the plan: what will be modelled, what is left out, and why."""
-    from frbcli.bearing_tests.plan import kinematic_plan
     from frbcli.case.reading.listing import values
     from frbcli.scene.costs.cost import expected_cost
     from frbcli.scene.costs.limits import require_affordable
@@ -38,6 +37,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     from frbcli.scene.machine.findings import findings
     from frbcli.scene.machine.operating import FILM_OPERATION, operating_points
     from frbcli.scene.planning.expected_error import expected_error
+    from frbcli.scene.planning.kinematic_plan import kinematic_plan
     from frbcli.scene.planning.plan import make_plan
     from frbcli.scene.planning.profiles import run_up_profile
 

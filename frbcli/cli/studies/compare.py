@@ -75,7 +75,7 @@ def command(
 
     Without --cavitation, --theory and --coupling it is compared with all models whose films have no state and low cost.
     """
-    from frbcli.bearing_tests.plan import TESTS, with_model
+    from frbcli.scene.planning.kinematic_plan import TESTS, with_model
     from frbcli.studies.compare import compare
     from frbcli.studies.comparison_columns import HEAT
 

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import label_of, laws
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.plot.style import COLOURS, GREY, Picture, new_figure, styled
-from frbcli.scene.film_faults import require_films
+from frbcli.scene.gate.gate import require
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -32,7 +32,7 @@ LEAST, WIDEST = 1e-6, 1.2  # p / p_cav over which the models are compared
 def law_figure(case: Case) -> Picture:
     """theta(p) of the conserving models with the parameters of a case, whose own model is drawn thick. Raises
     InputError for a case whose films cannot be modelled."""
-    require_films(case)
+    require(case)
     film, cavity = case.film, case.oil.cavitation_pressure
     with styled():
         words = f"oil fraction over pressure; the case's model: {label_of(film.cavitation)}"

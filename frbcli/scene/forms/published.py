@@ -69,12 +69,11 @@ class PublishedForm(FilmForm):
         """See FilmForm."""
         assert films.cells is not None
         around, along = films.cells
-        kind = case.film.two_phase.diffusion
         reason = "two-phase in its published form (4.31): creates oil where it cavitates; the run states how much"
         return (
             ("film", f"{around} x {along} elements", f"quadratic, around x along of a section; {films.mesh_why}"),
             ("form", "published", reason),
-            ("diffusion", kind, DIFFUSIONS[kind]),
+            diffusion_decision(case),
         )
 
     def mesh_of(self, plan: Plan) -> tuple[int, int]:
@@ -116,6 +115,12 @@ def published_faults(case: Case) -> list[Fault]:
         problem = "solves the film apart from the rotor, whose elements settle only with it in one step"
         found.append(("film.coupling", coupling, problem, f"Choose {MONOLITHIC} or auto."))
     return [Fault(key, value, None, f"{problem}.", remedy) for key, value, problem, remedy in found]
+
+
+def diffusion_decision(case: Case) -> tuple[str, str, str]:
+    """The decision about the artificial diffusion: choice, value, reason."""
+    kind = case.film.two_phase.diffusion
+    return "diffusion", kind, DIFFUSIONS[kind]
 
 
 def published_elements(case: Case) -> tuple[tuple[int, int], str]:

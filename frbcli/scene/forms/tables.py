@@ -77,4 +77,5 @@ CLIPPED = TableForm("clipped exactly along z, 96 points around", SolveCounts(1.0
 TABLE = TableForm("table over eccentricity and direction", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35, TABLE_MODES)
 FIELDS = FieldsForm("tabulated fields, clipped at every call", SolveCounts(1.0, 1.0, 2.2, (1.2, 2.5)), 10.5)
 CHAINS = ChainForm("solved between the grooves at every call", SolveCounts(1.0, 1.0, 1.7, (3.3, 2.4)), 17.5)
+MODAL = FilmForm("modal, quadratic elements", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 1e3)  # of kinematic tests alone
 MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)

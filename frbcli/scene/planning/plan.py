@@ -12,7 +12,6 @@ from dataclasses import replace
 from frbcli.case.bearing import FilmGeometry, FloatingRingBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
@@ -22,11 +21,12 @@ from frbcli.scene.coupling import FULL, plan_coupling
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.none import NO_FILM
+from frbcli.scene.gate.analysis import RUN
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
 from frbcli.scene.planning.expected_error import expected_error
 from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films
-from frbcli.scene.planning.plan_faults import plan_faults
 from frbcli.scene.planning.planned import Decision, Plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.scene.shafts.table import shaft_of
@@ -52,9 +52,7 @@ Decide = Callable[[str, object, str], None]
 def make_plan(case: Case) -> Plan:
     """Plan a case: the cheapest that holds its target, or the most exact within its budget, where it sets no mesh and
     tolerance of its own. Raises InputError naming every part of it that cannot be modelled."""
-    faults = plan_faults(case)
-    if faults:
-        raise InputError(case.name or "case", tuple(faults))
+    require(case, RUN)
     target, budget = case.accuracy.target, case.accuracy.budget
     plan = _plan(case, target)
     while budget is not None and _total_s(case, plan) > budget and target < LOOSEST:

@@ -32,7 +32,6 @@ from paths import DOCS
 from scipy.optimize import brentq
 
 import frbcli
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.reading.listing import values
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
@@ -46,6 +45,7 @@ from frbcli.film.rectangles.film_force import film_force
 from frbcli.plot.signals import model as described
 from frbcli.runs import march
 from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 PAGE = DOCS / "adding-a-model.md"
 R, L, C, MU = 0.05, 0.03, 1e-4, 0.01

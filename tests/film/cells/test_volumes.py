@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from volume_films import CLEARANCE, RADIUS, ROTATION, Row, law_of, motion_of, polar_motion, reference_rows, section_of
 
-from frbcli.bearing_tests.plan import STEADY_CELLS
 from frbcli.bearing_tests.steady_film import FilmMoment, steady_film
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.elrod import Elrod
@@ -27,6 +26,7 @@ from frbcli.film.cells.loads import Torque, estimate, loads
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
+from frbcli.scene.planning.kinematic_plan import STEADY_CELLS
 
 ROWS = reference_rows()
 PRESSURE_ERROR, TORQUE_ERROR = 1e-2, 5e-3

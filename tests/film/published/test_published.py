@@ -14,7 +14,6 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest, rotation, squeeze, whirl
-from frbcli.bearing_tests.plan import kinematic_plan
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
@@ -31,6 +30,7 @@ from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.plain import terms
 from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 OMEGA = 2.0 * math.pi * 120.0  # at 4 s of the run-up of chapter 6
 CASE = """

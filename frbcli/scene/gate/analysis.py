@@ -1,0 +1,13 @@
+"""The analyses that a case can be asked for, as the gate knows them."""
+
+from __future__ import annotations
+
+FILMS = "films"  # whatever needs the films of a case and has no rules of its own
+RUN = "run"  # run-up, run-down, sweep, fit and compare
+ROTATION, SQUEEZE, WHIRL = KINEMATIC = "rotation", "squeeze", "whirl"
+BEARING = "bearing sheet"
+STABILITY = "stability"  # and response and damped modes
+CYCLES, OIL_CYCLES = "limit cycles", "limit cycles of films that keep oil"
+
+ALL = (FILMS, RUN, *KINEMATIC, BEARING, STABILITY, CYCLES, OIL_CYCLES)
+EVERY_CYCLE = (CYCLES, OIL_CYCLES)

@@ -1,0 +1,109 @@
+"""The gate: one table of rules, each with the analyses that it holds for. Every analysis asks it before a film is made.
+
+A rule is a function of a case that yields the faults: key, value, problem, remedy. `docs/matrix.md` is made by asking
+this gate.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.scene.channels import channel_faults
+from frbcli.scene.clearance_steps import clearance_faults
+from frbcli.scene.forms.published import published_faults
+from frbcli.scene.gate import films, kinematic, runs, static
+from frbcli.scene.gate.analysis import (
+    ALL,
+    BEARING,
+    CYCLES,
+    EVERY_CYCLE,
+    FILMS,
+    KINEMATIC,
+    OIL_CYCLES,
+    RUN,
+    STABILITY,
+)
+from frbcli.scene.machine.elements import element_faults, speed_dependent, without_film
+
+Faults = Iterable[Fault]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule. of: the faults of a case; analyses: that it holds for; last: whether it is asked only of a case that has
+    passed all rules before, since it needs their subjects to be whole."""
+
+    of: Callable[[Case], Faults]
+    analyses: tuple[str, ...]
+    last: bool = False
+
+
+def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:
+    """A rule of films alone, which a machine without any does not break."""
+    return lambda case: of(case) if case.bearings else ()
+
+
+def _without_film(what: str) -> Callable[[Case], Faults]:
+    return lambda case: without_film(case, what)
+
+
+def _run_omega(case: Case) -> float:
+    return 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
+
+
+def motion_omega(case: Case) -> float:
+    """Speed in rad/s that a kinematic test refers to: of the journal, else of its motion."""
+    motion = case.motion
+    return 2.0 * math.pi * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
+
+
+CONSTANT = "limit cycles follow it with a rotor of constant coefficients"
+
+RULES = (
+    Rule(element_faults, ALL),
+    Rule(films.heat_faults, ALL),
+    Rule(channel_faults, ALL),
+    Rule(films.supply_faults, ALL),
+    *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
+    Rule(_without_film("a kinematic test is of one"), KINEMATIC),
+    Rule(_without_film("the sheet is of films"), (BEARING,)),
+    Rule(_without_film("limit cycles are those of films"), EVERY_CYCLE),
+    *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
+    Rule(kinematic.theory_faults, KINEMATIC),
+    Rule(_of_films(films.model_faults), (RUN, *KINEMATIC)),
+    Rule(_of_films(runs.theory_faults), (RUN,)),
+    Rule(_of_films(clearance_faults), (RUN,)),
+    Rule(_of_films(runs.form_faults), (RUN,)),
+    Rule(_of_films(published_faults), (RUN,)),
+    Rule(_of_films(runs.signal_faults), (RUN,)),
+    Rule(static.sheet_faults, (BEARING,)),
+    Rule(static.coefficient_faults, (STABILITY,)),
+    Rule(lambda case: speed_dependent(case, CONSTANT), EVERY_CYCLE),
+    Rule(static.cycle_heat_faults, EVERY_CYCLE),
+    Rule(static.smooth_faults, (CYCLES,)),
+    Rule(static.oil_cycle_faults, (OIL_CYCLES,)),
+    Rule(runs.number_faults, (RUN,), last=True),
+    Rule(lambda case: films.force_faults(case, _run_omega(case)), (RUN,), last=True),
+    Rule(lambda case: films.force_faults(case, motion_omega(case)), KINEMATIC, last=True),
+)
+
+
+def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
+    """Every reason why an analysis of a case is refused. Raises InputError if this process does not have the bearing
+    model of the case."""
+    found: list[Fault] = []
+    for rule in RULES:
+        if analysis in rule.analyses and not (rule.last and found):
+            found += rule.of(case)
+    return found
+
+
+def require(case: Case, analysis: str = FILMS, more: Faults = ()) -> None:
+    """Raises InputError with every reason why an analysis of a case is refused; more: found by its caller."""
+    if found := [*more, *faults(case, analysis)]:
+        raise InputError(case.name or "case", tuple(found))

@@ -1,0 +1,104 @@
+"""Rules of bearing sheets, stability and response, and limit cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.channels import coupled
+from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
+from frbcli.scene.forms.published import is_published
+from frbcli.scene.keys import bearing_key, cavitation_keys
+from frbcli.scene.planning.film_choice import all_clipped, needs_cells
+
+
+def sheet_faults(case: Case) -> Iterator[Fault]:
+    """Films whose pressures, flows and loads are not known."""
+    if case.film.bearing_model:
+        problem = "is a bearing model: it tells the force, and neither pressures nor oil."
+        yield Fault("film.theory", case.film.theory, None, problem, "Write finite or auto.")
+    if is_published(case):
+        problem = "creates oil: the flows and losses of a sheet would hang on how much."
+        yield Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".')
+    alone = len(case.bearings) == 1 and isinstance(case.bearings[0], SingleFilmBearing)
+    if case.given_rotor is None and not alone:
+        problem = "has more than one film: their loads follow from a rotor, which is missing."
+        yield Fault("bearing", f"{len(film_places(case))} films", None, problem, "Add [rotor] and [speed].")
+
+
+def coefficient_faults(case: Case) -> Iterator[Fault]:
+    """Films that eight coefficients do not describe."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
+            problem = "couples the two films of a ring: neither has coefficients of its own."
+            key = f"{bearing_key(case, index)}.channels"
+            yield Fault(key, "coupled", None, problem, 'Write channels = "pressure" here.')
+    problem = "is mass-conserving: eight coefficients per speed do not determine stability."
+    remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
+    for key, name in dict(cavitation_keys(case)).items():
+        if law_named(name).keeps_oil:
+            yield Fault(key, name, None, problem, remedy)
+
+
+def cycle_heat_faults(case: Case) -> Iterator[Fault]:
+    """Heat has no steady state along a limit cycle that belongs to the rest that it grows from."""
+    if case.heat is not None:
+        problem = "is not modelled in limit cycles: each of them dissipates something else, and has other viscosities."
+        remedy = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
+        yield Fault("thermal.model", "lumped", None, problem, remedy)
+
+
+def smooth_faults(case: Case) -> Iterator[Fault]:
+    """Films whose force does not follow smoothly from the motion alone."""
+    named = {} if case.film.bearing_model else dict(cavitation_keys(case))
+    keeping = {key: name for key, name in named.items() if law_named(name).keeps_oil}
+    if keeping:
+        problem = "is mass-conserving: the force depends on the oil that the film keeps, not on the motion alone."
+        remedy = "Take half-sommerfeld or penalty here, and a run-up for this model."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in keeping.items())
+    elif needs_cells(case) and not turning_openings(case):
+        problem = "is solved on cells, where the force has no continuous derivative."
+        remedy = "Take half-sommerfeld, and no openings but circumferential grooves and feed holes that turn."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in named.items())
+
+
+def oil_cycle_faults(case: Case) -> Iterator[Fault]:
+    """Mass-conserving films whose map over a period is not the same at each start: their openings turn. And those of
+    the published form, whose oil is not on cells."""
+    if not keeps_oil(case):
+        yield from smooth_faults(case)
+        return
+    named = cavitation_keys(case)
+    kept = all(law_named(name).keeps_oil for _, name in named)
+    turn = any(
+        place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
+        for place in film_places(case)
+    )
+    if kept and not turn and not is_published(case):
+        return
+    problem = "has limit cycles only without openings that turn, with the oil of all films on cells."
+    remedy = "Leave feed holes that turn and the published form out, or take a run-up."
+    yield from (Fault(key, name, None, problem, remedy) for key, name in named)
+
+
+def keeps_oil(case: Case) -> bool:
+    """Whether a film of the case is mass-conserving."""
+    named = () if case.film.bearing_model else tuple(name for _, name in cavitation_keys(case))
+    return any(law_named(name).keeps_oil for name in named)
+
+
+def turning_openings(case: Case) -> bool:
+    """Whether all films on cells solve a linear equation and have no openings but those that turn."""
+    if not all_clipped(case) or any(coupled(bearing) for bearing in rings(case)):
+        return False
+    return all(
+        is_plain(place.geometry) or (place.geometry.lobes is None and place.grid_body != HOUSING)
+        for place in film_places(case)
+    )
+
+
+def _turns(case: Case, place: FilmPlace) -> bool:
+    return place.grid_body != HOUSING or turns_with_oil(case, place)

@@ -1,0 +1,210 @@
+"""The plan of a kinematic bearing test (section 4.2.2): which section of the film is solved, which law, which cells."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from frbcli.case.bearing import SingleFilmBearing
+from frbcli.case.model import altered
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.film.bearing_model.model import BearingModel
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.table import law_named, names
+from frbcli.film.gap import Section, ends_at_ambient
+from frbcli.nearest import did_you_mean
+from frbcli.scene.films import make_law
+from frbcli.scene.forms.cells import CELLS
+from frbcli.scene.forms.form import FilmForm
+from frbcli.scene.forms.models import GIVEN, chosen_model, model_decisions
+from frbcli.scene.forms.published import PUBLISHED, diffusion_decision, is_published, published_elements
+from frbcli.scene.forms.tables import MODAL
+from frbcli.scene.gate.analysis import KINEMATIC, ROTATION
+from frbcli.scene.gate.gate import motion_omega, require
+from frbcli.scene.planning.cell_choice import FEWEST, given_cells
+from frbcli.scene.planning.planned import Decision
+from frbcli.scene.section import film_rectangle, film_section
+from frbcli.scene.supply import unfed_films
+
+TESTS = KINEMATIC
+
+# around, along; of a section that is half the film half as many along
+STEADY_CELLS, FINE_CELLS = (128, 32), (240, 60)
+MOVING_CELLS = (64, 16)
+FINE_TARGET = 2e-4
+STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its force, hangs on the step
+TWO_PI = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class KinematicPlan:
+    """What will be modelled. form: how the film is computed; section: of the film, copied section.copies times;
+    rectangle: that of the accurate modal film, None where grooves or bores are cut out; cells: (around, along);
+    steps: per period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure;
+    turning: rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11);
+    model: the bearing model that gives the forces, cavitation is empty then."""
+
+    test: str
+    cavitation: str
+    form: FilmForm
+    section: Section
+    rectangle: Section | None
+    cells: tuple[int, int]
+    rate: float
+    decisions: tuple[Decision, ...]
+    steps: int = STEPS_PER_PERIOD
+    turning: float = 0.0
+    ramp: float = 0.0
+    model: BearingModel | None = None
+
+    @property
+    def law(self) -> type[Law]:
+        """The cavitation law."""
+        return law_named(self.cavitation)
+
+    @property
+    def remembers(self) -> bool:
+        """Whether the film has a state of its own."""
+        return self.model is None and self.law.keeps_oil
+
+    @property
+    def modal(self) -> bool:
+        """Whether the pressure is that of the modal film."""
+        return self.form == MODAL
+
+    @property
+    def on_cells(self) -> bool:
+        """Whether the force is that of a film on cells."""
+        return self.form == CELLS
+
+
+def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATION) -> KinematicPlan:
+    """Plan a kinematic test of a case for one cavitation model (None: that of the case).
+
+    Raises InputError naming everything that the case lacks for it or that this version does not model.
+    """
+    model = case.film.bearing_model
+    asked = cavitation or ("" if model else case.film.cavitation)
+    case = with_model(case, asked) if asked in names() and not model else case
+    require(case, test, _name_faults(case, asked))
+    bearing, motion = case.bearings[0], case.motion
+    assert isinstance(bearing, SingleFilmBearing)
+    assert motion is not None
+    section = film_section(case, bearing)
+    rectangle = film_rectangle(section)
+    form = _form(case, rectangle)
+    law = law_named(case.film.cavitation)
+    turning = TWO_PI * (motion.speed or 0.0) if bearing.supply.surface == "journal" else 0.0
+    if form == GIVEN:
+        cells, why = (0, 0), ""
+    elif form == PUBLISHED:
+        cells, why = published_elements(case)
+    else:
+        cells, why = _cells(case, test)
+        section = ends_at_ambient(section) if law.closed and bearing.ends == "free-to-air" else section
+    steps = () if test == ROTATION else (Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"),)
+    chosen = chosen_model(case)
+    if chosen is not None:
+        decisions = (*(Decision(*decided) for decided in model_decisions(chosen)), *steps)
+    else:
+        decisions = (*_decisions(case, bearing, section, form, cells, why), *steps, *_transport(case, bearing, form))
+    return KinematicPlan(
+        test, asked, form, section, rectangle, cells, motion_omega(case), decisions,
+        turning=turning, ramp=bearing.supply.rise_time, model=chosen,
+    )  # fmt: skip
+
+
+def with_model(case: Case, cavitation: str) -> Case:
+    """The case with a cavitation model for its film."""
+    return altered(case, {"film": altered(case.film, {"cavitation": cavitation})})
+
+
+def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
+    """The law of a film at an eccentricity, at the reference speed of the test."""
+    return make_law(case, plan.cavitation, plan.section).followed(eccentricity, plan.rate)
+
+
+def _name_faults(case: Case, cavitation: str) -> Iterator[Fault]:
+    """Faults of the cavitation model that is asked for."""
+    if case.film.bearing_model and cavitation:
+        problem = f"has no effect on film.theory = {case.film.theory}, a bearing model."
+        yield Fault("--cavitation", cavitation, None, problem, "Leave it out.")
+    elif not case.film.bearing_model and cavitation not in names():
+        yield Fault("--cavitation", cavitation, None, "is no model.", did_you_mean(cavitation, names()))
+
+
+def _form(case: Case, rectangle: Section | None) -> FilmForm:
+    if case.film.bearing_model:
+        return GIVEN
+    if is_published(case):
+        return PUBLISHED
+    return MODAL if rectangle is not None and law_named(case.film.cavitation).closed else CELLS
+
+
+def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
+    if case.accuracy.mesh is not None:
+        return given_cells(case.accuracy.mesh, FEWEST)
+    if test != ROTATION:
+        return MOVING_CELLS, "equal ones around, for the narrowest gap moves"
+    fine = case.accuracy.target <= FINE_TARGET
+    return FINE_CELLS if fine else STEADY_CELLS, "finer at the narrowest gap"
+
+
+def _decisions(
+    case: Case, bearing: SingleFilmBearing, section: Section, form: FilmForm, cells: tuple[int, int], why: str
+) -> Iterator[Decision]:
+    """Gap, form and cells of a film of the program."""
+    law = law_named(case.film.cavitation)
+    yield _gap_decision(section, bearing)
+    yield from _lobe_decision(section)
+    yield Decision("film", *_about_film(form, law))
+    if form != PUBLISHED and law.closed and bearing.ends == "free-to-air":
+        reason = f"{law.name} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
+        yield Decision("ends", "ambient pressure", reason)
+    for film in unfed_films(case):
+        yield Decision("supply", "starves" if film.keeps else "missing", film.reason)
+    if form == PUBLISHED:
+        yield Decision("elements", f"{cells[0]} x {cells[1]}", f"around x along of a section; {why}")
+    else:
+        yield Decision("cells", f"{cells[0]} x {cells[1]}", f"around x along; {why}")
+
+
+def _about_film(form: FilmForm, law: type[Law]) -> tuple[str, str]:
+    if form == PUBLISHED:
+        return "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
+    if form == MODAL:
+        return "modal, quadratic elements", f"{law.name} in a rectangular gap; it has no state"
+    if law.keeps_oil:
+        return "finite volumes", f"{law.name}: conserves oil and keeps it from moment to moment"
+    return "finite volumes", f"{law.name}: has no state, each moment is a steady film of its own"
+
+
+def _transport(case: Case, bearing: SingleFilmBearing, form: FilmForm) -> Iterator[Decision]:
+    """How oil is transported, and in which frame."""
+    if form == PUBLISHED:
+        yield Decision(*diffusion_decision(case))
+    elif law_named(case.film.cavitation).published_form:
+        reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
+        yield Decision("diffusion", "upwind", reason)
+    if bearing.supply.surface == "journal":
+        yield Decision("frame", "of the journal", "the feed holes turn with it and are at rest there")
+
+
+def _gap_decision(section: Section, bearing: SingleFilmBearing) -> Decision:
+    if section.far == "groove" and section.copies == 2:
+        return Decision("gap", "1 of 2 sections", "a central circumferential groove parts two equal films")
+    if section.far == "symmetry":
+        reason = f"supply {bearing.supply.kind}: the film is symmetric about its middle"
+        return Decision("gap", "half the width", reason)
+    return Decision("gap", "the whole width", f"supply {bearing.supply.kind}: the film is not symmetric")
+
+
+def _lobe_decision(section: Section) -> list[Decision]:
+    lobes = section.lobes
+    if lobes is None:
+        return []
+    machined = 1e6 * section.clearance / (1.0 - lobes.preload)
+    reason = f"clearance {1e6 * section.clearance:.4g} um where they are narrowest, {machined:.4g} um of their bores"
+    return [Decision("lobes", f"{lobes.count}, preload {lobes.preload:g}", reason)]
