@@ -16,7 +16,7 @@ from frbcli.runs.march import UNBOUNDED
 from frbcli.scene.clearance_steps import case_at, step_times
 from frbcli.scene.coupling import APART
 from frbcli.scene.films import film_places
-from frbcli.scene.remedies import film_remedies
+from frbcli.scene.remedies import film_remedies, remedies_sentence
 from frbcli.scene.supply import unfed_films
 from frbcli.solve.state import STEP
 from frbcli.solve.step import SMALLEST_STEP
@@ -25,7 +25,6 @@ from frbcli.units import display
 THIN = 0.99  # eccentricity above which the cause of a film without solution is its small gap
 AT_ONCE = 1e-9  # s within which a run ends at a step of the clearance
 SHORTER = 10.0  # divisor of a macro step
-SOFTER = 10.0  # divisor of a contact stiffness
 STIFFNESS = "1e9 N/m"  # suggested contact stiffness
 
 
@@ -161,8 +160,8 @@ def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
         f"Rotor and films had no solution at {end.speed_Hz:.4g} Hz with a step size below {step}: the "
         f"{end.journal} was {place}, at an eccentricity of {end.eccentricity:.4f}{_while(end)}."
     )
-    causes = (*_missing_oil(case), *_thin_film(case, end, touching))
-    return (told, *causes, f"Possible remedies: {'; '.join((*_numerics(case), *film_remedies(case)))}.")
+    remedies = (*_contact_remedies(case, end, touching), *_numerics(case), *film_remedies(case))
+    return (told, *_missing_oil(case), *_thin_film(case, end, touching), remedies_sentence(remedies))
 
 
 def _while(end: RunEnd) -> str:
@@ -170,19 +169,21 @@ def _while(end: RunEnd) -> str:
 
 
 def _thin_film(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
-    """Remedies for a journal in contact or close to it."""
-    contact = case.contact
-    if touching and contact.stiffness is not None:
-        softer = display(contact.stiffness / SOFTER, "N/m")
-        return (f"A softer shell is easier to solve: contact.stiffness = {softer}.",)
+    """The gap of a journal close to contact."""
     if touching or end.eccentricity < THIN:
         return ()
     gap = (1.0 - end.eccentricity) * _clearance(case_at(case, end.t_s), end.film)
-    thin = f"The smallest gap is {1e6 * gap:.2g} um, and the stiffness of the film is very large there."
-    if contact.policy == "elastic":
-        return (f"{thin} Let contact begin earlier: contact.eccentricity = {THIN:g}.",)
-    earlier = f"contact.policy = elastic with contact.eccentricity = {THIN:g} and contact.stiffness"
-    return (f"{thin} Use an elastic shell: {earlier}.",)
+    return (f"The smallest gap is {1e6 * gap:.2g} um, and the stiffness of the film is very large there.",)
+
+
+def _contact_remedies(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
+    """How a run ends in contact in place of being stuck in it or close to it."""
+    found = []
+    if not touching and end.eccentricity >= THIN:
+        found.append(f"contact.eccentricity = {THIN:g}, with which contact begins earlier")
+    if case.contact.policy == "elastic":
+        found.append("contact.policy = stop, with which the run ends at its first contact")
+    return tuple(found)
 
 
 def _clearance(case: Case, film: str) -> float:

@@ -1,8 +1,13 @@
-"""Remedies where a film has no solution: settings that the case does not have yet."""
+"""Remedies where a film has no solution: settings that the case does not have yet.
+
+In six runs of random rigid rotors that had no solution (centre of mass 0.3 to 3 clearances off the axis, five of them
+in elastic shells) another law or a less steep one never helped, a shell ten times softer in one of five, and other
+meshes, tolerances and steps in some by chance: these are not advised.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from frbcli.case.schema import Case
@@ -11,6 +16,7 @@ from frbcli.scene.forms.published import is_published
 from frbcli.scene.supply import unfed_films
 
 GENTLE = 0.9  # x_1 of a step that is not steep
+NONE_KNOWN = "No setting is known to help: with another mesh or tolerance it is a matter of chance."
 
 
 @contextmanager
@@ -32,17 +38,8 @@ def film_remedies(case: Case) -> tuple[str, ...]:
         found.append('film.two-phase.form = "conservative"')
         if film.two_phase.diffusion != "consistent":
             found.append('film.two-phase.diffusion = "consistent"')
-    if "two-phase" in models and film.two_phase.steepness > GENTLE:
-        found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {film.two_phase.steepness:g}")
-    if "penalty" in models and film.penalty.pressure == "absolute":
-        found.append('film.penalty.pressure = "dimensionless", which is less steep')
-    if "reynolds" in models:
-        found.append("the penalty model, which has no kink at the edge of the cavity")
-    if case.accuracy.mesh is None:
-        found.append("another mesh, accuracy.mesh")
-    else:
-        along, around = case.accuracy.mesh
-        found.append(f"another accuracy.mesh than [{along}, {around}], or none: the plan then chooses one")
+        if film.two_phase.steepness > GENTLE:
+            found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {film.two_phase.steepness:g}")
     return tuple(found)
 
 
@@ -51,4 +48,9 @@ def film_advice(case: Case) -> str:
     unfed = [film for film in unfed_films(case) if film.keeps]
     if unfed:
         return " ".join(f"The film has no pressurised supply: {film.cause}. {film.remedy}" for film in unfed)
-    return f"Possible remedies: {'; '.join(film_remedies(case))}."
+    return remedies_sentence(film_remedies(case))
+
+
+def remedies_sentence(remedies: Sequence[str]) -> str:
+    """The sentence on the remedies of a case, or that none is known."""
+    return f"Possible remedies: {'; '.join(remedies)}." if remedies else NONE_KNOWN

@@ -133,21 +133,22 @@ def test_stuck_run_tells_film_eccentricity_contact_step_and_speed() -> None:
     assert "below 2.0e-07 s" in told(jeffcott(), replace(STUCK, step_s=2e-7))
 
 
-def test_stuck_run_in_contact_is_advised_a_softer_shell() -> None:
+def test_stuck_run_in_contact_is_advised_to_end_there() -> None:
     text = told(jeffcott(*ELASTIC), replace(STUCK, eccentricity=1.001))
     assert "was in contact with the shell" in text
-    assert "contact.stiffness = 10000 N/mm" in text
-    assert "contact.policy" not in text
+    assert "contact.policy = stop" in text
+    assert "contact.stiffness" not in text
 
 
 def test_stuck_run_with_a_thin_film_is_told_how_thin() -> None:
     thin = replace(STUCK, eccentricity=0.998)
     text = told(jeffcott(), thin)
     assert "0.07 um" in text
-    assert "contact.policy = elastic" in text
-    text = told(jeffcott(*ELASTIC), thin)
     assert "contact.eccentricity = 0.99" in text
     assert "contact.policy" not in text
+    text = told(jeffcott(*ELASTIC), thin)
+    assert "contact.eccentricity = 0.99" in text
+    assert "contact.policy = stop" in text
     changed = jeffcott("bearing.clearance_steps=[{time='0.2 s', clearance='70 um'}]")
     assert "0.14 um" in told(changed, thin)
 
@@ -160,21 +161,22 @@ def test_stuck_run_without_oil_is_told_so_first() -> None:
 @pytest.mark.parametrize(
     ("settings", "advised", "silent"),
     [
-        ((), ("accuracy.mesh",), ("accuracy.target", "accuracy.tolerance", "macro_step")),
-        (("accuracy.tolerance=1e-6",), (), ("accuracy.target", "accuracy.tolerance")),
-        (("accuracy.mesh=[6, 96]",), ("another accuracy.mesh than [6, 96]",), ("another mesh",)),
+        ((), ("No setting is known to help",), ("accuracy.", "macro_step", "Possible remedies")),
+        (("accuracy.mesh=[6, 96]",), (), ("accuracy.mesh",)),
         (("film.coupling=co-simulation",), ("macro_step", "film.coupling = auto"), ()),
-        (("film.cavitation=penalty",), ('penalty.pressure = "dimensionless"',), ("two-phase",)),
-        (("film.cavitation=penalty", "film.penalty.pressure=dimensionless"), (), ("penalty",)),
-        (("film.cavitation=reynolds",), ("the penalty model",), ("two-phase",)),
-        (("film.cavitation=two-phase",), ("steepness = 0.9 in place of 0.99",), ("conservative", "penalty")),
-        (("film.cavitation=two-phase", "film.two-phase.steepness=0.9"), (), ("steepness",)),
+        (("film.cavitation=penalty",), (), ("penalty",)),
+        (("film.cavitation=reynolds",), (), ("penalty",)),
+        (("film.cavitation=two-phase",), (), ("steepness", "conservative")),
         (
             ("film.cavitation=two-phase", "film.two-phase.form=published", "film.two-phase.diffusion=none"),
             ('form = "conservative"', 'diffusion = "consistent"'),
             (),
         ),
-        (("film.cavitation=two-phase", "film.two-phase.form=published"), ("conservative",), ("diffusion",)),
+        (
+            ("film.cavitation=two-phase", "film.two-phase.form=published"),
+            ("conservative", "steepness = 0.9 in place of 0.99"),
+            ("diffusion",),
+        ),
     ],
 )
 def test_stuck_run_is_advised_what_is_not_set(
@@ -248,8 +250,7 @@ def test_film_that_cannot_be_solved_is_advised_by_the_case() -> None:
             raise FilmUnsolved("the film did not converge")
         return str(told.value)
 
-    assert fail().startswith("the film did not converge. Possible remedies: another mesh")
-    assert "steepness" not in fail()
+    assert fail().startswith("the film did not converge. No setting is known to help")
     assert "no pressurised supply" in fail(AIR, "film.cavitation=elrod")
     with pytest.raises(NotConverged, match=r"^other$"), advised(jeffcott()):
         raise NotConverged("other")
