@@ -16,7 +16,7 @@ from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.error_budget import BEFORE_WHIRL, quiet_until, summed
 from frbcli.runs.errors.fewer_cells import (
     SAFETY,
-    SAFETY_OF_GROOVES,
+    SAFETY_OF_OPENINGS,
     SAFETY_OF_RINGS,
     SAFETY_OF_RINGS_AT_REST,
     on_fewer_cells,
@@ -156,7 +156,7 @@ def test_between_rings_only_lengths_count() -> None:
     ("name", "settings", "times"),
     [
         ("rigid-two-phase", [], SAFETY),
-        ("axial-groove-two-phase", [], SAFETY_OF_GROOVES),
+        ("axial-groove-two-phase", [], SAFETY_OF_OPENINGS),
         ("floating-ring", [], SAFETY_OF_RINGS),
         ("floating-ring", ["speed.from=200 Hz"], SAFETY_OF_RINGS_AT_REST),
         ("floating-ring", ["speed.from=200 Hz", "bearing.ring.spin=blocked"], SAFETY),
