@@ -159,7 +159,7 @@ def test_between_rings_only_lengths_count() -> None:
         ("axial-groove-two-phase", [], SAFETY_OF_OPENINGS),
         ("floating-ring", [], SAFETY_OF_RINGS),
         ("floating-ring", ["speed.from=200 Hz"], SAFETY_OF_RINGS_AT_REST),
-        ("floating-ring", ["speed.from=200 Hz", "bearing.ring.spin=blocked"], SAFETY),
+        ("floating-ring", ["speed.from=200 Hz", "bearing.ring.spin=blocked"], SAFETY_OF_OPENINGS),
     ],
 )
 def test_the_share_of_the_difference_that_is_stated(name: str, settings: list[str], times: float) -> None:
