@@ -58,8 +58,8 @@ def test_the_short_bearing_in_closed_form(tmp_path: Path) -> None:
         told = system.films.force(0, place[k], rate[k], omega[k]).force
         np.testing.assert_allclose(force[k], told, atol=2e-3 * np.abs(force).max())
 
-    film, eta = system.films.sections[0], system.films.bearings[0].viscosity
-    c, radius, b = film.clearance, 0.5 * film.diameter, film.section_width
+    film, eta = system.films.sections[0], system.films.sections[0].viscosity
+    c, radius, b = film.clearance, film.radius, film.width
     phi = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
     for k in later:
         d, v = place[k] / c, rate[k] / c
@@ -67,8 +67,8 @@ def test_the_short_bearing_in_closed_form(tmp_path: Path) -> None:
         w = v - 0.5 * omega[k] * np.array([-d[1], d[0]])
         parabola = -((b / radius) ** 2) * (w[0] * np.sin(phi) - w[1] * np.cos(phi)) / (2.0 * gap**3)
         slope = 12.0 * eta * (radius / c) ** 2 * parabola / b  # times 1 - 2 z, whose square has the mean 1/3
-        squeezed = film.sections * radius * b * 2 * math.pi * np.mean((c * gap) ** 3 * slope**2) / (36.0 * eta)
-        sheared = eta * (radius * omega[k]) ** 2 * radius * film.width * 2 * math.pi * np.mean(1.0 / gap) / c
+        squeezed = film.copies * radius * b * 2 * math.pi * np.mean((c * gap) ** 3 * slope**2) / (36.0 * eta)
+        sheared = eta * (radius * omega[k]) ** 2 * radius * film.bearing_width * 2 * math.pi * np.mean(1.0 / gap) / c
         assert run["power_W"][k] == pytest.approx(sheared + squeezed, rel=1e-3)
         push = -0.5 * (place[k, 0] * force[k, 1] - place[k, 1] * force[k, 0])
         assert run["torque_N_m"][k] == pytest.approx(push - sheared / omega[k], rel=1e-4)
@@ -110,7 +110,7 @@ def test_oil_that_leaves_short_films_in_motion(tmp_path: Path) -> None:
     place = np.column_stack([run["journal_x_m"], run["journal_y_m"]])
     rate, omega = np.gradient(place, run["time_s"], axis=0), 2.0 * math.pi * run["speed_Hz"]
     w = rate - 0.5 * omega[:, None] * np.column_stack([-place[:, 1], place[:, 0]])
-    expected = 0.5 * film.sections * film.section_width * film.diameter * np.hypot(*w.T)
+    expected = film.copies * film.width * film.radius * np.hypot(*w.T)
     inner = slice(60, -1)
     assert np.ptp(expected[inner]) > 0.1 * expected.max()
     np.testing.assert_allclose(run["oil_flow_m3_s"][inner], expected[inner], atol=3e-3 * expected.max())

@@ -14,6 +14,7 @@ from scipy.linalg import eigh, null_space
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
+from frbcli.film.gap import whole_width
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.rectangles.untabulated import largest_pressure
@@ -161,12 +162,13 @@ def worst_film_force(supply: str) -> float:
     """Largest relative deviation of the film forces from film-forces.csv, on the mesh that is planned by default."""
     case = load_case("jeffcott-table-4-1")
     plan = make_plan(case)
-    sections = {"none": 1, "circumferential-groove": 2}[supply]
-    like = replace(make_system(case, plan).films.sections[0], sections=sections)
+    like = make_system(case, plan).films.sections[0]
+    if supply == "none":
+        like = whole_width(replace(like, far="symmetry"))
     rows = [row for row in _rows("film-forces.csv") if row["supply"] == supply]
     pressures = {row["supply_pressure_bar"] for row in rows}
-    gauges = {bar: float(bar) * 1e5 - like.ambient_pressure if sections == 2 else 0.0 for bar in pressures}
-    bearings = {bar: replace(like, grooved=sections == 2, groove_pressure=gauge) for bar, gauge in gauges.items()}
+    gauges = {bar: 0.0 if supply == "none" else float(bar) * 1e5 - like.ambient_pressure for bar in pressures}
+    bearings = {bar: replace(like, far_pressure=gauge) for bar, gauge in gauges.items()}
     films = {bar: make_film(bearing, plan.theory, plan.cavitation, plan.mesh) for bar, bearing in bearings.items()}
     return max(_force_error(films[row["supply_pressure_bar"]], like.clearance, row) for row in rows)
 
