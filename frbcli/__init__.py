@@ -50,6 +50,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.plot.axes import ring_speed as draw_ring_speed  # noqa: F401
     from frbcli.plot.axes import spectrum as draw_spectrum  # noqa: F401
     from frbcli.plot.axes import waterfall as draw_waterfall  # noqa: F401
+    from frbcli.plot.picture import picture as picture
     from frbcli.report.page import write_report as write_report
     from frbcli.results.store import read_run as read_run
     from frbcli.runs.run import rundown as rundown
@@ -102,6 +103,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "measured_run": "frbcli.analysis.measured",
     "natural_modes": "frbcli.linear.modes",
     "order_track": "frbcli.analysis.orders.order_tracking",
+    "picture": "frbcli.plot.picture",
     "read_run": "frbcli.results.store",
     "remove_bearing": "frbcli.case.schema",
     "remove_law": "frbcli.case.schema",

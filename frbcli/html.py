@@ -12,6 +12,7 @@ from frbcli.errors import printable
 if TYPE_CHECKING:
     import pandas as pd
 
+MOST_COLUMNS = 6  # of a table, in a line of text
 MOST_ROWS = 60  # of a table; the rest is told by their number
 
 
@@ -26,6 +27,14 @@ class Tabular:
     def to_pandas(self) -> pd.DataFrame:
         """The rows of the table, units in the names of the columns."""
         return self.table().to_pandas()
+
+    def __repr__(self) -> str:
+        """Kind, case and columns: three lines, whatever it holds."""
+        frame, case = self.to_pandas(), getattr(self, "case", None)
+        names = [str(name) for name in frame.columns]
+        more = f" and {len(names) - MOST_COLUMNS} more" if len(names) > MOST_COLUMNS else ""
+        of = "" if case is None else f" of {case.name}: {printable(case.title)}"
+        return f"{type(self).__name__}{of}\n{len(frame)} rows of {', '.join(names[:MOST_COLUMNS])}{more}"
 
     def _repr_html_(self) -> str:
         frame, case = self.to_pandas(), getattr(self, "case", None)

@@ -71,7 +71,7 @@ class KinematicResult:
         return self.cavitation or self.theory
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class KinematicTest(Tabular):
     """A test, "rotation", "squeeze" or "whirl", with one result per cavitation model, in their order; complete: not
     interrupted before the last of them."""

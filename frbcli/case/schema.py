@@ -253,6 +253,14 @@ class Case(Model):
         """Whether all values are equal."""
         return isinstance(other, Case) and self.__dict__ == other.__dict__
 
+    def __repr__(self) -> str:
+        """Name, rotor and bearings: two lines."""
+        rotor = "no rotor" if self.given_rotor is None else f"{self.given_rotor.kind} rotor"
+        bearings = ", ".join(" ".join(word for word in (each.name, each.kind) if word) for each in self.given_bearings)
+        return f"Case {self.name}: {self.title}\n{rotor}; bearings: {bearings}"
+
+    __str__ = __repr__
+
     def _repr_html_(self) -> str:
         """In a notebook: its values in SI and as they are written."""
         from frbcli.case.reading.listing import values  # it is made of cases

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
+from frbcli.cli.completion import complete_case, complete_key
 from frbcli.cli.files import INPUT, note_read
 from frbcli.cli.looks import Look, look_of
 from frbcli.cli.streams import OutputLost
@@ -193,9 +194,10 @@ def case_argument(
         is_eager=True,  # CASE is loaded with the settings, so they come first
         expose_value=False,
         callback=_remember_settings,
+        shell_complete=complete_key,
         help=f"{SETTING} Repeatable.",
     )
-    case = click.argument("case", metavar=metavar, callback=load or _load)
+    case = click.argument("case", metavar=metavar, callback=load or _load, shell_complete=complete_case)
     return case(settings(function))
 
 

@@ -136,7 +136,7 @@ class Cost:
     cycles: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LimitCycles(Tabular):
     """The diagram of a case. over, unit: what it goes over, "speed" in Hz or a key of the case; films: their names;
     notes: what is to be said of it; synchronous: the nonlinear response to the unbalance, descending in speed."""

@@ -38,7 +38,7 @@ ECCENTRICITIES = tuple(0.05 * i for i in range(1, 20))
 SPEED, ECCENTRICITY = "speed", "eccentricity"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BearingSheet(Tabular):
     """States of the films of a case over "speed" or "eccentricity", film by film within each of them; laws: the
     cavitation model of each film, in the order of the films."""

@@ -50,7 +50,7 @@ CRITICAL_SPEEDS = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class CriticalMap(Tabular):
     """stiffness: (k,) N/m of every bearing; forward, backward: (k, SHOWN) Hz, ascending, NaN where there are fewer;
     films: (speeds in Hz, stiffness in N/m of each bearing (n, b)) of the films of the case at rest, empty if they are

@@ -59,7 +59,7 @@ class DampedMode:
         return -2.0 * math.pi * self.eigenvalue.real / self.eigenvalue.imag
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class DampedModes(Tabular):
     """The oscillating modes at a rotor speed, those that grow first, then the least damped ones.
 

@@ -60,7 +60,7 @@ class ModesAtSpeed:
         return tuple(mode for mode in self.modes if mode.direction == direction)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Modes(Tabular):
     """Modes over speed.
 

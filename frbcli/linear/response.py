@@ -48,7 +48,7 @@ ORBIT_PLACES = 360  # at which the eccentricity along an orbit is told
 SOUND, DOUBTFUL_MOTION, BEYOND_GAP = "linear", "doubtful", "beyond-gap"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Response(Tabular):
     """The synchronous motion at n speeds.
 

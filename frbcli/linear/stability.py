@@ -29,7 +29,7 @@ from frbcli.scene.remedies import advised
 SPEEDS = 60  # of the default sweep: 5 Hz apart from 0 to 300 Hz
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Stability(Tabular):
     """Linear stability of a case.
 

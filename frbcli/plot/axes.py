@@ -8,7 +8,6 @@
 from __future__ import annotations
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from frbcli.analysis.spectra.spectrum import Direction
 from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
@@ -24,7 +23,7 @@ from frbcli.plot.run.orbit import LAST_s, draw_orbits
 from frbcli.plot.run.speeds import draw_spectrum_at
 from frbcli.plot.signals import ends
 from frbcli.plot.spectra.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
-from frbcli.plot.style import legend_beside, styled
+from frbcli.plot.style import NotebookFigure, legend_beside, styled
 from frbcli.results.store import Run
 
 
@@ -120,4 +119,4 @@ def _axes(ax: Axes | None) -> Axes:
     if ax is not None:
         return ax
     with styled():
-        return Figure().subplots()
+        return NotebookFigure().subplots()

@@ -60,6 +60,13 @@ STYLE: Any = {
 }
 
 
+class NotebookFigure(Figure):
+    """A figure that a notebook shows where a cell ends with it, also if pyplot has never been imported."""
+
+    def _repr_png_(self) -> bytes:
+        return picture(self, ".png", dpi=100)
+
+
 @contextmanager
 def styled() -> Iterator[None]:
     """Within it, matplotlib draws in the style of frb; afterwards as before."""
@@ -69,7 +76,7 @@ def styled() -> Iterator[None]:
 
 def new_figure(title: str, subtitle: str, width: float = 7.2, height: float = 4.4) -> Figure:
     """An empty figure, width and height in inches, under the title of the case and what was computed."""
-    figure = Figure(figsize=(width, height))
+    figure = NotebookFigure(figsize=(width, height))
     words = printable(f"{title}\n{subtitle}" if subtitle else title)
     figure.suptitle(words, x=0.01, ha="left", fontsize=10.0, parse_math=False)  # a $ in a title is one
     return figure

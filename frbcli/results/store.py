@@ -50,6 +50,7 @@ RECORDS = ("versions", "references", "cost", "error", "events")  # kept as JSON 
 LARGEST_STATE = 128 * 1024**2  # bytes of a checkpoint; cells have some hundred thousand numbers
 LARGEST_REST = 8 * 1024**2  # bytes of a file that are not numbers of signals and checkpoint
 UNREADABLE = (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError, OverflowError, MemoryError)
+MOST_NAMED = 6  # events of a run, in a line of text
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class Header:
     references: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A run from its file. `run["eccentricity"]` gives the values (n,) of a signal, in the unit of its name.
 
@@ -115,6 +116,15 @@ class Run:
     def __len__(self) -> int:
         """The number of samples."""
         return min((len(signal) for signal in self.signals.values()), default=0)
+
+    def __repr__(self) -> str:
+        """File, end and events: a few lines, however long it is."""
+        told = [f"{event['kind']} at {event['speed_Hz']:.4g} Hz" for event in self.events[:MOST_NAMED]]
+        more = [f"{len(self.events) - MOST_NAMED} more"] if len(self.events) > MOST_NAMED else []
+        return (
+            f"Run {self.path}: {self.title}\n{self.command}, {self.status} at {self.t_end_s:.4g} s; "
+            f"{len(self.signals)} signals of {len(self)} samples\nevents: {', '.join([*told, *more]) or 'none'}"
+        )
 
     def _repr_html_(self) -> str:
         """In a notebook: how it ended, its events."""

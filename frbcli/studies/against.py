@@ -54,7 +54,7 @@ RIDGES = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AgainstMeasured(Tabular):
     """computed, measured: ridges of the runs at the same speeds; clearance: m, that of the computed run; point: of the
     computed run, that was measured; computed_events, measured_events: found alike in the motion of that point alone."""

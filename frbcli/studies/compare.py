@@ -116,7 +116,7 @@ class VariantResult:
         return next((event for event in self.run.events if event["kind"] == kind), None)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison(Tabular):
     """Results in the order of the variants; the first is what the others are compared with.
 

@@ -66,7 +66,7 @@ class Fitted:
         return min(self.value / self.low, self.high / self.value) < 1.0 + 10.0 * SETTLED
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Fit(Tabular):
     """case: with the numbers found; numbers: them; correlation: (k, k) of their errors; before, after: ridges of the
     run with the numbers at first and in the end, measured: those of the measurement; runs: how many were made; chi:

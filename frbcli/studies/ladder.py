@@ -61,7 +61,7 @@ class RungResult:
     work_s: float = math.nan
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AccuracyLadder(Tabular):
     """until_s: how long the runs are; reference: its error is how far a run on the rung `coarser` is from it; ladder:
     in the order of their cost; complete: not interrupted; failed: rungs whose run did not begin, and why."""

@@ -63,7 +63,7 @@ ONSET_RUNS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class OnsetSpread(Tabular):
     """Rotor speeds in Hz at which the first whirl begins. onset_Hz: of the run; threshold_Hz: of linear stability, None
     where there is none, and note then says why; runs: the ensemble."""

@@ -11,15 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from pages.tutorial_notebook import case_text, cells
 from paths import DOCS
 
 import frbcli
 from frbcli.cli.main import COMMANDS
-
-
-def case_text() -> str:
-    page = (DOCS / "tutorial.md").read_text(encoding="utf-8")
-    return "\n".join(re.findall(r"```toml\n(.*?)```", page, re.DOTALL))
 
 
 def test_the_case_of_the_tutorial_is_whole_from_its_bearings_on() -> None:
@@ -33,16 +29,20 @@ def test_the_case_of_the_tutorial_is_whole_from_its_bearings_on() -> None:
 
 
 def test_the_notebook_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cell by cell, in a folder with the page alone; what a cell ends with has something to show."""
-    (tmp_path / "tutorial.md").write_text((DOCS / "tutorial.md").read_text(encoding="utf-8"), encoding="utf-8")
+    """Cell by cell, in an empty folder; what a cell ends with has something to show. It holds the case of the page and
+    the outputs of such a run, pictures among them."""
     monkeypatch.chdir(tmp_path)
     notebook = json.loads((DOCS / "tutorial.ipynb").read_text(encoding="utf-8"))
     assert notebook["nbformat"] == 4
+    assert [(cell["cell_type"], "".join(cell["source"])) for cell in notebook["cells"]] == cells()
+    outputs = [output for cell in notebook["cells"] for output in cell.get("outputs", [])]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) >= 3
+    assert [output for output in outputs if output["output_type"] in ("error", "stream")] == []
     names: dict[str, object] = {}
     for cell in notebook["cells"]:
         if cell["cell_type"] != "code":
             continue
-        assert cell["outputs"] == []
+        assert cell["outputs"]
         lines = "".join(cell["source"]).splitlines()
         exec("\n".join(lines[:-1]), names)
         shown = eval(lines[-1], names)

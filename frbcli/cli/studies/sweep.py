@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.completion import complete_case
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, here
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import SPEED_OPTION, gathered
@@ -67,7 +68,7 @@ class Machines:
 
 
 @click.command()
-@click.argument("source", metavar="CASE", type=INPUT)
+@click.argument("source", metavar="CASE", type=INPUT, shell_complete=complete_case)
 @click.option("--set", "settings", multiple=True, metavar="KEY=V1,V2",
               help="Values of a key, or LOW..HIGH UNIT / COUNT; several keys make a grid, KEY=V1,V2;KEY=V1,V2 change "
               "together. One value holds for all. Repeatable.")  # fmt: skip

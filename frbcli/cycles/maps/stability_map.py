@@ -88,7 +88,7 @@ class Growth:
     rate: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StabilityMap(Tabular):
     """over, over_unit: the first number, "speed" in Hz or a key; key, unit: the second one; curves: of Hopf points and
     folds; rows: ascending in the value of the key, in `unit`."""

@@ -13,7 +13,7 @@ from frbcli.analysis.signals import located, speed_at
 from frbcli.analysis.spectra.spectrum import Spectrogram
 from frbcli.plot.signals import MICRO, bearing_of, cut, ends, motion, shell
 from frbcli.plot.spectra.waterfall import orders
-from frbcli.plot.style import BLUE, GREY, styled
+from frbcli.plot.style import BLUE, GREY, NotebookFigure, styled
 from frbcli.results.records import SPEED
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
@@ -30,7 +30,7 @@ def speeds_figure(run: Run, times_s: Sequence[float], found: Spectrogram, signal
     """A row for each of some moments in s: the orbit of the last revolutions until then, and the spectrum of the
     window about it, from the spectra of `run_spectra`. Raises RunFileError if the run has no samples there."""
     with styled():
-        figure = Figure(figsize=(WIDTH, ROW * len(times_s)))
+        figure = NotebookFigure(figsize=(WIDTH, ROW * len(times_s)))
         rows = figure.subplots(len(times_s), 2, squeeze=False, width_ratios=(1.0, 2.0))
         for (left, right), time_s in zip(rows, times_s, strict=True):
             draw_orbit_until(left, run, time_s, signal)

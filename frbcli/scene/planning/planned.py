@@ -21,7 +21,7 @@ class Decision:
     reason: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Plan:
     """What will be modelled. theory: "short" | "finite", or the name of a bearing model; cavitation: of films that name
     none of their own; form: how the most expensive film is computed; mesh: the finest mesh of elements;
@@ -45,6 +45,10 @@ class Plan:
     macro_step: float | None
     decisions: tuple[Decision, ...]
     length: float = 0.0
+
+    def __repr__(self) -> str:
+        """Its choices, one on a line."""
+        return "\n".join(["Plan", *(f"{each.choice}: {each.value}" for each in self.decisions)])
 
     def _repr_html_(self) -> str:
         """In a notebook: its decisions."""

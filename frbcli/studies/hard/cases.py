@@ -63,7 +63,7 @@ class HardResult:
 Observer = Callable[[HardResult, int, int], None]  # a result, how many are done, how many there are
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class HardResults(Tabular):
     """All results, in the order of the list; complete: not interrupted before the last of them."""
 

@@ -40,7 +40,7 @@ WARM_UP_s = 1e-3
 Observer = Callable[[SweepPoint, int, int], None]  # a point, how many are done, how many there are
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sweep(Tabular):
     """points: in the order of their numbers, those that failed included."""
 
