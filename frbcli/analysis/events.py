@@ -58,12 +58,26 @@ class Event:
 
 
 def find_events(run: RunLike) -> tuple[Event, ...]:
-    """The events of a run, in the order of time.
+    """Find the events of a run.
 
-    Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
-    bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film; uses
-    ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s,
-    critical_speed_1_Hz and so on. Runs that can read their signals in pieces may be of any length.
+    Parameters
+    ----------
+    run : Run
+        Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
+        bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film. Uses
+        ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s,
+        critical_speed_1_Hz and so on. It may be of any length.
+
+    Returns
+    -------
+    tuple of Event
+        Critical speeds, self-excited vibrations, onsets and offsets of whirl, lock-in, contact, in the order of time.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> [event.kind for event in frbcli.find_events(run)]  # doctest: +SKIP
     """
     if len(run) < 2:
         return ()

@@ -80,12 +80,32 @@ class Measurement:
 
 
 def measured_run(path: Path, given: Measurement) -> Run:
-    """A run with the signals time_s, speed_Hz, journal_x_m, journal_y_m, and with the events that are found in it.
-    Without a y that is zero, and no events are sought: they need both.
+    """Read a measured motion as a run, with the events that are found in it.
 
-    A mean is taken from x and y: the zero of a sensor is not the centre of a bearing. Raises InputError for a file that
-    cannot be read or is ragged, a column that is missing or doubtful, times that do not rise or have gaps, and a rotor
-    that turns faster than the samples show.
+    Parameters
+    ----------
+    path : Path
+        A CSV, WAV, MAT or UFF file.
+    given : Measurement
+        The columns of the motion and their units.
+
+    Returns
+    -------
+    Run
+        The signals time_s, speed_Hz, journal_x_m, journal_y_m, in SI, x and y less their means: the zero of a sensor is
+        not the centre of a bearing. Without a column for y that is zero, and no events are sought.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read or is ragged, a column that is missing or doubtful, times that do not rise or
+        have gaps, and a rotor that turns faster than the samples show.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> given = frbcli.Measurement("x", clearance=35e-6, y="y", time="t", speed="n", unit_m=1e-6)
+    >>> run = frbcli.measured_run("measured.csv", given)  # doctest: +SKIP
     """
     columns = read_columns(Path(path))
     if given.clearance is not None and not SMALLEST <= given.clearance <= LARGEST:

@@ -92,11 +92,32 @@ class KinematicTest(Tabular):
 def rotation(
     case: Case, cavitations: Sequence[str] = (), observe: Observer | None = None
 ) -> KinematicTest:
-    """A journal that turns at a displacement, or rests under a load; () stands for the case's own model.
+    """Turn a journal at a displacement, or let it rest under a load.
 
-    observe: called with the number of each moment of each model, and how many there are. Raises InputError if the case
-    does not fit; a model that does not converge is a result with that status. Ctrl-C ends
-    it with the models that are done, or is raised on if there are none.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`, with [motion].
+    cavitations : sequence of str
+        Cavitation models; an empty one stands for that of the case.
+    observe : callable, optional
+        Called with the number of each moment of each model, and how many there are.
+
+    Returns
+    -------
+    KinematicTest
+        Forces in N and pressures in Pa by each model. A model that does not converge is a result with that status.
+        Ctrl-C ends it with the models that are done, or is raised on if there are none.
+
+    Raises
+    ------
+    InputError
+        If the case does not fit.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> found = frbcli.rotation(frbcli.load_case("bearing"))  # doctest: +SKIP
     """
     return _test(case, cavitations, "rotation", _rotation, observe)
 
@@ -104,14 +125,66 @@ def rotation(
 def squeeze(
     case: Case, cavitations: Sequence[str] = (), observe: Observer | None = None
 ) -> KinematicTest:
-    """A journal that moves up and down (4.47) for the periods of the case; see rotation."""
+    """Move a journal up and down (4.47) for the periods of the case.
+
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`, with [motion].
+    cavitations : sequence of str
+        Cavitation models; an empty one stands for that of the case.
+    observe : callable, optional
+        Called with the number of each moment of each model, and how many there are.
+
+    Returns
+    -------
+    KinematicTest
+        Force in N over time by each model. A model that does not converge is a result with that status. Ctrl-C ends it
+        with the models that are done, or is raised on if there are none.
+
+    Raises
+    ------
+    InputError
+        If the case does not fit.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> found = frbcli.squeeze(frbcli.load_case("squeeze"))  # doctest: +SKIP
+    """
     return _test(case, cavitations, "squeeze", _course, observe)
 
 
 def whirl(
     case: Case, cavitations: Sequence[str] = (), observe: Observer | None = None
 ) -> KinematicTest:
-    """A journal that moves on a circle (4.48), (4.49) for the periods of the case; see rotation."""
+    """Move a journal on a circle (4.48), (4.49) for the periods of the case.
+
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`, with [motion].
+    cavitations : sequence of str
+        Cavitation models; an empty one stands for that of the case.
+    observe : callable, optional
+        Called with the number of each moment of each model, and how many there are.
+
+    Returns
+    -------
+    KinematicTest
+        Pressure in Pa over time by each model. A model that does not converge is a result with that status. Ctrl-C ends
+        it with the models that are done, or is raised on if there are none.
+
+    Raises
+    ------
+    InputError
+        If the case does not fit.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> found = frbcli.whirl(frbcli.load_case("whirl"))  # doctest: +SKIP
+    """
     return _test(case, cavitations, "whirl", _course, observe)
 
 

@@ -366,10 +366,22 @@ class Case(Model):
 
 
 def add_law(law: type[Law]) -> None:
-    """Let film.cavitation take a law of one's own in this process, and [film.NAME] its keys; see CavitationLaw.
+    """Let film.cavitation take a law of one's own in this process, and [film.NAME] its keys.
 
-    A law of the same name that was added before is replaced. Raises ValueError if it is none, or has the name of a
-    shipped law or of a bearing model.
+    Parameters
+    ----------
+    law : type[CavitationLaw]
+        The law. One of the same name that was added before is replaced.
+
+    Raises
+    ------
+    ValueError
+        If it is no law, or has the name of a shipped law or of a bearing model.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> frbcli.add_law(MyLaw)  # doctest: +SKIP
     """
     if any(model.name == getattr(law, "name", None) for model in bearing_models.models()):
         raise ValueError(f"{law.__name__} has the name of a bearing model, {law.name}; choose another one")
@@ -378,7 +390,23 @@ def add_law(law: type[Law]) -> None:
 
 
 def remove_law(name: str) -> None:
-    """Take a law away that add_law has added. Raises KeyError for any other."""
+    """Take a law away that add_law has added.
+
+    Parameters
+    ----------
+    name : str
+        Name of the law.
+
+    Raises
+    ------
+    KeyError
+        For any other law.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> frbcli.remove_law("mine")  # doctest: +SKIP
+    """
     table.remove(name)
     _adopt_laws()
 
@@ -390,10 +418,22 @@ def _adopt_laws() -> None:
 
 
 def add_bearing(model: BearingModel) -> None:
-    """Let film.theory take a bearing model of one's own in this process, and [film.NAME] its keys; see BearingModel.
+    """Let film.theory take a bearing model of one's own in this process, and [film.NAME] its keys.
 
-    Its functions are compiled here. A model of the same name that was added before is replaced. Raises InputError if it
-    is none, or numba cannot compile it.
+    Parameters
+    ----------
+    model : BearingModel
+        The model, whose functions are compiled here. One of the same name that was added before is replaced.
+
+    Raises
+    ------
+    InputError
+        If it is no model, or numba cannot compile it.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> frbcli.add_bearing(model)  # doctest: +SKIP
     """
     check_model(model, FilmModel)
     bearing_models.add(model)
@@ -401,7 +441,23 @@ def add_bearing(model: BearingModel) -> None:
 
 
 def remove_bearing(name: str) -> None:
-    """Take a bearing model away that add_bearing has added. Raises KeyError for any other."""
+    """Take a bearing model away that add_bearing has added.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model.
+
+    Raises
+    ------
+    KeyError
+        For any other model.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> frbcli.remove_bearing("damper")  # doctest: +SKIP
+    """
     bearing_models.remove(name)
     _adopt_bearings()
 

@@ -31,14 +31,37 @@ def limit_cycles(
     observe: Observer | None = None,
     with_unbalance: bool = False,
 ) -> LimitCycles:
-    """The resting positions of a case over its speed range, its Hopf points, and the branches of limit cycles.
+    """Compute resting positions, Hopf points and branches of limit cycles over the speed range of a case.
 
-    speeds_Hz: at which cycles are computed exactly, of the kind "asked", for their orbits;
-    observe: called with the number of cycles so far and the speed in Hz and the largest eccentricity of the latest one;
-    with_unbalance: whether the whirls with the unbalance are computed as well (`CycleBranch.with_unbalance`).
-    Raises InputError if the films have no force that follows from the motion alone, without a speed range, for a
-    speed outside of it, or with_unbalance for a case without unbalance or with films that keep their oil;
-    NotConverged without a resting position at the highest speed.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    speeds_Hz : sequence of float
+        Speeds in Hz at which cycles are computed exactly, of the kind "asked", for their orbits.
+    observe : callable, optional
+        Called with the number of cycles so far, and the speed in Hz and the largest eccentricity of the latest one.
+    with_unbalance : bool
+        Whether the whirls with the unbalance are computed as well.
+
+    Returns
+    -------
+    LimitCycles
+        The diagram, with stability and folds.
+
+    Raises
+    ------
+    InputError
+        If the films have no force that follows from the motion alone, without a speed range, for a speed outside of it,
+        or with_unbalance for a case without unbalance or with films that keep their oil.
+    NotConverged
+        Without a resting position at the highest speed.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.limit_cycles(case)  # doctest: +SKIP
     """
     begun = time.process_time()
     slowest, fastest = check(case, with_oil=True)

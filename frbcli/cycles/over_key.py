@@ -76,9 +76,38 @@ class KeyFollower(Follower):
 def limit_cycles_over(
     case: Case, key: str, low: str, high: str, speed_Hz: float, observe: Observer | None = None
 ) -> LimitCycles:
-    """As limit_cycles, over a key of the case from `low` to `high`, text with units, both above zero, at a speed in Hz.
+    """Compute a diagram as `limit_cycles` does, over a key of the case at one rotor speed.
 
-    Raises InputError and NotConverged as limit_cycles does.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    key : str
+        A number of the machine, such as "bearing.clearance".
+    low, high : str
+        Values between which it varies, with units, both above zero.
+    speed_Hz : float
+        Rotor speed in Hz.
+    observe : callable, optional
+        As of `limit_cycles`, with the value of the key.
+
+    Returns
+    -------
+    LimitCycles
+        The diagram.
+
+    Raises
+    ------
+    InputError
+        As `limit_cycles`, and for a key that is no number of the machine.
+    NotConverged
+        As `limit_cycles`.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.limit_cycles_over(case, "oil.viscosity", "8 mPa*s", "14 mPa*s", 200.0)  # doctest: +SKIP
     """
     begun = time.process_time()
     check(case)

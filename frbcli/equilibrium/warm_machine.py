@@ -63,9 +63,31 @@ class WarmMachine:
 
 
 def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
-    """The machine of a case with heat at a rotor speed, default the highest of its run, when everything is warm.
+    """Compute the machine of a case with heat at a rotor speed, when everything is warm.
 
-    Raises InputError for a case that cannot be modelled or has no heat, NotConverged where its heat does not balance.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    speed_Hz : float, optional
+        Rotor speed in Hz; by default the highest of the run.
+
+    Returns
+    -------
+    WarmMachine
+        Temperatures in K, viscosities in Pa s, losses in W, ring speeds.
+
+    Raises
+    ------
+    InputError
+        For a case that cannot be modelled or has no heat.
+    NotConverged
+        Where its heat does not balance.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> found = frbcli.warm_machine(frbcli.load_case("floating-ring-heat"))  # doctest: +SKIP
     """
     require(case)
     if case.heat is None:

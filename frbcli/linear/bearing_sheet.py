@@ -61,12 +61,38 @@ class BearingSheet(Tabular):
 def bearing_sheet(
     case: Case, speeds_Hz: Sequence[float] | None = None, load: float | None = None, observe: Observer | None = None
 ) -> BearingSheet:
-    """The films over the rotor speed, each under its static load.
+    """Compute the films over the rotor speed, each under its static load.
 
-    speeds_Hz (> 0): default SPEEDS over the range of the case, or the speed of its kinematic test; load: N along -y on
-    a single film, default that of the rotor or of [motion]; observe: called with each speed's number and their number.
-    Floating rings turn as their torques balance (4.17). Raises InputError if the case has no film on cells, no load or
-    no speed, or heat and a load that is not that of its rotor.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    speeds_Hz : sequence of float, optional
+        Rotor speeds in Hz, above 0; by default a range up to the highest of the case, or the speed of its kinematic
+        test.
+    load : float, optional
+        Load in N along -y on a single film; by default that of the rotor or of [motion].
+    observe : callable, optional
+        Called with each speed's number and their number.
+
+    Returns
+    -------
+    BearingSheet
+        Position, film thickness in m, stiffness in N/m, damping in N s/m, loss in W, flow in m^3/s, pressure in Pa of
+        every film at every speed. Floating rings turn as their torques balance (4.17).
+
+    Raises
+    ------
+    InputError
+        If the case has no film on cells, no load or no speed, or heat and a load that is not that of its rotor.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> sheet = frbcli.bearing_sheet(case, [100.0])
+    >>> len(sheet.points)
+    1
     """
     check_sheet(case)
     if case.heat is not None and (load is not None or case.given_rotor is None):
@@ -96,10 +122,36 @@ def sommerfeld_chart(
     speed_Hz: float | None = None,
     observe: Observer | None = None,
 ) -> BearingSheet:
-    """The films over the eccentricity of their journals, under the load along -y that they carry there.
+    """Compute the films over the eccentricity of their journals, under the load along -y that they carry there.
 
-    speed_Hz: of the rotor, default the highest of the case; floating rings turn as they do in concentric films. Raises
-    as bearing_sheet.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    eccentricities : sequence of float
+        Displacements over the clearance, between 0 and 1.
+    speed_Hz : float, optional
+        Rotor speed in Hz; by default the highest of the case. Floating rings turn as they do in concentric films.
+    observe : callable, optional
+        Called with the number of each eccentricity and their number.
+
+    Returns
+    -------
+    BearingSheet
+        As `bearing_sheet`, with the Sommerfeld number.
+
+    Raises
+    ------
+    InputError
+        As `bearing_sheet`.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> chart = frbcli.sommerfeld_chart(case, [0.5], 100.0)
+    >>> chart.points[0].eccentricity
+    0.5
     """
     check_sheet(case)
     if case.heat is not None:

@@ -83,9 +83,32 @@ class DampedModes(Tabular):
 
 
 def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
-    """The modes of a case about its resting position at a rotor speed (> 0).
+    """Compute the damped modes of a case about its resting position at a rotor speed.
 
-    Raises InputError as stability does, and where there is no resting position.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    speed_Hz : float
+        Rotor speed in Hz, above 0.
+
+    Returns
+    -------
+    DampedModes
+        Eigenvalues in 1/s and shapes.
+
+    Raises
+    ------
+    InputError
+        As `stability` does.
+    NotConverged
+        Where there is no resting position.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.damped_modes(case, 100.0)  # doctest: +SKIP
     """
     system, (point,) = stability_points(case, [speed_Hz])
     if not point.rests:

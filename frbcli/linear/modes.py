@@ -90,12 +90,33 @@ class Modes(Tabular):
 def natural_modes(
     case: Case, stiffness: float | Sequence[float] | None = None, speeds_Hz: Sequence[float] | None = None
 ) -> Modes:
-    """Natural modes of the turbocharger's rotor of a case.
+    """Compute the undamped natural modes of the rotor of a turbocharger.
 
-    stiffness: N/m, of each bearing with a film or of all alike, the same in all directions, none where no bearing has
-    one; elements without a film are springs as element_springs says. None leaves the rotor free. speeds_Hz: rotor
-    speeds, by default from standstill to the highest speed of the case. Raises InputError if the case has another
-    rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not as many as bearings.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    stiffness : float or sequence of float, optional
+        Stiffness in N/m of each bearing with a film, or of all alike, the same in all directions; elements without a
+        film are springs of their own. None leaves the rotor free.
+    speeds_Hz : sequence of float, optional
+        Rotor speeds in Hz; by default from standstill to the highest speed of the case.
+
+    Returns
+    -------
+    Modes
+        Frequencies in Hz and shapes at each speed.
+
+    Raises
+    ------
+    InputError
+        If the case has another rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not
+        as many as bearings.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> modes = frbcli.natural_modes(frbcli.load_case("turbocharger-car"), 1e7)  # doctest: +SKIP
     """
     require(case)
     free = shaft_of(case).free()

@@ -139,10 +139,34 @@ class Response(Tabular):
 def response(
     case: Case, speeds_Hz: Sequence[float] | None = None, observe: Callable[[int, int], None] | None = None
 ) -> Response:
-    """The linear unbalance response of a case at speeds_Hz (> 0), default SPEEDS over its range.
+    """Compute the linear unbalance response of a case.
 
-    observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, has
-    films that eight coefficients do not describe, or rests nowhere.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    speeds_Hz : sequence of float, optional
+        Rotor speeds in Hz, above 0; by default a range up to the highest of the case.
+    observe : callable, optional
+        Called with each speed's number and their number.
+
+    Returns
+    -------
+    Response
+        Amplitudes in m and phases of all points, critical speeds in Hz.
+
+    Raises
+    ------
+    InputError
+        If the case cannot be modelled, has films that eight coefficients do not describe, or rests nowhere.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.response(case, [50.0, 100.0])
+    >>> len(found.points)
+    2
     """
     require(case)
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))

@@ -52,13 +52,35 @@ class Stability(Tabular):
 def stability(
     case: Case, speeds_Hz: Sequence[float] | None = None, observe: Callable[[int, int], None] | None = None
 ) -> Stability:
-    """Resting positions, linear coefficients and eigenvalues at speeds_Hz (> 0), and the threshold of stability.
+    """Compute resting positions, linear coefficients, eigenvalues, and the threshold of stability.
 
-    The threshold is sought in the speed range of the case, whatever speeds_Hz; without speeds_Hz the points are those
-    of this sweep. A speed without a resting position gives a point that says so. observe: called with each speed's
-    number and their number.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    speeds_Hz : sequence of float, optional
+        Rotor speeds in Hz, above 0, of the points; by default those of the sweep in which the threshold is sought,
+        which is the speed range of the case.
+    observe : callable, optional
+        Called with each speed's number and their number.
 
-    Raises InputError if the case cannot be modelled or a speed is not positive.
+    Returns
+    -------
+    Stability
+        Points and threshold; a speed without a resting position gives a point that says so.
+
+    Raises
+    ------
+    InputError
+        If the case cannot be modelled or a speed is not positive.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.stability(case)
+    >>> found.threshold is not None
+    True
     """
     require(case)
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)

@@ -60,7 +60,35 @@ class ShownRun:
 def write_report(
     run: Run, path: str | Path, speeds_Hz: Sequence[float] = (), signal: str = "journal"
 ) -> Path:
-    """Write the report of a run to `path`. Raises as report, and InputError if the file cannot be written."""
+    """Write the page of a run.
+
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    path : str or Path
+        An HTML file, which holds all that it shows.
+    speeds_Hz : sequence of float
+        Rotor speeds in Hz at which spectra and orbits are shown.
+    signal : str
+        The point: "journal", "disk", or the name of a bearing or disk.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the run does not have the point or a speed, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> frbcli.write_report(run, "run.html")  # doctest: +SKIP
+    """
     path = Path(path)
     require_places([(path, PAGE)])
     write(path, PAGE, report(run, speeds_Hz, signal))

@@ -282,9 +282,28 @@ def _plain(value: Any) -> Any:
 
 
 def read_run(path: str | Path) -> Run:
-    """Read a run file. Its signals and its checkpoint stay in the file until they are asked for.
+    """Read a run file; its signals and its checkpoint stay in the file until they are asked for.
 
-    Raises RunFileError for anything that is not a complete run: see parts.py, records.py.
+    Parameters
+    ----------
+    path : str or Path
+        A file of `runup`, `rundown` or their commands.
+
+    Returns
+    -------
+    Run
+        The run; `run["eccentricity"]` is a signal (n,), in the unit of its name.
+
+    Raises
+    ------
+    RunFileError
+        For anything that is not a complete run.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> run["journal_x_m"]  # doctest: +SKIP
     """
     path = Path(path)
     with open_whole(path) as content:

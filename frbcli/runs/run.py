@@ -41,13 +41,39 @@ Observer = Callable[[Progress], None]
 def runup(
     case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None, force: bool = False
 ) -> Run:
-    """Run the rotor of a case up as its [speed] says and write the run to `output` (HDF5) as it goes.
+    """Run the rotor of a case up as its [speed] says.
 
-    A run of the same case that has ended there before is returned as it is. resume: go on with an interrupted run of
-    the same case in `output`; force: replace any run there. observe: called some times a second.
-    Raises InputError for a case that cannot be modelled or afforded, an output that cannot be written, to which another
-    process writes, or which holds a run that would be lost. Any end for a physical or numerical reason is the status of
-    the run: "finished", "contact", "starved", "overheated", "not-converged"; Ctrl-C ends it as "interrupted".
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    output : str or Path
+        Run file (HDF5), written as the run goes. A run of the same case that has ended there before is returned as it
+        is.
+    resume : bool
+        Go on with an interrupted run of the same case in `output`.
+    observe : callable, optional
+        Called some times a second.
+    force : bool
+        Replace any run in `output`.
+
+    Returns
+    -------
+    Run
+        Any end for a physical or numerical reason is its status: "finished", "contact", "starved", "overheated",
+        "not-converged"; Ctrl-C ends it as "interrupted".
+
+    Raises
+    ------
+    InputError
+        For a case that cannot be modelled or afforded, an output that cannot be written, to which another process
+        writes, or which holds a run that would be lost.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> run = frbcli.runup(case, "run.h5")  # doctest: +SKIP
     """
     return _run("runup", case, output, resume, observe, force)
 
@@ -55,7 +81,40 @@ def runup(
 def rundown(
     case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None, force: bool = False
 ) -> Run:
-    """Run up, hold, and run down again (section 7.2.2); otherwise as runup."""
+    """Run the rotor of a case up, hold it, and run it down again (section 7.2.2).
+
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    output : str or Path
+        Run file (HDF5), written as the run goes. A run of the same case that has ended there before is returned as it
+        is.
+    resume : bool
+        Go on with an interrupted run of the same case in `output`.
+    observe : callable, optional
+        Called some times a second.
+    force : bool
+        Replace any run in `output`.
+
+    Returns
+    -------
+    Run
+        Any end for a physical or numerical reason is its status: "finished", "contact", "starved", "overheated",
+        "not-converged"; Ctrl-C ends it as "interrupted".
+
+    Raises
+    ------
+    InputError
+        For a case that cannot be modelled or afforded, an output that cannot be written, to which another process
+        writes, or which holds a run that would be lost.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> run = frbcli.rundown(case, "down.h5")  # doctest: +SKIP
+    """
     return _run("rundown", case, output, resume, observe, force)
 
 

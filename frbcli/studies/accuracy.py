@@ -49,12 +49,38 @@ def accuracy(
 ) -> AccuracyLadder:
     """Run a case up on a ladder and compare cost and error of each rung with a fine reference.
 
-    until: in s, shortens the run; the rotor speeds up as before. theories, couplings: to be tried, () for all theories
-    that can be had and for the coupling of the plan. observe: called some times a second with the
-    rung, its number from 1 on, how many there are with both references, and its progress. Ctrl-C ends it with the rungs
-    done so far; before the reference is there it is raised on. A rung that does not begin is left out and named, the
-    reference raises NotConverged. Raises InputError for names that there are not, and for
-    a case that cannot be modelled.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    until : float, optional
+        Time in s at which the runs end; the rotor speeds up as before.
+    theories, couplings : sequence of str
+        What is tried; by default all theories that can be had, and the coupling of the plan.
+    observe : callable, optional
+        Called some times a second with the rung, its number from 1, how many there are with both references, and its
+        progress.
+
+    Returns
+    -------
+    AccuracyLadder
+        Rungs with their cost in s of CPU time and their errors, the reference, and what was left out. A rung that does
+        not begin is left out and named. Ctrl-C ends it with the rungs done so far; before the reference is there it is
+        raised on.
+
+    Raises
+    ------
+    InputError
+        For names that there are not, and for a case that cannot be modelled.
+    NotConverged
+        If the reference does not begin.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.accuracy(case, until=0.1)  # doctest: +SKIP
+    >>> found.to_pandas()  # doctest: +SKIP
     """
     require(case)
     _check_names(case, theories, couplings)

@@ -89,10 +89,34 @@ class AgainstMeasured(Tabular):
 
 
 def against_measured(run: Run, measurement: Run, signal: str = "journal") -> AgainstMeasured:
-    """Events, and ridges at the speeds that both have, of a run and of a measurement; signal: the point of the run that
-    was measured, "journal", "disk", "journal_NAME" or "disk_NAME".
+    """Compare the events and the ridges of a run with those of a measurement.
 
-    Raises InputError if they have too few speeds in common, or one of them is too short for its spectra.
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    measurement : Run
+        A measured run with a clearance, see `measured_run`.
+    signal : str
+        The point of the run that was measured: "journal", "disk", or the name of a bearing or disk.
+
+    Returns
+    -------
+    AgainstMeasured
+        Events of both, found alike in the motion of that point, and ridges at the speeds that both have: synchronous
+        amplitudes in m, frequency in Hz and amplitude in m of the whirl.
+
+    Raises
+    ------
+    InputError
+        If they have too few speeds in common, or one of them is too short for its spectra.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> given = frbcli.Measurement("x", clearance=35e-6, y="y", time="t", speed="n", unit_m=1e-6)
+    >>> found = frbcli.against_measured(run, frbcli.measured_run("measured.csv", given))  # doctest: +SKIP
     """
     clearance = bearing_clearance(run, signal.partition("_")[2]) or next(iter(measurement.references.values()))
     speeds = ridge_speeds(measurement)

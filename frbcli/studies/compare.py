@@ -148,15 +148,39 @@ def compare(
     couplings: Sequence[str] = (),
     thermals: Sequence[str] = (),
 ) -> Comparison:
-    """Run a case with every combination of the given cavitation models, theories, couplings and models of heat; ()
-    stands for that of the case.
+    """Run a case with every combination of cavitation models, theories, couplings and models of heat.
 
-    With none given, that of the case is compared with all that have no state and cost little. keep: a directory for
-    the run files, made if need be; interrupted runs there go on. observe: called some times a second with
-    the variant, its number from 1 on, how many there are, and its progress. Ctrl-C, or a
-    variant that does not begin, ends the comparison with the runs that there are by then.
-    Raises InputError for models or tests that there are not, fewer than two models, models that the case does not
-    allow, or files that cannot be written; nothing is run then. A first variant that does not begin raises its error.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    cavitations, theories, couplings, thermals : sequence of str
+        Names of models; an empty one stands for that of the case. With none given, the model of the case is compared
+        with all that have no state and cost little.
+    test : {"runup", "rundown"}
+        The scene.
+    keep : str or Path, optional
+        Directory for the run files, made if need be; interrupted runs there go on.
+    observe : callable, optional
+        Called some times a second with the variant, its number from 1, how many there are, and its progress.
+
+    Returns
+    -------
+    Comparison
+        The runs, their events, deviations and cost. Ctrl-C, or a variant that does not begin, ends the comparison with
+        the runs that there are by then.
+
+    Raises
+    ------
+    InputError
+        For models or tests that there are not, fewer than two models, models that the case does not allow, or files
+        that cannot be written; nothing is run then. A first variant that does not begin raises its error.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.compare(case, ["half-sommerfeld", "sommerfeld"])  # doctest: +SKIP
     """
     require(case)
     require_a_film(case, "the comparison is of models of films")

@@ -90,12 +90,41 @@ def fit(
     case: Case, measurement: Run, keys: Sequence[str], bounds: Mapping[str, tuple[float, float]] | None = None,
     signal: str = "journal", observe: Observer | None = None,
 ) -> Fit:  # fmt: skip
-    """The numbers `keys` of a case with which its run-up agrees best with a measurement.
+    """Find numbers of a case with which its run-up agrees best with a measurement.
 
-    bounds: SI, by key, default a factor of SPAN both ways; signal: of the run, "journal" or "journal_NAME"; observe:
-    called with the number of each run and the numbers that it is made with. Raises InputError for a key that is no
-    positive number of the machine, bounds that do not hold it, or a case that cannot be run; after the first runs for a
-    number that the ridges do not depend on.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    measurement : Run
+        A measured run, see `measured_run`.
+    keys : sequence of str
+        Numbers of the machine that are sought, such as "bearing.clearance".
+    bounds : mapping, optional
+        Lower and upper bound by key, in SI; by default a factor of 3 both ways.
+    signal : str
+        Point of the run: "journal", or the name of a bearing.
+    observe : callable, optional
+        Called with the number of each run and the numbers that it is made with.
+
+    Returns
+    -------
+    Fit
+        The numbers with standard errors and correlations, the case with them, ridges before and after.
+
+    Raises
+    ------
+    InputError
+        For a key that is no positive number of the machine, bounds that do not hold it, or a case that cannot be run;
+        after the first runs for a number that the ridges do not depend on.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> given = frbcli.Measurement("x", clearance=35e-6, y="y", time="t", speed="n", unit_m=1e-6)
+    >>> measured = frbcli.measured_run("measured.csv", given)  # doctest: +SKIP
+    >>> found = frbcli.fit(case, measured, ["bearing.clearance"])  # doctest: +SKIP
     """
     from scipy.optimize import least_squares  # scipy.optimize takes longer to import than a plan to make
 

@@ -54,13 +54,35 @@ class OrderTrack:
 
 
 def order_track(run: RunLike, order: float, signal: str = "journal", revolutions: int = REVOLUTIONS) -> OrderTrack:
-    """The motion of a point of a run with a multiple of the rotor speed (revolutions.py), however fast that changes.
+    """Compute the motion of a point with a multiple of the rotor speed, however fast that changes.
 
-    signal: "journal", "disk" or "journal_NAME" of a bearing, "disk_NAME" of a wheel; revolutions: of the windows, the
-    squares of Hann windows, which part orders that are 3/revolutions from each other. The run is read in pieces.
+    Parameters
+    ----------
+    run : Run
+        A run, which is read in pieces.
+    order : float
+        Multiple of the rotor speed, above 0.
+    signal : str
+        The point: "journal", "disk", or the name of a bearing or disk.
+    revolutions : int
+        Length of the windows, squares of Hann windows, which part orders that are 3/revolutions from each other.
 
-    Raises InputError for an invalid order or window, a point that the run does not have, or a run that is
-    shorter than a window.
+    Returns
+    -------
+    OrderTrack
+        Complex amplitudes in m over time and rotor speed.
+
+    Raises
+    ------
+    InputError
+        For an invalid order or window, a point that the run does not have, or a run that is shorter than a window.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> track = frbcli.order_track(run, 0.5)  # doctest: +SKIP
+    >>> track.amplitude("x").max()  # doctest: +SKIP
     """
     return order_tracks(run, (order,), signal, revolutions)[0]
 

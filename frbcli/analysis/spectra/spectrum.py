@@ -67,16 +67,49 @@ def waterfall(
     direction: Direction = "x",
     most: int | None = None,
 ) -> Spectrogram:
-    """Short-time spectra of a motion x, y (n,) in m, sampled evenly at time_s (n,), with rotor speed speed_Hz (n,):
-    arrays, or anything with a length that gives them in slices; no more than some windows are held at a time.
+    """Compute short-time spectra of a motion.
 
-    A steady sinusoid of amplitude A shows as A. direction: "x" and "y" give the one-sided spectrum of one coordinate,
-    "forward" the part of x + iy that turns with the rotor. window_s: length of the Hann windows, whose mean is taken
-    off; None takes that of window_length, which parts the rotor speed and its half. overlap: the share of a window
-    that the next one sees again; most: so many spectra, each of them the largest of neighbouring ones where there are
-    more; clearance: the length in m that is 0 dB.
+    Parameters
+    ----------
+    time_s : array_like
+        Even times (n,) in s.
+    x, y : array_like
+        The motion (n,) in m.
+    speed_Hz : array_like
+        Rotor speed (n,) in Hz. All four may be anything with a length that gives slices; no more than some windows are
+        held at a time.
+    clearance : float
+        Length in m that is 0 dB.
+    window_s : float, optional
+        Length of the Hann windows in s, whose mean is taken off; by default it parts the rotor speed and its half.
+    overlap : float
+        Share of a window that the next one sees again.
+    max_frequency_Hz : float, optional
+        Up to where spectra are kept.
+    direction : {"x", "y", "forward"}
+        The one-sided spectrum of a coordinate, or the part of x + iy that turns with the rotor.
+    most : int, optional
+        So many spectra, each of them the largest of neighbouring ones where there are more.
 
-    Raises InputError if the window or the overlap does not fit the samples, or these are not evenly spaced.
+    Returns
+    -------
+    Spectrogram
+        Amplitudes in m and levels in dB; a steady sinusoid of amplitude A shows as A.
+
+    Raises
+    ------
+    InputError
+        If the window or the overlap does not fit the samples, or these are not evenly spaced.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> import numpy as np
+    >>> t = np.arange(8000) / 4000.0
+    >>> x = 1e-5 * np.cos(2 * np.pi * 100.0 * t)
+    >>> found = frbcli.waterfall(t, x, 0.0 * x, np.full(8000, 100.0), 35e-6)
+    >>> bool(abs(found.amplitude.max() - 1e-5) < 1e-7)
+    True
     """
     if direction not in DIRECTIONS:
         raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")

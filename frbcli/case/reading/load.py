@@ -30,9 +30,31 @@ LARGEST_SHOWN = 200  # bits of a whole number in a fault
 
 
 def load_case(source: str | Path, settings: Sequence[str] = ()) -> Case:
-    """The case in the file `source`, or the shipped case of that name, with `settings` ("key.path=value") applied.
+    """Load the case in a file, or a shipped case by its name.
 
-    Raises InputError with every fault of file and settings.
+    Parameters
+    ----------
+    source : str or Path
+        Path of a case file, or name of a shipped case, see `shipped_cases`.
+    settings : sequence of str
+        "key.path=value", as --set takes them; units are allowed.
+
+    Returns
+    -------
+    Case
+        The case, frozen, in SI.
+
+    Raises
+    ------
+    InputError
+        With every fault of file and settings.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["bearing.clearance=40 um"])
+    >>> case.bearings[0].clearance
+    4e-05
     """
     path = Path(source)
     text = _read(path)
@@ -44,10 +66,37 @@ def load_case(source: str | Path, settings: Sequence[str] = ()) -> Case:
 def load_case_text(
     text: str, settings: Sequence[str] = (), name: str = "case", source: str = "", folder: str | Path = "."
 ) -> Case:
-    """The case in the TOML `text` with `settings` applied.
+    """Make a case of the text of a case file.
 
-    name: of the case, if the text has none; source: name of the text in errors, `name` if not given;
-    folder: of rotor files and files of coefficients. Raises InputError with every fault of text and settings.
+    Parameters
+    ----------
+    text : str
+        TOML with the keys of a case file.
+    settings : sequence of str
+        "key.path=value", as --set takes them.
+    name : str
+        Name of the case, if the text has none.
+    source : str
+        Name of the text in errors, `name` if not given.
+    folder : str or Path
+        Folder of rotor files and files of coefficients.
+
+    Returns
+    -------
+    Case
+        The case, frozen, in SI.
+
+    Raises
+    ------
+    InputError
+        With every fault of text and settings.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> text = frbcli.load_case("jeffcott").source_text
+    >>> frbcli.load_case_text(text).name
+    'jeffcott'
     """
     source = source or name
     try:
@@ -83,11 +132,35 @@ def with_settings(case: Case, settings: Iterable[str | Mapping[str, object]]) ->
 
 
 def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Path = ".") -> Case:
-    """The case in tables that have the keys of a case file, checked as a file is.
+    """Make a case of tables that have the keys of a case file, checked as a file is.
 
-    data: nested mappings and sequences; quantities are numbers in SI or text with a unit; a table may also be a model
-    of `frbcli.case`; None stands for a key that is not given. name: of the case, if the data have none; folder: of
-    rotor files and files of coefficients. Raises InputError with every fault of the data.
+    Parameters
+    ----------
+    data : mapping
+        Nested mappings and sequences. Quantities are numbers in SI or text with a unit; a table may also be a model of
+        `frbcli.case`; None stands for a key that is not given.
+    name : str
+        Name of the case, if the data have none.
+    folder : str or Path
+        Folder of rotor files and files of coefficients.
+
+    Returns
+    -------
+    Case
+        The case, frozen, in SI.
+
+    Raises
+    ------
+    InputError
+        With every fault of the data.
+
+    Examples
+    --------
+    >>> import frbcli, tomllib
+    >>> text = frbcli.load_case("jeffcott").source_text
+    >>> case = frbcli.case_from_dict(tomllib.loads(text))
+    >>> case.name
+    'jeffcott'
     """
     try:
         tables = _plain(data)

@@ -12,7 +12,19 @@ from frbcli.nearest import did_you_mean
 
 
 def shipped_cases() -> dict[str, str]:
-    """The names of the shipped cases, sorted, with their titles."""
+    """List the shipped cases.
+
+    Returns
+    -------
+    dict of str to str
+        Their names, sorted, with their titles.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> "jeffcott" in frbcli.shipped_cases()
+    True
+    """
     return {name: str(tomllib.loads(_text(name)).get("title", "")) for name in shipped_names()}
 
 

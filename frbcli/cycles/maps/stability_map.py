@@ -135,11 +135,38 @@ def stability_map(
     observe: Callable[[int, int], None] | None = None,
     across: Across | None = None,
 ) -> StabilityMap:
-    """The map of a case over its speed range and a key from `low` to `high`, as text with their unit, above zero.
+    """Map Hopf points and folds of limit cycles over the speed and a key of the case.
 
-    count: of values of the key at which diagrams are computed that curves begin in; observe: called with the number of
-    each of them and their number; across: in place of the speed. Raises InputError if the values are none, or if the
-    case cannot have one of them.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    key : str
+        A number of the machine.
+    low, high : str
+        Values between which it varies, with units, above zero.
+    count : int
+        Values of the key at which diagrams are computed that curves begin in.
+    observe : callable, optional
+        Called with the number of each of them and their number.
+    across : Across, optional
+        Another number, in place of the speed.
+
+    Returns
+    -------
+    StabilityMap
+        Curves of Hopf points and folds.
+
+    Raises
+    ------
+    InputError
+        If the values are none, or if the case cannot have one of them.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.stability_map(case, "oil.viscosity", "8 mPa*s", "14 mPa*s")  # doctest: +SKIP
     """
     plane, family = _plane(case, (key, low, high), across)
     lowest = float(plane.corners[0][1])

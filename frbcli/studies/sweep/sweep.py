@@ -67,15 +67,43 @@ def sweep(
     workers: Workers | None = None,
     observe: Observer | None = None,
 ) -> Sweep:
-    """Compute a case at many points: keys with the values of each (all combinations), or a list of points.
+    """Compute a case at many points.
 
-    method: "runup", or "stability" for the threshold speed alone; directory: holds the log and, with keep_runs, the
-    runs; a second call with the same case and points goes on with what is missing. observe: called in this process
-    after each point. Ctrl-C returns what there is; points without a result are "interrupted". A point that fails has a
-    status and a message, and the others go on.
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    points : mapping or sequence of mappings
+        Keys with the values of each, of which all combinations are points; or the points one by one.
+    directory : str or Path
+        Holds the log and, with keep_runs, the runs. A second call with the same case and points goes on with what is
+        missing.
+    method : {"runup", "stability"}
+        Run-ups, or the threshold speed alone.
+    keep_runs : bool
+        Whether the runs are kept.
+    workers : Workers, optional
+        Processes; by default one for each core.
+    observe : callable, optional
+        Called in this process after each point.
 
-    Raises InputError if no point is a case, or for a directory that cannot be written, holds another sweep, or is
-    written by another process.
+    Returns
+    -------
+    Sweep
+        The points; one that fails has a status and a message, and the others go on. Ctrl-C returns what there is, the
+        others are "interrupted".
+
+    Raises
+    ------
+    InputError
+        If no point is a case, or for a directory that cannot be written, holds another sweep, or is written by another
+        process.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.sweep(case, {"bearing.clearance": ["30 um", "40 um"]}, "study", "stability")  # doctest: +SKIP
     """
     workers = workers or Workers()
     settings = grid(points) if isinstance(points, Mapping) else checked(points)
