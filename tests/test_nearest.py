@@ -58,6 +58,7 @@ def test_a_point_is_found_by_its_name_alone() -> None:
     assert point_of(run, "journal") == "journal_front"
     with pytest.raises(InputError, match='Did you mean "disk_compressor"'):
         point_of(run, "compresor")
+    assert point_of(run_with((*POINTS, "ring_front")), "front") == "journal_front"
     both = run_with(("journal_1", "disk_1"))
     with pytest.raises(InputError, match="There are: journal_1, disk_1"):
         point_of(both, "1")

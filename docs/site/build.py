@@ -8,7 +8,6 @@ is loaded from a network, neither now nor by a reader, and a warning of MkDocs e
 from __future__ import annotations
 
 import csv
-import inspect
 import os
 import re
 import shutil
@@ -22,6 +21,9 @@ import click
 import frbcli
 from frbcli.cli.main import COMMANDS, frb
 from frbcli.linear.film_state import FilmState
+
+sys.path.insert(0, str(Path(__file__).parent))
+from reference import reference
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -78,7 +80,7 @@ def main(target: Path, quick: bool) -> None:
     for name in COMMANDS:
         (source / "commands" / f"{name}.md").write_text(command_page(name, shown[name], quick), encoding="utf-8")
     gallery(source, pictures, quick)
-    (source / "reference.md").write_text(reference(), encoding="utf-8")
+    (source / "reference.md").write_text(reference(None if quick else pictures), encoding="utf-8")
     settings = source.parent / f"{target.name}.yml"
     settings.write_text(configuration(source, target), encoding="utf-8")
     subprocess.run([sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-f", str(settings)], check=True)
@@ -195,24 +197,6 @@ def _printed_state(row: dict[str, str]) -> FilmState:
         f'bearing.supply={groove}pressure = "1 bar" }}',
     ])  # fmt: skip
     return frbcli.sommerfeld_chart(case, [float(row["eccentricity"])], 50.0).points[0]
-
-
-def reference() -> str:
-    """The public names with their signatures and docstrings."""
-    parts = ["# Python reference", "All names of `import frbcli`, in the order of the alphabet."]
-    for name in sorted(set(frbcli.__all__) - {"__version__"}, key=str.lower):
-        thing = getattr(frbcli, name)
-        signature = ""
-        if inspect.isfunction(thing):
-            signature = str(inspect.signature(thing)).replace("frbcli.", "")
-        words = inspect.cleandoc(thing.__doc__ or "")
-        parts.append(f"## {name}\n\n```python\nfrbcli.{name}{signature}\n```\n\n{_escaped(words)}")
-    return "\n\n".join(parts) + "\n"
-
-
-def _escaped(words: str) -> str:
-    """A docstring as Markdown: formulas stay as they are."""
-    return words.replace("<", "&lt;").replace("[", "\\[").replace("*", "\\*")
 
 
 def configuration(source: Path, target: Path) -> str:
