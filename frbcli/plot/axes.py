@@ -30,7 +30,35 @@ from frbcli.results.store import Run
 def eccentricity(
     run: Run, ax: Axes | None = None, from_time: float | None = None, to_time: float | None = None, over: Over = "time"
 ) -> Axes:
-    """Relative eccentricity of all films from from_time to to_time in s, over time or rotor speed."""
+    """Draw the relative eccentricity of all films over time or rotor speed.
+
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+    from_time, to_time : float, optional
+        Begin and end in s; by default those of the run.
+    over : {"time", "speed"}
+        The axis.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    RunFileError
+        If the run holds no samples between these times.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> ax = frbcli.draw_eccentricity(run)  # doctest: +SKIP
+    """
     ax = _axes(ax)
     draw_eccentricity(ax, [run], (), (from_time, to_time), over)
     finish(ax, over)
@@ -41,8 +69,35 @@ def eccentricity(
 def orbit(
     run: Run, ax: Axes | None = None, bearing: str = "", from_time: float | None = None, to_time: float | None = None
 ) -> Axes:
-    """The orbit of the journal of a bearing in its clearance from from_time to to_time in s, by default the last
-    0.1 s."""
+    """Draw the orbit of the journal of a bearing in its clearance.
+
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+    bearing : str
+        Name of the bearing; by default the first.
+    from_time, to_time : float, optional
+        Begin and end in s; by default the last 0.1 s.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    RunFileError
+        If the run lacks the bearing.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> ax = frbcli.draw_orbit(run)  # doctest: +SKIP
+    """
     ax = _axes(ax)
     end = ends(run)[1] if to_time is None else to_time
     draw_orbits(ax, [run], bearing, (max(end - LAST_s, 0.0) if from_time is None else from_time, end))
@@ -53,7 +108,41 @@ def waterfall(
     run: Run, ax: Axes | None = None, signal: str = "journal", over: Over = "time", window_s: float | None = None,
     direction: Direction = "x", scale: LevelScale = DECIBELS,
 ) -> Axes:  # fmt: skip
-    """The spectra of a point over time or rotor speed, as waterfall_figure has them, without the scale of colours."""
+    """Draw the spectra of a point over time or rotor speed, without the scale of colours.
+
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+    signal : str
+        The point: "journal", "disk", or the name of a bearing or disk.
+    over : {"time", "speed"}
+        The axis.
+    window_s : float, optional
+        Length of the windows in s; by default as the ramp asks for.
+    direction : {"x", "y", "forward"}
+        One coordinate, or the motion that turns with the rotor.
+    scale : LevelScale
+        Levels in dB or amplitudes in um, their limits, and the lines drawn in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    InputError
+        If the run does not have the point, or is shorter than a window.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> ax = frbcli.draw_waterfall(run, over="speed")  # doctest: +SKIP
+    """
     ax = _axes(ax)
     draw_levels(ax, run, signal, run_spectra(run, signal, window_s, direction), over, scale=scale)
     return ax
@@ -62,14 +151,70 @@ def waterfall(
 def spectrum(
     run: Run, time_s: float, ax: Axes | None = None, signal: str = "journal", window_s: float | None = None
 ) -> Axes:
-    """Peak amplitudes over frequency of x of a point about a time in s."""
+    """Draw the peak amplitudes of x of a point over frequency, about a time.
+
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    time_s : float
+        The time in s.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+    signal : str
+        The point: "journal", "disk", or the name of a bearing or disk.
+    window_s : float, optional
+        Length of the window in s; by default as the ramp asks for.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    InputError
+        If the run does not have the point, or is shorter than the window.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> ax = frbcli.draw_spectrum(run, 2.0)  # doctest: +SKIP
+    """
     ax = _axes(ax)
     draw_spectrum_at(ax, run, time_s, run_spectra(run, signal, window_s, "x"), signal)
     return ax
 
 
 def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time") -> Axes:
-    """Speeds of all floating rings in Hz over time or rotor speed."""
+    """Draw the speeds of all floating rings in Hz over time or rotor speed.
+
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+    over : {"time", "speed"}
+        The axis.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    RunFileError
+        If the run has no ring that turns.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> ax = frbcli.draw_ring_speed(run)  # doctest: +SKIP
+    """
     ax = _axes(ax)
     names = [name for name in run.signals if name.startswith("ring_speed")]
     draw_curves(ax, [run], [(name.removesuffix("_Hz"), [run.signal(name)]) for name in names], over, (None, None))
@@ -80,7 +225,37 @@ def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time") -> Axes:
 
 
 def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over: Over = "time") -> Axes:
-    """A film signal that a run has recorded by `output.signals`; part: 0 and 1 are x and y of "force"."""
+    """Draw a film signal that a run has recorded by `output.signals`.
+
+    Parameters
+    ----------
+    run : Run
+        A run, see `read_run`, `runup` and `measured_run`.
+    kind : str
+        "force", "film-thickness", "power", "torque" or "oil-flow".
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+    part : int
+        0 and 1 are x and y of "force".
+    over : {"time", "speed"}
+        The axis.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    RunFileError
+        If the run lacks the signal.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
+    >>> ax = frbcli.draw_film_signal(run, "power")  # doctest: +SKIP
+    """
     ax = _axes(ax)
     draw_film_signal(ax, [run], kind, part, over)
     finish(ax, over)
@@ -89,7 +264,26 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
 
 
 def campbell(found: Stability, ax: Axes | None = None) -> Axes:
-    """Damped eigenfrequencies over the rotor speed; filled dots grow."""
+    """Draw damped eigenfrequencies in Hz over the rotor speed; filled dots grow.
+
+    Parameters
+    ----------
+    found : Stability
+        See `stability`.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> ax = frbcli.draw_campbell(frbcli.stability(case))  # doctest: +SKIP
+    """
     ax = _axes(ax)
     draw_frequencies(ax, [point for point in found.sweep if point.rests])
     ax.set_xlabel("rotor speed in Hz")
@@ -98,7 +292,26 @@ def campbell(found: Stability, ax: Axes | None = None) -> Axes:
 
 
 def response(found: Response, ax: Axes | None = None) -> Axes:
-    """Amplitudes of all points over the rotor speed, dotted where a whirl grows."""
+    """Draw the amplitudes of all points over the rotor speed, dotted where a whirl grows.
+
+    Parameters
+    ----------
+    found : Response
+        See `response`.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> ax = frbcli.draw_response(frbcli.response(case))  # doctest: +SKIP
+    """
     ax = _axes(ax)
     draw_amplitude(ax, found)
     legend_beside(ax)
@@ -106,7 +319,28 @@ def response(found: Response, ax: Axes | None = None) -> Axes:
 
 
 def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = None) -> Axes:
-    """ "stiffness" or "damping" of the films over rotor speed or eccentricity."""
+    """Draw stiffness or damping of the films over rotor speed or eccentricity.
+
+    Parameters
+    ----------
+    sheet : BearingSheet
+        See `bearing_sheet` and `sommerfeld_chart`.
+    quantity : {"stiffness", "damping"}
+        In N/m or N s/m.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; without it those of a new figure, `ax.figure`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> ax = frbcli.draw_bearing(frbcli.bearing_sheet(case))  # doctest: +SKIP
+    """
     ax = _axes(ax)
     draw_coefficient(ax, sheet, quantity)
     ax.set_xlabel("eccentricity" if sheet.over == ECCENTRICITY else "rotor speed in Hz")
