@@ -71,8 +71,32 @@ class CriticalMap(Tabular):
 def critical_map(
     case: Case, stiffness: Sequence[float] | None = None, resting: Sequence[StabilityPoint] = ()
 ) -> CriticalMap:
-    """The map of the rotor of a case over a stiffness in N/m of each of its bearings, by default STIFFNESSES over
-    DECADES; resting: of the case, for the stiffness of its films. Raises InputError if a stiffness is not positive."""
+    """Map the undamped critical speeds of a rotor over the stiffness of its bearings.
+
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    stiffness : sequence of float, optional
+        Stiffness in N/m of each bearing, above 0; by default over several decades.
+    resting : sequence of StabilityPoint
+        Points of `stability`, for the stiffness of the films.
+
+    Returns
+    -------
+    CriticalMap
+        Critical speeds in Hz at each stiffness.
+
+    Raises
+    ------
+    InputError
+        If a stiffness is not positive.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> found = frbcli.critical_map(frbcli.load_case("turbocharger-car"), [1e6, 1e7])  # doctest: +SKIP
+    """
     require(case)
     if case.elements:
         problem = "has coefficients of its own, and the map is of a rotor on springs of one stiffness."

@@ -50,8 +50,30 @@ Decide = Callable[[str, object, str], None]
 
 
 def make_plan(case: Case) -> Plan:
-    """Plan a case: the cheapest that holds its target, or the most exact within its budget, where it sets no mesh and
-    tolerance of its own. Raises InputError naming every part of it that cannot be modelled."""
+    """Plan a case: the cheapest models that hold its target, or the most exact within its budget.
+
+    Parameters
+    ----------
+    case : Case
+        The machine. Mesh and tolerance that it sets are kept.
+
+    Returns
+    -------
+    Plan
+        What will be modelled, and why.
+
+    Raises
+    ------
+    InputError
+        Naming every part of it that cannot be modelled.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> frbcli.make_plan(case).theory
+    'short'
+    """
     require(case, RUN)
     target, budget = case.accuracy.target, case.accuracy.budget
     plan = _plan(case, target)
