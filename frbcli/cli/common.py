@@ -150,7 +150,7 @@ def _longest_word(column: Sequence[str]) -> int:
 
 
 def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[int | None]:
-    """Of the columns of a table that would be wider than `width`: at least their longest words; the rest of the room
+    """Widths of the columns of a table wider than `width`: at least their longest words; the rest of the room
     goes to those first that need little more. None where all fits, or where not even the words do."""
     cells = list(zip(columns, *rows, strict=True))
     whole = [max(len(line) for cell in column for line in cell.split("\n")) for column in cells]

@@ -55,7 +55,7 @@ class Display:
             self._draw(line)
 
     def now_and_then(self) -> NowAndThen:
-        """What redraws lines; without a terminal it prints them as one line, every TOLD_EVERY_s."""
+        """A function that redraws lines; without a terminal it prints them as one line, every TOLD_EVERY_s."""
         return NowAndThen(self)
 
     def counting(self, what: str = "") -> Callable[[int, int], None]:

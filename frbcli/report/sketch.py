@@ -149,8 +149,8 @@ def _symmetric(case: Case) -> str:
 
 
 def _place(case: Case, number: int) -> float:
-    """Of an element of a symmetric rotor, from the middle of a journal outwards over half its width: beside the film,
-    or spread over the journal."""
+    """The place of an element of a symmetric rotor, from the middle of a journal outwards over half its width: beside
+    the film, or spread over the journal."""
     if case.bearings:
         return 1.25 + 0.5 * number
     return 2.0 * (number + 0.5) / len(case.elements) - 1.0

@@ -84,7 +84,7 @@ class RunHeat:
         return [self._rows[:rows, TOLD * film + 2].copy() for film in range(len(self._names))]
 
     def numbers(self, rows: int) -> FilmNumbers | None:
-        """What heat has changed of the films in the rows that the loop has written; None without heat."""
+        """The numbers of the films that heat has changed, in the rows that the loop has written; None without heat."""
         if self._loop is None or self._heat is None:
             return None
         viscosities, clearances = (self._rows[:rows, each : TOLD * len(self._names) : TOLD] for each in (1, 2))

@@ -68,7 +68,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Deviation:
-    """Of the eccentricities from those of the first variant: the largest and the root mean square until until_s, in s,
+    """Deviation of the eccentricities from those of the first variant, the largest and the rms until until_s, in s,
     where either begins to whirl, touches its shell, or ends. NaN if that is at the very beginning."""
 
     largest: float

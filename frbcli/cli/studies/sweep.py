@@ -40,7 +40,7 @@ class Pool:
 
 @dataclass(frozen=True)
 class Kept:
-    """What is kept of the results, see the options of the command."""
+    """The results that are kept, see the options of the command."""
 
     no_runs: bool
     table_format: str

@@ -78,7 +78,7 @@ class Columns:
         return f"row {place + 1}" + (f" (line {self.lines[place]})" if self.lines else "")
 
     def listed(self) -> list[dict[str, Any]]:
-        """What the file holds, in its order: name, shape in the file, unit, and what it is where it is no column."""
+        """The content of the file, in its order: name, shape in the file, unit, and its kind where it is no column."""
         rows: list[dict[str, Any]] = []
         for name, values in self.values.items():
             shape = self.shapes.get(name) or self.shapes.get(name.rpartition(".")[0]) or (len(values),)

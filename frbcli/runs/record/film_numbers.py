@@ -1,4 +1,4 @@
-"""What heat changes of the films of a run, at its samples."""
+"""The numbers of the films of a run that heat changes, at its samples."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from frbcli.solve.state import Array
 
 @dataclass(frozen=True)
 class FilmNumbers:
-    """What heat changes of films, at the k samples, or once for all: clearances m, drags N m s, scales: 12 eta / psi^2
-    over that of the films as they were made; (k, films) or (1, films) each."""
+    """The numbers of films that heat changes, at the k samples, or once for all: (k, films) or (1, films) each.
+
+    clearances m; drags N m s; scales: 12 eta / psi^2 over that of the films as they were made.
+    """
 
     clearances: Array
     drags: Array

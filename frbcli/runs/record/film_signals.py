@@ -27,8 +27,11 @@ OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW)  # they ask for what is known at the
 
 @dataclass(frozen=True)
 class Samples:
-    """Of a run at k output times, SI: times (k,); displacements q, velocities v (k, n); noted (k, n + NOTES films), see
-    advance_watched of solve/watched.py, without columns if nothing is asked for that needs it."""
+    """States of a run at k output times, SI: times (k,); displacements q, velocities v (k, n).
+
+    noted (k, n + NOTES films): see advance_watched of solve/watched.py, without columns if nothing is asked for that
+    needs it.
+    """
 
     times: Array
     q: Array

@@ -39,5 +39,5 @@ HARD_RESULT = (
     Column("until", "s", "end of the comparison", attrgetter("until_s")),
     Column("cpu", "s", "CPU time", attrgetter("cpu_s"), shown=(Shown("CPU s", ".1f"),)),
     Column("problems", "", "deviations from the list", lambda result: "; ".join(result.problems), key=""),
-    Column("problems", "", "the same as a list", flat=False),
+    Column("problems", "", "deviations from the list, as a list", flat=False),
 )  # fmt: skip

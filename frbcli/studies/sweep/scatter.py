@@ -1,4 +1,4 @@
-"""What a sweep over samples says of many machines: percentiles, sensitivities, the share that whirls."""
+"""Statistics of a sweep over samples of machines: percentiles, sensitivities, the share that whirls."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Sensitivity:
 
 @dataclass(frozen=True)
 class Scatter:
-    """Of the machines of a sweep whose result is known.
+    """Statistics of the machines of a sweep whose result is known.
 
     count: these machines, left_out: the others; speeds_Hz: (count,) ascending rotor speed at which each begins to
     whirl, 0 for one that whirls from the lowest speed on, infinite for one that does not up to the highest;
