@@ -7,17 +7,17 @@ import math
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.linear.stability import default_speeds
-from frbcli.scene.gate.analysis import CYCLES, OIL_CYCLES
+from frbcli.scene.gate.analysis import CYCLES, SPEED_CYCLES
 from frbcli.scene.gate.gate import require
-from frbcli.scene.gate.static import keeps_oil
+from frbcli.scene.gate.static import by_shooting
 from frbcli.scene.keys import cavitation_keys
 from frbcli.scene.shafts.table import shaft_of
 
 
-def check(case: Case, with_oil: bool = False) -> tuple[float, float]:
-    """The range of speeds of a case in rad/s, the slowest above zero. with_oil: whether films may be mass-conserving.
-    Raises InputError."""
-    require(case, OIL_CYCLES if with_oil else CYCLES)
+def check(case: Case, shooting: bool = False) -> tuple[float, float]:
+    """The range of speeds of a case in rad/s, the slowest above zero. shooting: whether cycles may be found by shooting
+    on the time loop. Raises InputError."""
+    require(case, SPEED_CYCLES if shooting else CYCLES)
     speeds = default_speeds(case)
     if not speeds or not speeds[-1] > speeds[0]:
         problem, remedy = "leaves no range of speeds above zero.", 'Write e.g. speed.to = "300 Hz".'
@@ -32,9 +32,9 @@ def check_unbalance(case: Case) -> None:
     if not has_unbalance(case):
         problem, remedy = "is zero: no whirl has two frequencies.", 'Write e.g. rotor.unbalance = "3 g*mm".'
         faults.append(Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy))
-    if keeps_oil(case):
-        problem = "keeps its oil: its whirl with unbalance is not computed."
-        remedy = "Take half-sommerfeld or penalty here, and a run-up for this model."
+    if by_shooting(case):
+        problem = "keeps its oil, or has a force with kinks: its whirl with unbalance is not computed."
+        remedy = "Take half-sommerfeld without openings but grooves here, and a run-up for this model."
         faults += [Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case)]
     if faults:
         raise InputError(case.name or "case", tuple(faults))

@@ -15,11 +15,11 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.parts.machine import make_machine
 from frbcli.cycles.result import SPEED, LimitCycles, hertz
-from frbcli.cycles.shooting.diagram import limit_cycles_with_oil
+from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.scene.gate.static import keeps_oil
+from frbcli.scene.gate.static import by_shooting
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
@@ -52,8 +52,8 @@ def limit_cycles(
     Raises
     ------
     InputError
-        If the films have no force that follows from the motion alone, without a speed range, for a speed outside of it,
-        or with_unbalance for a case without unbalance or with films that keep their oil.
+        If openings turn beside oil that a film keeps, without a speed range, for a speed outside of it, or
+        with_unbalance for a case without unbalance or with films that keep their oil or whose force has kinks.
     NotConverged
         Without a resting position at the highest speed.
 
@@ -64,7 +64,7 @@ def limit_cycles(
     >>> found = frbcli.limit_cycles(case)  # doctest: +SKIP
     """
     begun = time.process_time()
-    slowest, fastest = check(case, with_oil=True)
+    slowest, fastest = check(case, shooting=True)
     if with_unbalance:
         check_unbalance(case)
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
@@ -73,8 +73,8 @@ def limit_cycles(
         remedy = "Ask for a speed within it, or set speed.from and speed.to."
         faults = tuple(Fault("speed", f"{hertz(speed):g} Hz", None, problem, remedy) for speed in outside)
         raise InputError(case.name or "case", faults)
-    if keeps_oil(case):
-        return _with_missing(limit_cycles_with_oil(case, slowest, fastest, asked, observe), speeds_Hz)
+    if by_shooting(case):
+        return _with_missing(limit_cycles_by_shooting(case, slowest, fastest, asked, observe), speeds_Hz)
     system = make_system(case, make_plan(case))
     machine = make_machine(system, fastest)
     try:

@@ -26,6 +26,9 @@ class KnownFlow:
     )
     control: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(contact_eccentricity=0.99))
 
+    places: tuple[float, ...] = ()
+    held: Array = field(default_factory=lambda: np.ones(1))
+
     def wet(self, z: Array, omega: float) -> Wet:
         return Wet(z[:2].copy(), z[2:].copy(), self.rate(z, omega), NO_OIL, NO_OIL, NO_OIL)
 

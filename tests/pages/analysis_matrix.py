@@ -13,7 +13,7 @@ import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
-from frbcli.scene.gate.analysis import BEARING, OIL_CYCLES, ROTATION, RUN, SQUEEZE, STABILITY, WHIRL
+from frbcli.scene.gate.analysis import BEARING, ROTATION, RUN, SPEED_CYCLES, SQUEEZE, STABILITY, WHIRL
 from frbcli.scene.gate.gate import require
 
 PAGE = DOCS / "matrix.md"
@@ -92,7 +92,7 @@ ANALYSES: dict[str, str] = {
     "whirl": WHIRL,
     "bearing": BEARING,
     "stability, response": STABILITY,
-    "limit cycles": OIL_CYCLES,
+    "limit cycles": SPEED_CYCLES,
 }
 HEAD = """# What goes with what
 

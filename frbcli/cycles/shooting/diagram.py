@@ -1,5 +1,5 @@
-"""Limit cycles of a case whose films keep their oil, over its speed: resting positions with the motions of their oil,
-Hopf points, and from each the branch of cycles by shooting."""
+"""Limit cycles of a case whose films are on cells, over its speed: resting positions with the motions of the oil that
+films keep, Hopf points, and from each the branch of cycles by shooting."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from frbcli.cycles.result import (
     hertz,
 )
 from frbcli.cycles.shooting.branch import follow_shots
-from frbcli.cycles.shooting.period_map import SAMPLES, period_map
+from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, period_map
 from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
-from frbcli.cycles.shooting.shots import PLACES, Rest, Shooting, Shot
+from frbcli.cycles.shooting.shots import Rest, Shooting, Shot
 from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
@@ -35,10 +35,11 @@ HELD = 0.05  # error of the trivial multiplier from which on it is told
 FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
 
 
-def limit_cycles_with_oil(
+def limit_cycles_by_shooting(
     case: Case, slowest: float, fastest: float, asked: Sequence[float], observe: Observer | None = None
 ) -> LimitCycles:
-    """As limit_cycles, for films that keep their oil; speeds in rad/s, asked: at which cycles are computed exactly.
+    """As limit_cycles, for films on cells that keep their oil or whose force has kinks; speeds in rad/s, asked: those
+    at which cycles are computed exactly.
 
     Raises NotConverged where no resting position is found.
     """
@@ -68,7 +69,7 @@ def limit_cycles_with_oil(
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(begin, len(branches), shots[0] if shots else None))
-        branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_cells(note, shots)))
+        branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_cells(flow, note, shots)))
     for number, branch in enumerate(branches):
         special += [_special(point, number) for point in branch.points if point.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
@@ -98,10 +99,10 @@ def _branch(
     return (), "No cycle was found beside the Hopf point."
 
 
-def _with_cells(note: str, shots: Sequence[Shot]) -> str:
+def _with_cells(flow: PeriodMap, note: str, shots: Sequence[Shot]) -> str:
     """The note of a branch, which says where the mean of a cycle lacks places of its cells, and where these hold it."""
-    told, places = [note], 1 + len(PLACES)
-    lacking = sum(len(shot.others) < len(PLACES) for shot in shots)
+    told, places = [note], 1 + len(flow.places)
+    lacking = sum(len(shot.others) < len(flow.places) for shot in shots)
     if lacking > 0:
         told.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
     held = max((shot.multipliers.defect for shot in shots), default=0.0)
@@ -112,8 +113,9 @@ def _with_cells(note: str, shots: Sequence[Shot]) -> str:
 
 def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[RestThreshold]) -> list[str]:
     around, along = shooting.flow.films.cells.shape[2:]
+    kept = "keep their oil, on" if shooting.flow.held.any() else "are on"
     notes = [
-        f"The films keep their oil, on {around} x {along} cells: cycles are found by shooting on the time loop, "
+        f"The films {kept} {around} x {along} cells: cycles are found by shooting on the time loop, "
         "with the error of the cells; multipliers are known to 5e-3."
     ]
     between = f"{hertz(rests[0].omega):.4g} and {hertz(rests[-1].omega):.4g} Hz"

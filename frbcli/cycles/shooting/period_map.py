@@ -1,9 +1,10 @@
-"""What a time of constant speed makes of a machine whose films keep their oil: the map of the time loop that runs use.
+"""What a time of constant speed makes of a machine with films on cells: the map of the time loop that runs use.
 
-The state is x = (q, v, theta): displacements and velocities of the rotor, and the oil fraction of each cell, seen from
-the housing. Plain films have cells that turn with the oil; what they hold is brought back over the angle that they
-have turned by, with cubics through four cells. The steps are of equal length and their number is fixed, so
-that the map is smooth enough for differences: error control would change it from one evaluation to the next.
+The state is x = (q, v, theta): displacements and velocities of the rotor, and the oil fraction of each cell of the
+films that keep their oil, seen from the housing. Plain films have cells that turn with the oil; what they hold is
+brought back over the angle that they have turned by, with cubics through four cells. The steps are of equal length and
+their number is fixed, so that the map is smooth enough for differences: error control would change it from one
+evaluation to the next.
 """
 
 from __future__ import annotations
@@ -48,6 +49,7 @@ STEPS_PER_REVOLUTION = 100
 TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differences of the map
 FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
+PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
 SAMPLES = 256  # moments at which displacements are told
 MOST_STEPS = 10**6
 
@@ -78,7 +80,8 @@ class Passage:
 @dataclass(frozen=True)
 class PeriodMap:
     """The time loop of a system without unbalance; turned: (F, 1 + rings) shares in the speed of each film's cells;
-    begun: (1 + rings,) angles in rad of rotor and rings at the start, which say how the cells lie there."""
+    begun: (1 + rings,) angles in rad of rotor and rings at the start, which say how the cells lie there; held: (F, m,
+    k) the cells whose oil is part of the state."""
 
     system: System
     films: VolumeFilms
@@ -93,6 +96,11 @@ class PeriodMap:
     def scale(self) -> float:
         """Clearance in m over which displacements of the state are told."""
         return float(self.clearances[0])
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Further PLACES of the cells at the start of a cycle, which matter where cells turn."""
+        return PLACES if self.turned.any() else ()
 
     def packed(self, wet: Wet, omega: float) -> Array:
         """The state of a machine, of the order of 1; omega: speed in rad/s over which velocities are told."""
@@ -214,7 +222,7 @@ def period_map(case: Case) -> PeriodMap:
         clearances=np.array(system.clearances),
         turned=system.turning[:, GRID],
         begun=np.zeros(1 + system.ring_count),
-        held=films.cells[:, UNKNOWN] != 0.0,
+        held=(films.cells[:, UNKNOWN] != 0.0) & np.array(system.films.remembering)[:, None, None],
     )
 
 

@@ -1,9 +1,9 @@
-"""Resting positions of machines whose films keep their oil, and their Hopf points.
+"""Resting positions of machines with films on cells, and their Hopf points.
 
 How fast a small motion grows is known from differences of the time loop, across the kinks that fronts of the oil leave
-when they cross cells: it scatters by some 0.07 1/s between neighbouring speeds. A Hopf point is therefore where the
-parabola through the rates of several speeds is zero. Its uncertainty has two parts: how far the rates lie off the
-parabola, and how much they change with the size of the disturbance, whose error goes with its square.
+when they cross cells: it scatters, with oil by some 0.07 1/s between neighbouring speeds. A Hopf point is therefore
+where the parabola through the rates of several speeds is zero. Its uncertainty has two parts: how far the rates lie off
+the parabola, and how much they change with the size of the disturbance, whose error goes with its square.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.shooting.period_map import wet_at
-from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, PLACES, Rest, Shooting
+from frbcli.cycles.shooting.shots import Rest, Shooting
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
@@ -86,7 +86,7 @@ def located(shooting: Shooting, low: Rest, high: Rest, number: int = 0) -> RestT
     rest = shooting.rest(near.wet, fit.zero)
     if rest is None:
         return _threshold(near, math.nan)
-    wider = shooting.rest(rest.wet, fit.zero, WIDER * AT_REST_DIFFERENCE)
+    wider = shooting.rest(rest.wet, fit.zero, WIDER)
     if wider is None:
         return _threshold(rest, math.nan)
     bent = abs(wider.growth_of(number) - rest.growth_of(number)) / (WIDER**2 - 1.0) / abs(fit.slope)
@@ -111,7 +111,7 @@ def _fitted(shooting: Shooting, near: Rest, number: int) -> _Fit:
     """The parabola through the rates of a whirl about the speed of a resting position.
 
     The cells lie in different places from one speed to the next: else what they leave changes little between them."""
-    places = [Shooting(shooting.flow.lying(place), shooting.unit) for place in PLACES]
+    places = [Shooting(shooting.flow.lying(place), shooting.unit) for place in shooting.flow.places]
     middle = near.omega
     off, rates = [], []
     for share, one in zip(np.linspace(-1.0, 1.0, FITTED), itertools.cycle([shooting, *places]), strict=False):

@@ -1,4 +1,4 @@
-"""Limit cycles and resting positions of machines whose films keep their oil, found by shooting.
+"""Limit cycles and resting positions of machines with films on cells, found by shooting.
 
 A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
 the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on
@@ -36,12 +36,11 @@ from frbcli.rotor.order import largest_first
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3
 SLOWEST = 0.05  # frequency over the speed above which a slow motion at rest is a whirl
 REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
-AT_REST_DIFFERENCE = 2e-2  # by which states are disturbed at rest: the kinks blur less, and the gap is wide
+AT_REST_DIFFERENCE = 2e-2  # by which states with oil are disturbed at rest: the kinks blur less, and the gap is wide
 DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are told apart by their sum
 WIDE = 0.2  # smallest gap from which on disturbances have their full size
 
@@ -142,11 +141,16 @@ class Shooting:
         """The rotor speed of a cycle."""
         return math.exp(float(shot.mean_p[1])) * hertz(self.unit)
 
-    def rest(self, near: Wet, omega: float, difference: float = AT_REST_DIFFERENCE) -> Rest | None:
+    @property
+    def at_rest_difference(self) -> float:
+        """By which states are disturbed at rest."""
+        return AT_REST_DIFFERENCE if self.flow.held.any() else DIFFERENCE
+
+    def rest(self, near: Wet, omega: float, wider: float = 1.0) -> Rest | None:
         """The resting position at a speed, as a fixed point of the map over half a revolution: whirls of up to the
-        speed of the rotor have frequencies of their own in it. None if it does not converge. difference: by which
-        states are disturbed."""
-        time, none = math.pi / omega, np.zeros(0)
+        speed of the rotor have frequencies of their own in it. None if it does not converge. wider: factor of what
+        states are disturbed by."""
+        time, none, difference = math.pi / omega, np.zeros(0), wider * self.at_rest_difference
         asked = _Asked(self, near, STEPS_PER_REVOLUTION // 2)
 
         def mapped(x: Array, _: Array) -> Array:
@@ -236,7 +240,7 @@ class Shooting:
             return None
         phase = self._phase(wet)
         tangent = direction_along(space, phase, shot.tangent)
-        others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in PLACES)
+        others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in self.flow.places)
         return Shot(
             x, p, wet, passage.displacements, space, tangent, multipliers_of(space, phase), shot.steps,
             tuple(each for each in others if each is not None),

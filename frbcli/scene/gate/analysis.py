@@ -7,7 +7,7 @@ RUN = "run"  # run-up, run-down, sweep, fit and compare
 ROTATION, SQUEEZE, WHIRL = KINEMATIC = "rotation", "squeeze", "whirl"
 BEARING = "bearing sheet"
 STABILITY = "stability"  # and response and damped modes
-CYCLES, OIL_CYCLES = "limit cycles", "limit cycles of films that keep oil"
+CYCLES, SPEED_CYCLES = "limit cycles", "limit cycles over the speed"
 
-ALL = (FILMS, RUN, *KINEMATIC, BEARING, STABILITY, CYCLES, OIL_CYCLES)
-EVERY_CYCLE = (CYCLES, OIL_CYCLES)
+ALL = (FILMS, RUN, *KINEMATIC, BEARING, STABILITY, CYCLES, SPEED_CYCLES)
+EVERY_CYCLE = (CYCLES, SPEED_CYCLES)

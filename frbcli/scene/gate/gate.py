@@ -24,8 +24,8 @@ from frbcli.scene.gate.analysis import (
     EVERY_CYCLE,
     FILMS,
     KINEMATIC,
-    OIL_CYCLES,
     RUN,
+    SPEED_CYCLES,
     STABILITY,
 )
 from frbcli.scene.machine.elements import element_faults, speed_dependent, without_film
@@ -72,7 +72,7 @@ RULES = (
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(_without_film("a kinematic test is of one"), KINEMATIC),
     Rule(_without_film("the sheet is of films"), (BEARING,)),
-    Rule(_without_film("limit cycles are those of films"), EVERY_CYCLE),
+    Rule(_without_film("a linear machine has no limit cycle"), EVERY_CYCLE),
     *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
     Rule(_of_films(films.model_faults), (RUN, *KINEMATIC)),
@@ -86,7 +86,8 @@ RULES = (
     Rule(lambda case: speed_dependent(case, CONSTANT), EVERY_CYCLE),
     Rule(static.cycle_heat_faults, EVERY_CYCLE),
     Rule(static.smooth_faults, (CYCLES,)),
-    Rule(static.oil_cycle_faults, (OIL_CYCLES,)),
+    Rule(static.speed_cycle_faults, (SPEED_CYCLES,)),
+    Rule(static.still_ring_faults, EVERY_CYCLE),
     Rule(runs.number_faults, (RUN,), last=True),
     Rule(lambda case: films.force_faults(case, _run_omega(case)), (RUN,), last=True),
     Rule(lambda case: films.force_faults(case, motion_omega(case)), KINEMATIC, last=True),

@@ -61,27 +61,40 @@ def smooth_faults(case: Case) -> Iterator[Fault]:
         yield from (Fault(key, name, None, problem, remedy) for key, name in keeping.items())
     elif needs_cells(case) and not turning_openings(case):
         problem = "is solved on cells, where the force has no continuous derivative."
-        remedy = "Take half-sommerfeld, and no openings but circumferential grooves and feed holes that turn."
+        remedy = "Go over the speed alone, or take half-sommerfeld, with grooves or feed holes that turn only."
         yield from (Fault(key, name, None, problem, remedy) for key, name in named.items())
 
 
-def oil_cycle_faults(case: Case) -> Iterator[Fault]:
-    """Mass-conserving films whose map over a period is not the same at each start: their openings turn. And those of
-    the published form, whose oil is not on cells."""
-    if not keeps_oil(case):
+def speed_cycle_faults(case: Case) -> Iterator[Fault]:
+    """Films whose map over a period is not the same at each start, since their openings turn; and the published form,
+    whose oil is not on cells."""
+    if not by_shooting(case):
         yield from smooth_faults(case)
-        return
-    named = cavitation_keys(case)
-    kept = all(law_named(name).keeps_oil for _, name in named)
-    turn = any(
+    elif is_published(case):
+        problem, remedy = "is not on cells, whose oil a limit cycle is made of.", 'Write form = "conservative".'
+        yield Fault("film.two-phase.form", "published", None, problem, remedy)
+    elif any(
         place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
         for place in film_places(case)
-    )
-    if kept and not turn and not is_published(case):
-        return
-    problem = "has limit cycles only without openings that turn, with the oil of all films on cells."
-    remedy = "Leave feed holes that turn and the published form out, or take a run-up."
-    yield from (Fault(key, name, None, problem, remedy) for key, name in named)
+    ):
+        problem = "has openings that turn: the force follows their angle, and no motion comes back after one period."
+        remedy = "Leave feed holes that turn out, or take a run-up."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case))
+
+
+def still_ring_faults(case: Case) -> Iterator[Fault]:
+    """Rings that do not turn and are loaded: between them and the housing nothing turns that would carry."""
+    problem = "leaves the outer film still, which then carries no weight: the ring rests on its shell."
+    remedy = 'Write spin = "free".'
+    for index, bearing in enumerate(case.bearings):
+        if case.rotor.gravity > 0.0 and isinstance(bearing, FloatingRingBearing) and bearing.ring.spin == "blocked":
+            yield Fault(f"{bearing_key(case, index)}.ring.spin", "blocked", None, problem, remedy)
+
+
+def by_shooting(case: Case) -> bool:
+    """Whether limit cycles are found by shooting on the time loop: films keep their oil, or are on cells, where their
+    force has kinks."""
+    return keeps_oil(case) or (needs_cells(case) and not turning_openings(case))
 
 
 def keeps_oil(case: Case) -> bool:

@@ -1,0 +1,89 @@
+"""Limit cycles of films on cells that keep no oil and whose force has kinks, by shooting."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import frbcli
+from frbcli.cycles.faults import check
+from frbcli.cycles.result import LimitCycles
+from frbcli.cycles.shooting.period_map import PeriodMap, period_map, wet_at
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting, largest
+from frbcli.equilibrium.resting import resting_position
+from frbcli.linear.stability_point import critical_eigenvalue, eigenvalues
+
+REYNOLDS = ("film.cavitation=reynolds", "accuracy.mesh=[6,32]")
+RANGE_Hz, ASKED_Hz = (212.0, 232.0), 222.0
+
+
+@lru_cache
+def flow() -> PeriodMap:
+    return period_map(frbcli.load_case("rigid", REYNOLDS))
+
+
+@lru_cache
+def diagram() -> LimitCycles:
+    speeds = [f"speed.{end}={speed} Hz" for end, speed in zip(("from", "to"), RANGE_Hz, strict=True)]
+    return frbcli.limit_cycles(frbcli.load_case("rigid", [*REYNOLDS, *speeds]), [ASKED_Hz])
+
+
+def by_coefficients(speed_Hz: float) -> complex:
+    """The eigenvalue of the whirl on the derivatives of the force on the same cells."""
+    omega, system = 2.0 * math.pi * speed_Hz, flow().system
+    films = resting_position(system, omega).films
+    k, d = (-np.array([getattr(film, name) for film in films]) for name in ("by_displacement", "by_velocity"))
+    return critical_eigenvalue(eigenvalues(system.rotor, omega, k, d))
+
+
+def test_the_state_is_that_of_the_rotor_alone() -> None:
+    assert not flow().held.any()
+    assert flow().places == ()
+
+
+def test_small_motions_at_rest_have_the_eigenvalues_of_the_coefficients() -> None:
+    omega = 2.0 * math.pi * 120.0
+    rest = settled(Shooting(flow(), omega), omega)
+    assert rest is not None
+    position = resting_position(flow().system, omega)
+    np.testing.assert_allclose(rest.displacement, position.journals / flow().clearances[0], atol=1e-6)
+    expected = by_coefficients(120.0)
+    assert abs(rest.eigenvalues[rest.whirls[0]] - expected) < 1e-3 * abs(expected)
+
+
+def test_the_hopf_point_is_the_threshold_of_the_coefficients() -> None:
+    """Disturbances of 2 % of the clearance cross cells: the growth differs by what the kinks leave."""
+    (hopf,) = diagram().of("hopf")
+    threshold = brentq(lambda speed: by_coefficients(speed).real, *RANGE_Hz)
+    assert hopf.speed_Hz == pytest.approx(threshold, abs=5.0 * hopf.uncertainty_Hz)
+    assert hopf.uncertainty_Hz < 0.1
+    assert hopf.frequency_Hz == pytest.approx(by_coefficients(threshold).imag / (2.0 * math.pi), rel=2e-3)
+
+
+def test_the_time_loop_goes_to_the_stable_motions_on_both_sides_of_the_unstable_cycle() -> None:
+    """Below the Hopf point, above the fold: rest from a small displacement, the large cycle from a wide one."""
+    (branch,) = diagram().branches
+    unstable, stable = (point for point in branch.points if point.kind == "asked")
+    assert (unstable.stable, stable.stable) == (False, True)
+    assert unstable.eccentricity_max[0] < stable.eccentricity_max[0]
+    omega = 2.0 * math.pi * ASKED_Hz
+    rest = resting_position(flow().system, omega)
+    for eccentricity, expected in ((0.25, float(np.hypot(*rest.journals[0]) / flow().clearances[0])),
+                                   (0.9, float(stable.eccentricity_max[0]))):  # fmt: skip
+        q = np.array([eccentricity * flow().clearances[0], 0.0])
+        start = wet_at(flow(), q, np.zeros(2), omega)
+        turns = 240  # small motions decay with 5.9 1/s, to a thousandth
+        after = flow().passage(start, turns * 2.0 * math.pi / omega, omega, 100 * turns).end
+        whirl = flow().passage(after, 2.0 / stable.frequency_Hz, omega, 400)
+        assert largest(whirl.displacements)[0] == pytest.approx(expected, abs=5e-3)
+
+
+def test_a_ring_that_stands_still_has_no_resting_position_under_a_weight() -> None:
+    blocked = frbcli.load_case("floating-ring", ["bearing.ring.spin=blocked"])
+    with pytest.raises(frbcli.InputError, match="outer film still"):
+        check(blocked, shooting=True)
