@@ -147,8 +147,6 @@ def test_functions_are_short_and_take_few_arguments(file: Path) -> None:
 
 
 MOST_FILES = 12
-# Rooms that hold more, until they are grouped. No other one may.
-LARGER_ROOMS: frozenset[str] = frozenset({"bearing_tests", "rotor"})
 
 
 ROOMS = sorted({file.parent for folder in (PACKAGE, PROJECT / "tests") for file in folder.rglob("*.py")})
@@ -157,8 +155,7 @@ ROOMS = sorted({file.parent for folder in (PACKAGE, PROJECT / "tests") for file 
 @pytest.mark.parametrize("room", ROOMS, ids=lambda room: str(room.relative_to(PROJECT)))
 def test_rooms_are_small(room: Path) -> None:
     """A stranger can draw a room after one look; the folders of the tests count, too."""
-    name = room.relative_to(PROJECT).as_posix().removeprefix("frbcli/")
-    assert len(list(room.glob("*.py"))) <= MOST_FILES or name in LARGER_ROOMS
+    assert len(list(room.glob("*.py"))) <= MOST_FILES
 
 
 def test_a_class_name_has_one_meaning() -> None:
