@@ -76,6 +76,8 @@ def _leaves_5(path: Path) -> Iterator[Leaf]:
 
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # of a variable that stands there twice
+        for coming in (DeprecationWarning, FutureWarning):  # of scipy, about what it will return: not of the file
+            warnings.simplefilter("ignore", coming)
         variables = loadmat(path)
     for name, value in variables.items():
         if not name.startswith("__"):
