@@ -17,7 +17,7 @@ from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
 Values = NDArray[np.float64]
 Motion = NDArray[np.complex128]
 
-KINDS = ("journal", "disk", "ring")  # of points
+KINDS = ("journal", "disk", "ring", "support")  # of points
 END = "_x_m"
 PIECE = 2**17  # samples of a signal that are looked at together: 1 MB
 CORNERS = 400  # intervals of a run in which its ramp is determined
@@ -110,8 +110,8 @@ def pieces(count: int) -> Iterator[tuple[int, int]]:
 
 
 def located(run: RunLike, node: str) -> tuple[str, str]:
-    """Kind and name of "disk", "journal" (the first, if there are several), "journal_NAME" of a bearing or "disk_NAME"
-    of a disk; NAME alone, of a bearing its journal, will do where a bearing and a disk do not share it."""
+    """Kind and name of "disk", "journal" (the first, if there are several), "journal_NAME" or "support_NAME" of a
+    bearing or "disk_NAME" of a disk; NAME alone, of a bearing its journal, will do where a bearing and a disk do not share it."""
     alone = [kind for kind in ("journal", "disk") if node in points(run.signals, kind)]
     if len(alone) == 1 and node not in KINDS:
         return alone[0], node
@@ -136,7 +136,7 @@ def joined(*words: str) -> str:
 
 
 def points(names: Iterable[str], kind: str) -> Iterator[str]:
-    """The names behind "journal", "disk" or "ring" in the signals: "" of one alone, or that of a bearing or a wheel."""
+    """The names behind one of KINDS in the signals: "" of one alone, or that of a bearing or a wheel."""
     for name in names:
         if name.endswith(END) and (name == kind + END or name.startswith(kind + "_")):
             yield name[len(kind) + 1 : -len(END)]

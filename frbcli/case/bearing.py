@@ -37,6 +37,7 @@ from frbcli.case.quantities import (
 )
 from frbcli.case.supplies.none import NoSupply
 from frbcli.case.supplies.table import Supply
+from frbcli.case.surroundings.support import Support
 from frbcli.case.thermal import ROOM_TEMPERATURE, AnyWall, Material
 from frbcli.materials.solids import SOLIDS, Solid
 
@@ -130,6 +131,7 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     kind: Literal["single-film"] = Field(description="one film between journal and shell")
     name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed to the ground if not given")
 
 
 class RingFilm(FilmGeometry):
@@ -186,6 +188,7 @@ class FloatingRingBearing(BearingWalls):
         description="feed holes of the inner film in the ring: at given pressure, or coupled to the outer film: "
         "oil that leaves one film enters the other",
     )
+    support: Support | None = Field(default=None, description="its shell as a body; fixed to the ground if not given")
 
     @property
     def ring_mass(self) -> float:

@@ -12,6 +12,7 @@ from pydantic_core import CoreSchema
 
 from frbcli.case.model import Model
 from frbcli.case.quantities import Identifier, Label, Position, Quantity, SignedSpeed
+from frbcli.case.surroundings.support import Support
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
 DampingEntry = Annotated[float, Quantity("N*s/m", "1e3 N*s/m")]
@@ -66,7 +67,7 @@ class CoefficientsOverSpeed(Model):
 
 
 class CoefficientsBearing(Model):
-    """Given coefficients between shaft and ground: a seal, a mount, any bearing. The force on the shaft is
+    """Given coefficients between shaft and ground or support: a seal, a mount, any bearing. The force on the shaft is
     -K d - C d' - M d'' with the displacement d of the shaft from the middle."""
 
     kind: Literal["coefficients"] = Field(description="given stiffness, damping and mass, without a film")
@@ -89,6 +90,7 @@ class CoefficientsBearing(Model):
     over_speed: CoefficientsOverSpeed | None = Field(
         default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
     )
+    support: Support | None = Field(default=None, description="its shell as a body; fixed to the ground if not given")
 
 
 Element = CoefficientsBearing

@@ -89,7 +89,7 @@ def speeds_option(default: str) -> Callable[[Function], Function]:
 
 def signal_option(default: str | None = "journal") -> Callable[[Function], Function]:
     """Give a command the option --signal, a point of the rotor."""
-    words = "Point of the rotor: journal or disk; NAME of a bearing or disk."
+    words = "Point of the machine: journal, disk or support; NAME of a bearing or disk."
     return click.option("--signal", default=default, show_default=default is not None, metavar="POINT", help=words)
 
 

@@ -27,6 +27,7 @@ from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.scene.gate.gate import require
 from frbcli.scene.keys import element_keys
+from frbcli.scene.machine.elements import support_faults
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.shafts.table import shaft_of
 
@@ -103,6 +104,9 @@ def critical_map(
         key = f"{element_keys(case)[0]}.kind"
         fault = Fault(key, case.elements[0].kind, None, problem, "Leave --map out: the response has its own peaks.")
         raise InputError(case.name or "case", (fault,))
+    on_ground = "the map is of a rotor on springs to the ground"
+    if faults := support_faults(case, on_ground, "Leave --map out: the response has its own peaks."):
+        raise InputError(case.name or "case", tuple(faults))
     given = _default(case) if stiffness is None else np.array(sorted(stiffness), dtype=np.float64)
     if not len(given) or not (np.isfinite(given).all() and given[0] > 0.0):
         fault = Fault("stiffness", "", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".')

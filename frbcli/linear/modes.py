@@ -23,7 +23,7 @@ from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.order import first_largest, ranks
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, whirl_modes
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import element_springs
+from frbcli.scene.machine.elements import element_springs, support_faults
 from frbcli.scene.shafts.table import shaft_of
 
 if TYPE_CHECKING:
@@ -110,8 +110,8 @@ def natural_modes(
     Raises
     ------
     InputError
-        If the case has another rotor, if a speed is negative, if a stiffness is not greater than 0, or if there are not
-        as many as bearings.
+        If the case has another rotor or, with a stiffness, bearings on supports, if a speed is negative, if a stiffness
+        is not greater than 0, or if there are not as many as bearings.
 
     Examples
     --------
@@ -119,6 +119,10 @@ def natural_modes(
     >>> modes = frbcli.natural_modes(frbcli.load_case("turbocharger-car"), 1e7)  # doctest: +SKIP
     """
     require(case)
+    what = "these are the modes of a shaft on springs to the ground"
+    remedy = "Leave the stiffness out, or take the damped modes, frb stability --shapes SPEED, which have supports."
+    if stiffness is not None and (faults := support_faults(case, what, remedy)):
+        raise InputError(case.name or "case", tuple(faults))
     free = shaft_of(case).free()
     speeds = np.linspace(0.0, max(case.speed.start, case.speed.end), SPEEDS) if speeds_Hz is None else speeds_Hz
     springs = _springs(case, stiffness)

@@ -10,9 +10,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.bearing import FilmGeometry, SingleFilmBearing
+from frbcli.case.bearing import FilmBearing, FilmGeometry, SingleFilmBearing
 from frbcli.case.schema import Case
-from frbcli.report.element_symbols import symbol
+from frbcli.report.element_symbols import HIGH, height, support_symbol, symbol
 from frbcli.report.svg import box, curve, drawing, element, line, text
 from frbcli.scene.films import film_places
 from frbcli.scene.shafts.table import shaft_of
@@ -65,6 +65,8 @@ def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
 def _bearing_parts(case: Case, number: int, at: float, scale: _SketchScale) -> Iterator[str]:
     """A bearing with its middle at z = at, in m; shells are as thick as they look."""
     bearing = case.bearings[number]
+    if bearing.support is not None:
+        yield from support_symbol(scale.left + scale.per_m * at, scale.middle, scale.per_m * _shell_radius(bearing))
     if isinstance(bearing, SingleFilmBearing):
         yield from _shell(bearing, at, scale, "shell")
         return
@@ -92,8 +94,20 @@ def _supply(film: FilmGeometry, at: float, outer: float, scale: _SketchScale) ->
 
 
 def _largest_radius(case: Case) -> float:
-    films = [b if isinstance(b, SingleFilmBearing) else b.outer for b in case.bearings]
-    return max(((1.0 + HOUSING) * 0.5 * film.diameter for film in films), default=0.0)
+    return max(map(_shell_radius, case.bearings), default=0.0)
+
+
+def _shell_radius(bearing: FilmBearing) -> float:
+    """Outer radius of the shell of a bearing, m."""
+    film = bearing if isinstance(bearing, SingleFilmBearing) else bearing.outer
+    return (1.0 + HOUSING) * (0.5 * film.diameter + film.clearance)
+
+
+def _with_supports(case: Case, half: float, per_m: float, shaft: float) -> float:
+    """Half the height of a drawing that has room for its supports. shaft: largest radius of the elements, m."""
+    shells = [per_m * _shell_radius(bearing) + HIGH for bearing in case.bearings if bearing.support is not None]
+    ends = [per_m * shaft + height(element) for element in case.elements if element.support is not None]
+    return max([half, *shells, *ends])
 
 
 def _of_sections(case: Case) -> str:
@@ -103,7 +117,8 @@ def _of_sections(case: Case) -> str:
     left = min([0.0, *(disk.position - 0.5 * width for disk, _, width in disks)])
     right = max([length, *(disk.position + 0.5 * width for disk, _, width in disks)])
     per_m = min((WIDTH - 2.0 * MARGIN) / (right - left), HIGHEST / reach)
-    half = per_m * reach
+    thickest = max(0.5 * section.diameter for section in case.shaft)
+    half = _with_supports(case, per_m * reach, per_m, thickest)
     scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * (right + left)), half + 30.0)
     parts, z = [], 0.0
     for disk, radius, width in disks:
@@ -131,7 +146,7 @@ def _symmetric(case: Case) -> str:
     disk = max(DISK * journal, 1.1 * _largest_radius(case))
     half_width = 0.5 * max(width, _outer_width(case))
     per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
-    half = per_m * disk
+    half = _with_supports(case, per_m * disk, per_m, journal)
     scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
     thin = 0.45 * journal if shaft_of(case).elastic else journal
     parts = [scale.box(0.0, span, 0.0, thin, "vague")]
@@ -144,7 +159,7 @@ def _symmetric(case: Case) -> str:
             place = at + half_width * _place(case, number) * (1.0 if at else -1.0)
             parts += symbol(each, scale.left + per_m * place, scale.middle, per_m * journal)
         parts.append(_named("bearing", at, scale, half + 16.0))
-    parts.append(_named(f"{shaft_of(case).disk_mass:.4g} kg", 0.5 * span, scale, -half - 6.0))
+    parts.append(_named(f"{shaft_of(case).disk_mass:.4g} kg", 0.5 * span, scale, -per_m * disk - 6.0))
     return _finish(parts, scale, half, None, bool(case.bearings))
 
 

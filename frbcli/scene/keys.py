@@ -12,6 +12,11 @@ def bearing_key(case: Case, index: int) -> str:
     return _key(case, [i for i, bearing in enumerate(case.given_bearings) if not isinstance(bearing, Element)][index])
 
 
+def all_keys(case: Case) -> tuple[str, ...]:
+    """The keys of all bearings, with or without a film, in the order of the case file."""
+    return tuple(_key(case, i) for i in range(len(case.given_bearings)))
+
+
 def element_keys(case: Case) -> tuple[str, ...]:
     """The keys of the bearings without a film, in their order."""
     return tuple(_key(case, i) for i, bearing in enumerate(case.given_bearings) if isinstance(bearing, Element))

@@ -27,6 +27,7 @@ SLOTS = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", le
 HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
 OIL = "oil.viscosity={grade='SAE 10W-40'}"
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
+SUPPORT = 'bearing.support={mass="2 kg", stiffness="1e7 N/m"}'
 SPRING = '{kind="coefficients", name="seal", stiffness="1e5 N/m"}'
 
 # Row of the table: a shipped case, and what is set in it.
@@ -56,6 +57,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "co-simulation": ("jeffcott", ("film.coupling=co-simulation",)),
     "turbocharger on two bearings": ("turbocharger-heavy", ()),
     "coefficients alone": ("seal", ()),
+    "bearings on supports": ("jeffcott", (SUPPORT,)),
 }
 
 # Pairs of features that a run may have together.

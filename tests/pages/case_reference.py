@@ -52,6 +52,7 @@ TABLES = {
     '[bearing] kind = "floating-ring"': "FloatingRingBearing",
     '[bearing] kind = "coefficients"': "CoefficientsBearing",
     "over_speed = { ... }": "CoefficientsOverSpeed",
+    "[bearing.support]": "Support",
     "[bearing.ring]": "Ring",
     "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",

@@ -25,10 +25,11 @@ def has_films(data: Mapping[str, Any]) -> bool:
 
 
 def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
-    """Every broken rule of elements without a film."""
+    """Every broken rule of elements without a film, and of supports."""
     for path, bearing in tables(data, "bearing"):
         if bearing.get("kind") == "coefficients":
             yield from _coefficients(path, bearing)
+        yield from _support((*path, "support"), bearing.get("support"), data)
     if has_films(data):
         return
     for place in OF_FILMS:
@@ -37,6 +38,17 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
             yield Breach(place, "has no effect: no bearing has a film.", REMEDY)
     if "motion" in data:
         yield Breach(("motion",), "is a kinematic test of a film, and no bearing has one.", REMEDY)
+
+
+def _support(path: Path, support: object, data: Mapping[str, Any]) -> Iterator[Breach]:
+    if not isinstance(support, dict):
+        return
+    if "rotor" not in data:
+        problem = "has no effect: a kinematic test moves the journal against its shell."
+        yield Breach(path, problem, "Remove it, or add [rotor] and [speed].")
+    if number(support, "mass", "kg") == 0.0:
+        remedy = 'Write a small one, e.g. "1 g": it changes the stiffness by mass times the square of the frequency.'
+        yield Breach((*path, "mass"), "is 0, and the shell is a body with an equation of motion.", remedy)
 
 
 def _coefficients(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:

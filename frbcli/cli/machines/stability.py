@@ -69,7 +69,9 @@ def command(
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
-    if len(natural) == 1 and found.points[-1].rests:
+    if natural and _on_supports(found):
+        terminal.result("On supports, the modes are those of the whole machine: frb stability --shapes SPEED.")
+    elif len(natural) == 1 and found.points[-1].rests:
         at = f"{found.points[-1].speed_Hz:.4g} Hz"
         terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
     terminal.emit(
@@ -118,11 +120,17 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     if found.case.rotor.symmetric:
         return []
     wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
+    if _on_supports(found):
+        return wanted
     for point in found.points[-1:]:
         springs = film_springs(found.case, point.films) if point.films else ()
         if springs or (point.rests and not found.case.bearings):
             wanted.append((springs, point.speed_Hz))
     return wanted
+
+
+def _on_supports(found: Stability) -> bool:
+    return any(bearing.support is not None for bearing in found.case.given_bearings)
 
 
 def _sentence(found: Stability) -> str:

@@ -88,9 +88,10 @@ def signal_count(case: Case) -> int:
 
 
 def rotor_size(case: Case) -> int:
-    """Degrees of freedom of the rotor with its rings, as reduced."""
+    """Degrees of freedom of the rotor with its rings and supports, as reduced."""
     rings = len(film_places(case)) - len(case.bearings)
-    return shaft_of(case).freedoms + 2 * rings + len(turning_rings(case))
+    supports = sum(bearing.support is not None for bearing in case.given_bearings)
+    return shaft_of(case).freedoms + 2 * (rings + supports) + len(turning_rings(case))
 
 
 def _reduction_s(case: Case) -> float:

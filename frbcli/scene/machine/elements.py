@@ -8,10 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.elements.support import shell_of
+from frbcli.elements.support import told as support_told
 from frbcli.elements.table import kind_of
 from frbcli.errors import Fault, InputError
+from frbcli.rotor.assembly import GROUND
 from frbcli.rotor.linear import Array, LinearRotor
-from frbcli.scene.keys import element_keys
+from frbcli.scene.keys import all_keys, element_keys
 from frbcli.scene.shafts.table import shaft_of
 
 
@@ -21,7 +24,9 @@ def element_forces(case: Case, rotor: LinearRotor, omega: float, q: NDArray[np.c
     shaft, nodes, forces = shaft_of(case), dict(rotor.points), np.zeros((len(case.elements), 2), dtype=np.complex128)
     for force, element in zip(forces, case.elements, strict=True):
         stiffness, damping, mass = kind_of(element).linear(element).at(omega)
-        force[:] = -(stiffness + 1j * omega * damping - omega**2 * mass) @ (nodes[shaft.journal(element.name)] @ q)
+        shell = shell_of(element.name, element.support)
+        motion = nodes[shaft.journal(element.name)] @ q - (0.0 if shell == GROUND else nodes[shell] @ q)
+        force[:] = -(stiffness + 1j * omega * damping - omega**2 * mass) @ motion
     return forces
 
 
@@ -31,10 +36,13 @@ def changes_with_speed(case: Case) -> bool:
 
 
 def element_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
-    """What the plan says of the elements: choice, value, reason."""
+    """What the plan says of elements and supports: choice, value, reason."""
     for element in case.elements:
         value, reason = kind_of(element).told(element)
         yield "bearings", f"{element.name}: {value}".removeprefix(": "), reason
+    for bearing in case.given_bearings:
+        if bearing.support is not None:
+            yield "support", *support_told(bearing.name, bearing.support)
 
 
 def element_faults(case: Case) -> list[Fault]:
@@ -63,6 +71,15 @@ def require_a_film(case: Case, what: str) -> None:
     """Raises InputError for a case in which no bearing has a film, see without_film."""
     if faults := without_film(case, what):
         raise InputError(case.name or "case", tuple(faults))
+
+
+def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
+    """The faults of bearings on supports, where `what` is of bearings on the ground."""
+    return [
+        Fault(f"{key}.support", "", None, f"is a shell that moves, and {what}.", remedy)
+        for key, bearing in zip(all_keys(case), case.given_bearings, strict=True)
+        if bearing.support is not None
+    ]
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:

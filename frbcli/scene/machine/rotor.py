@@ -1,13 +1,15 @@
-"""The machine of a case without its films: shaft, rings and elements as one linear system."""
+"""The machine of a case without its films: shaft, rings, supports and elements as one linear system."""
 
 from __future__ import annotations
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
+from frbcli.elements import support
 from frbcli.elements.table import kind_of
 from frbcli.rotor.assembly import Link, assembled
-from frbcli.rotor.body import point_mass, spin
+from frbcli.rotor.body import Body, point_mass, spin
 from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.over_speed import LinearPart
 from frbcli.scene.films import turning_rings
 from frbcli.scene.shafts.table import shaft_of
 
@@ -21,16 +23,25 @@ def make_rotor(case: Case) -> LinearRotor:
     count = float(shaft.equal_bearings)  # the rings of equal bearings move as one, with the mass of all of them
     bodies, films = [shaft.body()], []
     for bearing in case.bearings:
-        journal = shaft.journal(bearing.name)
+        journal, shell = shaft.journal(bearing.name), support.shell_of(bearing.name, bearing.support)
         if isinstance(bearing, FloatingRingBearing):
             ring = f"ring_{bearing.name}".rstrip("_")
             bodies.append(point_mass(ring, count * bearing.ring_mass, case.rotor.gravity))
-            films += [Link(journal, ring, count=count), Link(ring, count=count)]
+            films += [Link(journal, ring, count=count), Link(ring, shell, count=count)]
         else:
-            films.append(Link(journal, count=count))
-    bodies += [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
+            films.append(Link(journal, shell, count=count))
     parts = []
     for element in case.elements:
         kind = kind_of(element)
-        parts.append((Link(shaft.journal(element.name), count=count, sees=kind.sees), kind.linear(element)))
-    return assembled(bodies, films, parts)
+        shell = support.shell_of(element.name, element.support)
+        parts.append((Link(shaft.journal(element.name), shell, count, kind.sees), kind.linear(element)))
+    shells, mounts = _supports(case, count)
+    bodies += [*shells, *(spin(bearing.ring_inertia) for bearing in turning_rings(case))]
+    return assembled(bodies, films, [*parts, *mounts])
+
+
+def _supports(case: Case, count: float) -> tuple[list[Body], list[tuple[Link, LinearPart]]]:
+    """The bodies of the shells that move, and what holds them."""
+    given = [(bearing.name, bearing.support) for bearing in case.given_bearings if bearing.support is not None]
+    bodies = [support.body(name, each, count, case.rotor.gravity) for name, each in given]
+    return bodies, [support.mount(name, each, count) for name, each in given]

@@ -1,0 +1,45 @@
+"""The support of a bearing: its shell as a body."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import Damping, ShellMass, Stiffness
+
+
+def _both_directions(given: object) -> object:
+    """One quantity as that of both directions."""
+    if isinstance(given, str | int | float) and not isinstance(given, bool):
+        return [given, given]
+    return given
+
+
+class _OneOrTwo:
+    """The schema of one quantity or of two, for editors."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return handler(source)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        both = handler(schema)
+        return {"anyOf": [both["prefixItems"][0], both]}
+
+
+_Directions = (BeforeValidator(_both_directions), _OneOrTwo())
+Stiffnesses = Annotated[tuple[Stiffness, Stiffness], *_Directions]
+Dampings = Annotated[tuple[Damping, Damping], *_Directions]
+
+
+class Support(Model):
+    """The shell of a bearing as a body on springs and dampers; without a support it is fixed to the ground. It moves in
+    x and y and does not turn. Each of both equal bearings of a symmetric rotor has such a support."""
+
+    mass: ShellMass = Field(description="of the shell and what moves with it, of one bearing; above 0")
+    stiffness: Stiffnesses = Field(description="of its springs to the ground: of both directions, or [x, y]")
+    damping: Dampings = Field(
+        default=(0.0, 0.0), description="of its dampers to the ground: of both directions, or [x, y]"
+    )

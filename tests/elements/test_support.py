@@ -1,0 +1,260 @@
+"""Bearings on supports: closed forms, the series law, limits, runs against the response, faults and pictures.
+
+With impedances Z = K + s C + s^2 M, links in series have 1 / Z = 1 / Z_1 + 1 / Z_2, and those beside each other
+Z_1 + Z_2; a symmetric rotor has two of each bearing and support.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
+from frbcli.cycles.limit_cycles import limit_cycles
+from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.errors import InputError
+from frbcli.linear.critical_map import critical_map
+from frbcli.linear.damped_modes import damped_modes
+from frbcli.linear.modes import natural_modes
+from frbcli.linear.response import response
+from frbcli.linear.stability import stability
+from frbcli.report.sketch import rotor_sketch
+from frbcli.runs.run import runup
+from frbcli.scene.planning.plan import make_plan
+
+G, M, U = 9.81, 6.0, 3e-6  # m/s^2, kg, kg m
+K, C = 1e6, 300.0  # N/m, N s/m of one bearing
+SHELL, SPRINGS, DAMPERS = 1.5, (4e6, 7e6), (200.0, 90.0)  # kg, N/m and N s/m in x and y of one support
+SPEED = {"from": "10 Hz", "to": "200 Hz", "duration": "1 s"}
+JEFFCOTT = {
+    "kind": "jeffcott", "mass": "6 kg", "journal_mass": "0.1 kg", "shaft_stiffness": "5e6 N/m",
+    "unbalance": "3e-6 kg*m", "external_damping": "1 N*s/m", "shaft_damping": "0.1 N*s/m",
+}  # fmt: skip
+RIGID = {"kind": "rigid", "mass": f"{M} kg", "unbalance": f"{U!r} kg*m"}
+
+
+def support(**keys: object) -> dict[str, Any]:
+    stiffness, damping = [f"{k!r} N/m" for k in SPRINGS], [f"{c!r} N*s/m" for c in DAMPERS]
+    return {"mass": f"{SHELL} kg", "stiffness": stiffness, "damping": damping} | keys
+
+
+def on_support(rotor: dict[str, Any], **keys: object) -> frbcli.Case:
+    """A rotor in bearings of given coefficients on supports."""
+    bearing = {"kind": "coefficients", "stiffness": f"{K!r} N/m", "damping": f"{C!r} N*s/m", "support": support(**keys)}
+    return case_from_dict({"rotor": rotor, "bearing": bearing, "speed": SPEED}, "on-support")
+
+
+def bearing_impedance(s: Any) -> Any:
+    return 2.0 * (K + s * C)
+
+
+def support_impedance(s: Any, axis: int) -> Any:
+    return 2.0 * (SPRINGS[axis] + s * DAMPERS[axis] + s**2 * SHELL)
+
+
+def in_series(one: Any, other: Any) -> Any:
+    return one * other / (one + other)
+
+
+def test_eigenvalues_of_a_rigid_rotor_on_supports_are_the_roots_of_the_closed_form() -> None:
+    """Each direction by itself: (m s^2 + b) (2 M s^2 + b + c) - b^2 with b = 2 (K + C s), c of the support."""
+    case = on_support(RIGID)
+    expected = []
+    for axis in (0, 1):
+        b, own = np.array([2 * C, 2 * K]), np.array([2 * SHELL, 2 * DAMPERS[axis], 2 * SPRINGS[axis]])
+        expected += np.roots(np.polysub(np.polymul(np.polyadd([M, 0, 0], b), np.polyadd(own, b)), np.polymul(b, b))).tolist()
+    found = stability(case, [80.0]).points[0].eigenvalues
+    assert len(found) == len(expected) == 8
+    for value in expected:
+        assert np.abs(found - value).min() < 1e-9 * abs(value)
+    frequencies = sorted(mode.frequency_Hz for mode in damped_modes(case, 80.0).modes)
+    oscillating = sorted(abs(value.imag) / (2 * math.pi) for value in expected if value.imag > 0)
+    np.testing.assert_allclose(frequencies, oscillating, rtol=1e-9)
+
+
+def test_the_response_of_a_rigid_rotor_on_supports_is_the_closed_form() -> None:
+    """x and y of rotor and shell, with amplitude and phase: the unbalance pulls with Omega^2 U (i, 1) exp(i alpha)."""
+    found = response(on_support(RIGID), [20.0, 90.0, 150.0])
+    assert found.points == ("journal", "support")
+    s = 2j * math.pi * found.speeds_Hz
+    for axis, pull in enumerate((1.0j, 1.0)):
+        bearing, shell = bearing_impedance(s), support_impedance(s, axis)
+        rotor = -(s**2) * U * pull / (M * s**2 + in_series(bearing, shell))
+        np.testing.assert_allclose(found.motion[:, 0, axis], rotor, rtol=1e-9)
+        np.testing.assert_allclose(found.motion[:, 1, axis], rotor * bearing / (bearing + shell), rtol=1e-9)
+        force = -0.5 * bearing * (found.motion[:, 0, axis] - found.motion[:, 1, axis])  # of one bearing
+        np.testing.assert_allclose(found.forces[:, 0, axis], force, rtol=1e-9)
+
+
+def test_the_response_of_a_jeffcott_rotor_on_supports_is_the_closed_form() -> None:
+    """Shell, bearing, journal, shaft and disk in series and beside each other."""
+    found = response(on_support(JEFFCOTT), [20.0, 90.0, 150.0])
+    named = dict(zip(found.points, np.moveaxis(found.motion, 1, 0), strict=True))
+    s = 2j * math.pi * found.speeds_Hz
+    shaft = 5e6 + 0.1 * s
+    for axis, pull in enumerate((1.0j, 1.0)):
+        journal = 0.1 * s**2 + in_series(bearing_impedance(s), support_impedance(s, axis))
+        disk = -(s**2) * U * pull / (6.0 * s**2 + 1.0 * s + in_series(shaft, journal))
+        np.testing.assert_allclose(named["disk"][:, axis], disk, rtol=1e-9)
+        np.testing.assert_allclose(named["journal"][:, axis], disk * shaft / (shaft + journal), rtol=1e-9)
+
+
+def short_film(**tables: object) -> frbcli.Case:
+    """The shipped rigid rotor in its short films, of few revolutions."""
+    return load_case("rigid", ["film.theory=short", "rotor.unbalance=3 g*mm"]).with_settings(tables)
+
+
+@pytest.mark.parametrize("mass", ["1e-9 kg", "1 g"])
+def test_a_support_in_series_with_a_film_obeys_the_series_law(mass: str) -> None:
+    """Of K + i omega C, cross-coupled, at no mass; one that is not zero adds omega^2 times itself."""
+    given = support(mass=mass)
+    found = response(short_film(**{"bearing.support": given}), [30.0, 80.0])
+    rotor = found.case.rotor
+    for point, motion in zip(found.resting, found.motion, strict=True):
+        omega = 2 * math.pi * point.speed_Hz
+        stiffness, damping = coefficients_of(point.films)
+        film = 2.0 * (stiffness[0] + 1j * omega * damping[0])
+        weight = 1e-3 if mass == "1 g" else 0.0
+        shell = 2.0 * np.diag(SPRINGS + 1j * omega * np.array(DAMPERS) - omega**2 * weight)
+        whole = np.linalg.inv(np.linalg.inv(film) + np.linalg.inv(shell))
+        dynamic = whole + (1j * omega * rotor.external_damping - omega**2 * rotor.mass) * np.eye(2)
+        expected = np.linalg.solve(dynamic, omega**2 * rotor.unbalance * np.array([1.0j, 1.0]))
+        np.testing.assert_allclose(motion[found.points.index("journal")], expected, rtol=1e-9)
+
+
+def test_the_springs_carry_the_weight_of_rotor_and_shell_and_the_film_that_of_the_rotor(tmp_path: Path) -> None:
+    given = support(mass="20 kg")
+    fixed, moved = short_film(), short_film(**{"bearing.support": given})
+    (still,), (sunk,) = (stability(case, [50.0]).points for case in (fixed, moved))
+    np.testing.assert_allclose(sunk.films[0].displacement, still.films[0].displacement, rtol=1e-9)
+    np.testing.assert_allclose(sunk.films[0].stiffness, still.films[0].stiffness, rtol=1e-7)
+    steady = moved.with_settings({"start.position": "resting", "rotor.unbalance": 0.0, "speed.from": "50 Hz",
+                                     "speed.to": "50 Hz", "speed.duration": "20 ms"})  # fmt: skip
+    run = runup(steady, tmp_path / "run.h5")
+    weight = 0.5 * moved.rotor.mass * G + 20.0 * G
+    np.testing.assert_allclose(run["support_y_m"], -weight / SPRINGS[1], rtol=1e-6)
+    np.testing.assert_allclose(run["support_x_m"], 0.0, atol=1e-6 * weight / SPRINGS[1])
+
+
+STEADY = {"start.position": "resting", "speed.from": "60 Hz", "speed.to": "60 Hz", "speed.duration": "60 ms",
+          "accuracy.tolerance": 1e-9}  # fmt: skip
+
+
+def test_a_stiff_support_changes_no_signal(tmp_path: Path) -> None:
+    """By more than 1e-6, displacements over the clearance, with a million times the stiffness of the film."""
+    fixed = short_film(**STEADY)
+    (point,) = stability(fixed, [60.0]).points
+    stiff = f"{1e6 * float(np.abs(point.films[0].stiffness).max())!r} N/m"
+    moved = fixed.with_settings({"bearing.support": {"mass": "1 g", "stiffness": stiff, "damping": "100 N*s/m"}})
+    runs = [runup(case, tmp_path / f"{number}.h5") for number, case in enumerate((fixed, moved))]
+    shared = [name for name in runs[0].signals if name in runs[1].signals]
+    assert {"eccentricity", "journal_x_m", "journal_y_m"} <= set(shared)
+    for name in shared:
+        one, other = (run[name] for run in runs)
+        unit = runs[0].references["clearance_m"] if name.endswith("_m") else np.abs(one).max()
+        assert np.abs(one - other).max() <= 1e-6 * unit, name
+
+
+def test_a_run_at_constant_speed_has_the_motion_of_the_response(tmp_path: Path) -> None:
+    """Rotor and shells on anisotropic supports, after the transient."""
+    case = on_support(JEFFCOTT, damping="2000 N*s/m").with_settings(
+        {"speed.from": "60 Hz", "speed.to": "60 Hz", "speed.duration": "1 s", "start.position": "resting",
+         "accuracy.tolerance": 1e-7}
+    )  # fmt: skip
+    found, run = response(case, [60.0]), runup(case, tmp_path / "run.h5")
+    late = run["time_s"] >= run.t_end_s - 10.0 / 60.0
+    turn = np.exp(2j * math.pi * 60.0 * run["time_s"][late])
+    columns = np.column_stack([np.ones(len(turn)), turn.real, -turn.imag])
+    for number, name in enumerate(found.points):
+        for axis, letter in enumerate("xy"):
+            motion = run[f"{name}_{letter}_m"][late]
+            _, real, imaginary = np.linalg.lstsq(columns, motion)[0]
+            amplitude = real + 1j * imaginary
+            assert abs(amplitude - found.motion[0, number, axis]) < 1e-3 * abs(found.motion[0, number, axis]), name
+
+
+RING_SUPPORT = {"mass": "200 g", "stiffness": "2e7 N/m", "damping": "500 N*s/m"}
+
+
+def test_rings_and_several_bearings_stand_on_supports(tmp_path: Path) -> None:
+    """Each outer film lies between its ring and its own shell."""
+    case = load_case("turbocharger-heavy").with_settings(
+        {"bearing.0.support": RING_SUPPORT, "speed.duration": "4 ms", "film.cavitation": "half-sommerfeld"}
+    )
+    run = runup(case, tmp_path / "run.h5")
+    name = case.bearings[0].name
+    assert {f"support_{name}_x_m", f"support_{name}_y_m"} <= set(run.signals)
+    assert not any(signal.startswith(f"support_{case.bearings[1].name}") for signal in run.signals)
+    assert np.abs(run[f"support_{name}_y_m"]).max() > 0.0
+
+
+def test_the_hopf_point_of_limit_cycles_is_the_threshold_of_stability() -> None:
+    """Both linearise the same machine, by different ways; the support moves the threshold."""
+    moved = short_film(**{"bearing.support": {"mass": "2 kg", "stiffness": ["2e6 N/m", "6e6 N/m"],
+                                              "damping": "2000 N*s/m"}, "rotor.unbalance": 0.0})  # fmt: skip
+    threshold, fixed = stability(moved).threshold, stability(short_film()).threshold
+    assert threshold is not None
+    assert fixed is not None
+    assert abs(threshold.speed_Hz - fixed.speed_Hz) > 0.02 * fixed.speed_Hz
+    hopf = [special for special in limit_cycles(moved).special if special.kind == "hopf"]
+    assert min(abs(each.speed_Hz - threshold.speed_Hz) for each in hopf) < 1e-3 * threshold.speed_Hz
+
+
+def test_one_quantity_is_that_of_both_directions_and_the_text_gives_the_case_again() -> None:
+    one = on_support(RIGID, stiffness="2e6 N/m", damping="10 N*s/m")
+    two = on_support(RIGID, stiffness=["2e6 N/m", "2e6 N/m"], damping=["10 N*s/m", "10 N*s/m"])
+    assert one.elements == two.elements
+    assert load_case_text(one.source_text, name="on-support") == one
+
+
+def test_the_plan_and_the_sketch_show_supports() -> None:
+    told = [each for each in make_plan(on_support(RIGID)).decisions if each.choice == "support"]
+    assert len(told) == 1
+    assert told[0].value == "1.5 kg on 4000 N/mm in x and 7000 N/mm in y, 200 N*s/m in x and 90 N*s/m in y"
+    case = short_film()
+    fixed, moved = (rotor_sketch(each)[0] for each in (case, case.with_settings({"bearing.support": support()})))
+    assert fixed.count('class="ground"') == 0
+    assert moved.count('class="ground"') == 4  # above and below the axis, at both bearings
+    heavy = load_case("turbocharger-heavy", ['bearing.0.support={mass="1 kg", stiffness="1e7 N/m"}'])
+    assert rotor_sketch(heavy)[0].count('class="ground"') == 2
+
+
+FAULTS = {
+    "no stiffness": ({"mass": "1 kg"}, "bearing.support.stiffness", "is missing"),
+    "no stiffness and mass": ({}, "bearing.support.mass", "is missing"),
+    "no mass": ({"mass": 0.0, "stiffness": "1e7 N/m"}, "bearing.support.mass", "equation of motion"),
+    "negative mass": ({"mass": "-1 kg", "stiffness": "1e7 N/m"}, "bearing.support.mass", "at least 0"),
+    "slack springs": ({"mass": "1 kg", "stiffness": ["1e7 N/m", "0 N/m"]}, "bearing.support.stiffness.1", "than 0"),
+    "negative damping": (
+        {"mass": "1 kg", "stiffness": "1e7 N/m", "damping": "-1 N*s/m"}, "bearing.support.damping", "at least 0"
+    ),
+    "three directions": ({"mass": "1 kg", "stiffness": ["1e7 N/m"] * 3}, "bearing.support.stiffness", "too many"),
+    "unknown": ({"mass": "1 kg", "stifness": "1e7 N/m"}, "bearing.support.stifness", "not known"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("given", FAULTS.values(), ids=FAULTS.keys())
+def test_bad_supports_are_refused(given: tuple[dict[str, Any], str, str]) -> None:
+    keys, key, problem = given
+    with pytest.raises(InputError) as caught:
+        short_film(**{"bearing.support": keys})
+    fault = next(fault for fault in caught.value.faults if fault.key == key)
+    assert problem in fault.problem
+    assert fault.remedy
+    assert sum(each.key == key for each in caught.value.faults) == 1
+
+
+def test_analyses_of_a_rotor_on_the_ground_refuse_supports() -> None:
+    heavy = load_case("turbocharger-heavy", ['bearing.0.support={mass="1 kg", stiffness="1e7 N/m"}'])
+    for analysis in (lambda: critical_map(heavy), lambda: natural_modes(heavy, 1e7)):
+        with pytest.raises(InputError) as caught:
+            analysis()
+        assert caught.value.faults[0].key == "bearing.0.support"
+    assert natural_modes(heavy).stiffness_N_m == ()  # the free shaft has no supports
+    with pytest.raises(InputError, match="has no effect"):
+        load_case("bearing", ['bearing.support={mass="1 kg", stiffness="1e7 N/m"}'])
