@@ -111,7 +111,8 @@ def pieces(count: int) -> Iterator[tuple[int, int]]:
 
 def located(run: RunLike, node: str) -> tuple[str, str]:
     """Kind and name of "disk", "journal" (the first, if there are several), "journal_NAME" or "support_NAME" of a
-    bearing or "disk_NAME" of a disk; NAME alone, of a bearing its journal, will do where a bearing and a disk do not share it."""
+    bearing or "disk_NAME" of a disk; NAME alone, of a bearing its journal, will do where a bearing and a disk do not
+    share it."""
     alone = [kind for kind in ("journal", "disk") if node in points(run.signals, kind)]
     if len(alone) == 1 and node not in KINDS:
         return alone[0], node

@@ -67,7 +67,8 @@ def test_eigenvalues_of_a_rigid_rotor_on_supports_are_the_roots_of_the_closed_fo
     expected = []
     for axis in (0, 1):
         b, own = np.array([2 * C, 2 * K]), np.array([2 * SHELL, 2 * DAMPERS[axis], 2 * SPRINGS[axis]])
-        expected += np.roots(np.polysub(np.polymul(np.polyadd([M, 0, 0], b), np.polyadd(own, b)), np.polymul(b, b))).tolist()
+        both = np.polymul(np.polyadd([M, 0, 0], b), np.polyadd(own, b))
+        expected += np.roots(np.polysub(both, np.polymul(b, b))).tolist()
     found = stability(case, [80.0]).points[0].eigenvalues
     assert len(found) == len(expected) == 8
     for value in expected:
