@@ -6,6 +6,8 @@ Figures are made without pyplot: nothing is kept in global state, and no window 
 from __future__ import annotations
 
 import io
+import math
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -35,8 +37,10 @@ FORMATS = {
     ".svg": {"Date": None},
 }  # no dates, so that the same run gives the same file
 
-LABEL_WIDTH = 0.19  # of a label above a panel, relative to the panel
-LABEL_ROWS = 3
+SYMBOL = re.compile(r"(?<!\w)([^\W\d_])_([^\W_]{1,2})(?!\w)")  # with its index
+LEGEND_ROW, FEW_COLUMNS = 0.2, 3  # inches; columns of a legend, of more the letters are smaller
+LABEL_ROWS, LABEL_HEIGHT_pt, LABEL_GAP_pt = 3, 24, 6  # of labels above a panel
+POINTS = 72.0  # of an inch
 MOST_MARKED = 50  # events in a picture, the first ones
 MOST_NAMED = 40  # curves in a legend
 
@@ -77,9 +81,14 @@ def styled() -> Iterator[None]:
 def new_figure(title: str, subtitle: str, width: float = 7.2, height: float = 4.4) -> Figure:
     """An empty figure, width and height in inches, under the title of the case and what was computed."""
     figure = NotebookFigure(figsize=(width, height))
-    words = printable(f"{title}\n{subtitle}" if subtitle else title)
-    figure.suptitle(words, x=0.01, ha="left", fontsize=10.0, parse_math=False)  # a $ in a title is one
+    set_title(figure, title, subtitle)
     return figure
+
+
+def set_title(figure: Figure, title: str, subtitle: str) -> None:
+    """Title and subtitle of a figure, above its panels."""
+    words = with_subscripts(plain(title))
+    figure.suptitle(f"{words}\n{plain(subtitle)}" if subtitle else words, x=0.01, ha="left", fontsize=10.0)
 
 
 def plain(text: str) -> str:
@@ -87,37 +96,64 @@ def plain(text: str) -> str:
     return printable(text).replace("$", r"\$")
 
 
-def mark_times(panels: Sequence[Axes], times_s: Sequence[float], labels: Sequence[str]) -> None:
+def with_subscripts(text: str) -> str:
+    """`text`, see `plain`, in which the index of a symbol of one letter is a subscript: C_o, ω_F."""
+    return SYMBOL.sub(r"\1$_{\2}$", text)
+
+
+def name_of_key(key: str, unit: str = "") -> str:
+    """A key of the case file in words, for an axis, with its unit: oil viscosity in mPa s."""
+    words = " ".join(word for word in re.split(r"[._]", key) if word)
+    shown = re.sub(r"\bu(?=m\b)", "µ", unit.replace("*", " ").replace("degC", "°C"))
+    return plain(f"{words} in {shown}" if shown else words)
+
+
+def mark_times(panels: Sequence[Axes], times_s: Sequence[float], labels: Sequence[str]) -> int:
     """Mark moments by lines through panels that share a time axis, labelled above the first one.
 
-    A label that would run into its neighbour's is raised above it.
+    A label that would run into its neighbour's is raised above it. Where there is no room in any row the line has no
+    label; returns the number of these lines.
     """
-    left, right = panels[0].get_xlim()
-    free_from = [left] * LABEL_ROWS
-    for time, label in zip(times_s, labels, strict=True):
-        width = LABEL_WIDTH * (right - left)
-        start = min(time, right - width)
-        row = next((row for row, free in enumerate(free_from) if start >= free), LABEL_ROWS - 1)
-        free_from[row] = start + width
-        for axes in panels:
+    for axes in panels:
+        for time in times_s:
             axes.axvline(time, color=GREY, linewidth=0.9, linestyle=(0, (4, 3)))
-        panels[0].annotate(
-            label,
-            (time, 1.0),
-            xycoords=panels[0].get_xaxis_transform(),
-            xytext=(0, 4 + 24 * row),
-            textcoords="offset points",
-            ha="left" if start == time else "right",
-            va="bottom",
-            fontsize=8.0,
-        )
+    figure = panels[0].get_figure()
+    if not times_s or not isinstance(figure, Figure):
+        return 0
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)  # the width of the panel, in which the labels have to fit
+    width_pt = panels[0].get_window_extent().width * POINTS / figure.dpi
+    left, right = panels[0].get_xlim()
+    free_from, left_out = [-math.inf] * LABEL_ROWS, 0
+    for time, label in sorted(zip(times_s, labels, strict=True)):
+        at = width_pt * (time - left) / (right - left)
+        text = panels[0].annotate(
+            label, (time, 1.0), xycoords=panels[0].get_xaxis_transform(), xytext=(0, 4), textcoords="offset points",
+            fontsize=8.0, va="bottom", ha="left",
+        )  # fmt: skip
+        length = text.get_window_extent().width * POINTS / figure.dpi
+        start = max(0.0, min(at, width_pt - length))
+        row = next((row for row, free in enumerate(free_from) if start >= free), None)
+        if row is None:
+            text.remove()
+            left_out += 1
+            continue
+        free_from[row] = start + length + LABEL_GAP_pt
+        text.set_position((start - at, 4 + LABEL_HEIGHT_pt * row))
+    return left_out
 
 
-def legend_below(figure: Figure, axes: Axes) -> None:
-    """A legend under the picture, where it hides no curve; none for one curve, or for more than there is room for."""
-    handles, labels = axes.get_legend_handles_labels()
-    if 1 < len(handles) <= MOST_NAMED:
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(handles), 3))
+def legend_below(figure: Figure, *panels: Axes, columns: int = 3) -> None:
+    """A legend of the curves of panels under the picture, where it hides no curve, each name once; none for one curve,
+    or for more than there is room for. The picture grows by its rows beyond two."""
+    named = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if 1 < len(named) <= MOST_NAMED:
+        columns = min(len(named), columns)
+        size = "medium" if columns <= FEW_COLUMNS else "small"
+        figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=columns, fontsize=size)
+        rows = math.ceil(len(named) / columns)
+        figure.set_figheight(figure.get_figheight() + LEGEND_ROW * max(0, rows - 2))
 
 
 def legend_beside(axes: Axes) -> None:

@@ -14,9 +14,14 @@ def event_place(event: Mapping[str, Any]) -> str:
     return str(event["film"] or event.get("point") or "")
 
 
+def event_name(event: Mapping[str, Any]) -> str:
+    """The kind of an event, its whirl where it has been named ("whirl", as Sub 1), and its place."""
+    return " ".join(word for word in (event["kind"], event.get("whirl", ""), event_place(event)) if word)
+
+
 # Of an event of a run, a dict
 EVENTS = (
-    Column("event", "", "", lambda event: f"{event['kind']} {event_place(event)}".rstrip(), shown=(Shown("event"),),
+    Column("event", "", "", event_name, shown=(Shown("event"),),
            key="", flat=False),
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `clearance-step`"),
     Column("film", "", "film, none where there is but one"),

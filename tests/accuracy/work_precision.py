@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from frbcli.plot.style import COLOURS, legend_below, new_figure, save_figure, styled
+from frbcli.plot.style import BLACK, COLOURS, legend_below, new_figure, save_figure, styled
 
 HERE = Path(__file__).parent
 MEASURED = HERE / "work_precision.json"
@@ -28,9 +28,11 @@ def main() -> None:
             for kind, line in (("plan", "-"), ("before", ":")):
                 times, errors, _ = zip(*sorted(measured[kind][case]), strict=True)
                 axes.plot(times, errors, line, linewidth=1.2, label=case if kind == "plan" else None, **style)
+        for line, label in (("-", "plan, targets of 2e-2 to 5e-4"), (":", "first order, cells at rest")):
+            axes.plot([], [], line, color=BLACK, linewidth=1.2, label=label)
         axes.set_xscale("log")
         axes.set_yscale("log")
-        axes.set_xlabel("CPU time in s (full: plan, for targets of 2e-2 to 5e-4; dotted: upwind, cells at rest)")
+        axes.set_xlabel("CPU time of the time loop in s")
         axes.set_ylabel("largest error of the eccentricities")
         axes.grid(which="minor", visible=False)
         legend_below(figure, axes)

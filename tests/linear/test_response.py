@@ -121,7 +121,7 @@ def test_the_picture_has_the_orbits_at_the_largest_amplitude_and_the_highest_spe
     assert len(panels) == 6
     assert all(panel.get_title(loc="left") for panel in panels)
     for panel, speed in zip(panels[4:], (int(np.argmax(jeffcott.amplitude.max(axis=1))), -1), strict=True):
-        assert panel.get_title(loc="left") == f"orbits at {jeffcott.speeds_Hz[speed]:.4g} Hz"
+        assert panel.get_title(loc="left") == f"orbits at {jeffcott.speeds_Hz[speed]:.4g} Hz; dots: mark along x"
         for number, curve in enumerate(panel.lines[::2]):
             reach = np.hypot(*curve.get_data()).max()
             assert reach == pytest.approx(1e6 * jeffcott.amplitude[speed, number], rel=1e-3)

@@ -27,7 +27,7 @@ from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.signals import clearance, labels, model
 from frbcli.plot.spectra.waterfall import LEVELS_dB, run_spectra, waterfall_figure
-from frbcli.plot.style import new_figure, save_figure
+from frbcli.plot.style import LABEL_ROWS, new_figure, save_figure
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
@@ -381,5 +381,5 @@ def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.M
 def test_a_picture_marks_no_more_events_than_it_has_room_for(run: Run) -> None:
     event = {"kind": "contact", "film": None, "t_s": 2.0, "speed_Hz": 60.0, "frequency_ratio": None}
     figure = summary_figure(replace(run, events=[event] * 9000))
-    assert texts(figure).count("contact\n60.0 Hz") == 50
-    assert "the first 50 of 9000 events" in texts(figure)
+    assert texts(figure).count("contact\n60.0 Hz") == LABEL_ROWS
+    assert "the first 50 of 9000 events, 47 of 50 events have no room" in texts(figure)

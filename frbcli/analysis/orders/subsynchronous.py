@@ -144,10 +144,11 @@ def _combination(index: int, frequencies: Values, amplitudes: Values, window_s: 
 def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
     """The whirls that onset, lock-in and offset of floating rings belong to, "" for other events, in their order.
 
-    Of a symmetric rotor Sub_i and Sub_o, after the film; of a rotor in several bearings Sub 1, the first whirl of an
-    inner film, Sub 2, the next ones, and Sub 3 of an outer film.
+    Of a symmetric rotor Sub_i and Sub_o, after the film. Of a rotor in several bearings the first whirls of inner films
+    are one, the next ones of inner films another, and those of outer films a third: Sub 1, Sub 2 and Sub 3 in the order
+    in which they begin.
     """
-    names, seen = [], Counter[tuple[str, str]]()
+    names, seen, known = list[str](), Counter[tuple[str, str]](), list[tuple[str, bool]]()
     for event in events:
         kind, film = event["kind"], str(event.get("film") or "")
         bearing, _, side = film.rpartition("_")
@@ -156,12 +157,17 @@ def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
             names.append("")
         elif not bearing:
             names.append(f"Sub_{side[0]}")
-        elif side == "outer":
-            names.append("Sub 3")
         else:  # whirls end in the order in which they begin, and lock before the next one begins
             number = seen[film, "offset"] if kind == "offset" else seen[film, "onset"]
-            names.append("Sub 1" if number < 2 else "Sub 2")
+            whirl = side, side == "inner" and number > 1
+            known += [] if whirl in known else [whirl]
+            names.append(f"Sub {known.index(whirl) + 1}")
     return names
+
+
+def with_whirl_names(events: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The events, each with the name of its whirl as "whirl", which tables and pictures show."""
+    return [{**event, "whirl": name} for event, name in zip(events, whirl_names(events), strict=True)]
 
 
 def _windows(run: RunLike, name: str, room: float, width: int, hop: int) -> Iterator[Motion]:

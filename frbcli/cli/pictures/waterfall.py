@@ -79,6 +79,7 @@ def command(
 
     RUN is a run file, or a measurement as CSV, WAV, MAT or UFF, whose columns --x, --speed and so on name.
     """
+    from frbcli.analysis.orders.subsynchronous import with_whirl_names
     from frbcli.results.columns import EVENTS
 
     if listed:
@@ -122,7 +123,7 @@ def command(
     if measurement is not None:
         told["events"] = run.events
         if run.events:
-            terminal.show("events", table_of(EVENTS, run.events))
+            terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
     terminal.emit({**document, "direction": view.direction, **told})
 

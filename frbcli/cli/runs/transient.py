@@ -222,6 +222,7 @@ def exit_code(status: str) -> int:
 
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
+    from frbcli.analysis.orders.subsynchronous import with_whirl_names
     from frbcli.results.columns import EVENTS
     from frbcli.runs.advice import run_advice, run_end
     from frbcli.runs.errors.account import account
@@ -230,5 +231,5 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     for sentence in run_advice(case, run_end(run)):
         terminal.remark(wrapped(sentence))
     if run.events:
-        terminal.show("events", table_of(EVENTS, run.events))
+        terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
     terminal.table("cost and error", ("", "", ""), account(run))

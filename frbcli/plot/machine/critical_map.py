@@ -9,7 +9,9 @@ from matplotlib.figure import Figure
 from frbcli.linear.critical_map import CriticalMap
 from frbcli.plot.style import BLUE, GREY, ORANGE, VERMILION, legend_below, new_figure, styled
 
+FEW = 10  # speeds of films: they are marked, as fewer than two are no line
 FILM_DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
+FILM_MARKS = ("o", "D", "^")
 
 
 def critical_map_figure(found: CriticalMap) -> Figure:
@@ -33,8 +35,10 @@ def draw_critical_map(axes: Axes, found: CriticalMap) -> None:
             axes.plot(found.stiffness, curve, color=colour, linestyle=dashes, label=name if number == 0 else None)
     for number, springs in enumerate(found.film_stiffness.T if len(found.film_speeds_Hz) else ()):
         bearing = found.case.bearings[number].name
-        label = " ".join(word for word in ("films at rest", bearing) if word)
-        axes.plot(springs, found.film_speeds_Hz, color=VERMILION, linestyle=FILM_DASHES[number % 3], label=label)
+        label = ", ".join(word for word in ("stiffness of the films", bearing) if word)
+        marker = FILM_MARKS[number % 3] if len(springs) < FEW else ""
+        axes.plot(springs, found.film_speeds_Hz, color=VERMILION, linestyle=FILM_DASHES[number % 3], marker=marker,
+                  markersize=5.0, label=label)  # fmt: skip
     top = max(abs(found.case.speed.start), abs(found.case.speed.end))
     axes.axhline(top, color=GREY, linewidth=0.8, linestyle=(0, (1, 2)), label="highest speed of the case")
     axes.set_xscale("log")

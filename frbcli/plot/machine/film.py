@@ -16,8 +16,10 @@ from frbcli.plot.style import COLOURS, GREY, LEVEL_MAP, new_figure, styled
 Array = NDArray[np.float64]
 
 BAR = 1e5
+FULL = 0.999  # oil fraction
 DEGREES = 180.0 / np.pi
 LINES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
+NARROWEST, WIDER = 1.0, 0.45  # lines of the last model and by how much each before it is wider, so that it stays seen
 MAP_HEIGHT = 1.15  # inches of the maps of a model
 
 
@@ -44,13 +46,13 @@ def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
     for number, result in enumerate(solved):
         field = result.field
         assert field is not None
-        colour, line = COLOURS[number % len(COLOURS)], LINES[number % len(LINES)]
+        look = _look(number, len(solved))
         phi, values = mid_line(field, field.pressure, result.plan.section.far)
-        pressure.plot(phi, values / BAR, color=colour, linestyle=line, label=label_of(result.cavitation))
+        pressure.plot(phi, values / BAR, label=label_of(result.cavitation), **look)
         phi, values = mid_line(field, field.fraction, result.plan.section.far)
-        oil.plot(phi, values, color=colour, linestyle=line)
+        oil.plot(phi, values, **look)
         phi, values = _turn(field, field.gap)
-        gap.plot(phi, values, color=colour if _moved(solved) else GREY, linestyle=line if _moved(solved) else "-")
+        gap.plot(phi, values, **(look if _moved(solved) else {"color": GREY}))
     if len(solved) > 1:
         pressure.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     pressure.set_title("along the middle of the film")
@@ -61,7 +63,7 @@ def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
     oil.set_ylim(0.0, 1.05)
     oil.set_xlim(0.0, 360.0)
     oil.set_xticks(range(0, 361, 45))
-    oil.set_xlabel("phi in deg (0 at the top, counter-clockwise)")
+    oil.set_xlabel("φ in ° (0 at the top, counter-clockwise)")
 
 
 def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
@@ -69,7 +71,7 @@ def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
     fields = [result.field for result in solved if result.field is not None]
     ranges = [
         (min(float(f.pressure.min()) for f in fields) / BAR, max(float(f.pressure.max()) for f in fields) / BAR),
-        (min(float(f.fraction.min()) for f in fields), 1.0),
+        (_lowest_fraction(fields), 1.0),
     ]
     meshes: list[Any] = []
     for (left, right), result, field in zip(rows, solved, fields, strict=True):
@@ -85,13 +87,26 @@ def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
             meshes.append(mesh)
         for axes, what in zip((left, right), ("pressure", "oil fraction"), strict=True):
             axes.set_title(f"{label_of(result.cavitation)}, {what}", fontsize=9.0)
-        left.set_ylabel("z of section", fontsize=8.0)
+        left.set_ylabel("z", fontsize=8.0)
     for column, label in ((0, "pressure in bar"), (1, "oil fraction")):
         bar = figure.colorbar(meshes[column], ax=rows[:, column], location="bottom", shrink=0.8, aspect=35)
         bar.set_label(label)
         bar.outline.set_visible(False)
         rows[-1][column].set_xlim(0.0, 360.0)
         rows[-1][column].set_xticks(range(0, 361, 90))
+        rows[-1][column].set_xlabel("φ in °; z from 0 to 1 along the section")
+
+
+def _look(number: int, count: int) -> dict[str, Any]:
+    """Colour, dashes and width of the curve of a model, by its number."""
+    width = NARROWEST + WIDER * (count - 1 - number)
+    return {"color": COLOURS[number % len(COLOURS)], "linestyle": LINES[number % len(LINES)], "linewidth": width}
+
+
+def _lowest_fraction(fields: list[FilmField]) -> float:
+    """The lower end of the scale of oil fractions: the lowest one, or 0 where all films are full."""
+    lowest = min(float(field.fraction.min()) for field in fields)
+    return lowest if lowest < FULL else 0.0
 
 
 def mid_line(field: FilmField, values: Array, far: str) -> tuple[Array, Array]:

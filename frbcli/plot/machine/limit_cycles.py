@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,10 +13,26 @@ from scipy.interpolate import PchipInterpolator
 
 from frbcli.cycles.result import SPEED, CycleBranch, LimitCycles
 from frbcli.plot.spectra.run_track import RunTrack
-from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, plain, styled
+from frbcli.plot.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    legend_below,
+    name_of_key,
+    new_figure,
+    plain,
+    styled,
+)
 
 Array = NDArray[np.float64]
 COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
+RUN_COLOURS = (ORANGE, GREEN, "#8C564B", "#17BECF")  # of runs, which are none of the branches'
+UP, DOWN = "-", (0, (4, 1, 1, 1))  # lines of the ways of a run
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
 PIECES = 8  # straight pieces between two cycles
 WHIRL = "whirl with unbalance"
@@ -31,15 +48,14 @@ def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> 
     case = found.case
     count = len(found.films)
     with styled():
-        figure = new_figure(case.heading, "resting positions and limit cycles", 7.2, 2.6 + 2.0 * count)
+        words = "resting positions and limit cycles, dashed where unstable"
+        figure = new_figure(case.heading, words, 7.2, 2.6 + 2.0 * count)
         panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
         for film, axes in enumerate(panels[:-1]):
             _film(axes, found, film)
             _runs(axes, tracks, found.films[film])
         _frequencies(panels[-1], found)
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(*panels[-1].get_legend_handles_labels(), loc="outside lower center", ncols=4)
-        panels[0].legend(handles, labels, fontsize="small", loc="best")
+        legend_below(figure, panels[0], panels[-1], columns=4)
     return figure
 
 
@@ -68,12 +84,17 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
 
 
 def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
-    """The largest eccentricities of runs: up in orange, down in green."""
+    """The largest eccentricities of runs, a colour each: full lines up, dashes with dots down. Runs of one ramp have
+    their names in the legend, too."""
+    ramps = Counter(track.label for track in tracks)
+    runs = list(dict.fromkeys(track.run for track in tracks))
     for track in tracks:
         values = track.largest.get(film)
         if values is not None:
-            colour = ORANGE if track.rising else GREEN
-            axes.plot(track.speed_Hz, values, color=colour, linewidth=0.7, label=track.label, zorder=1.8)
+            colour = RUN_COLOURS[runs.index(track.run) % len(RUN_COLOURS)]
+            axes.plot(track.speed_Hz, values, color=colour, linestyle=UP if track.rising else DOWN, linewidth=0.8,
+                      label=plain(f"{track.label}, {track.run}" if ramps[track.label] > 1 else track.label),
+                      zorder=1.8)  # fmt: skip
 
 
 def _frequencies(axes: Axes, found: LimitCycles) -> None:
@@ -84,7 +105,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
     rings = np.array([point.ring_speeds_Hz for point in found.equilibria])
     for ring in range(rings.shape[1] if rings.size else 0):
         own = rings[:, ring]
-        labels = ("(ω + ω_F)/2", "ω_F/2") if ring == 0 else (None, None)
+        labels = ("(ω$_R$ + ω$_F$)/2", "ω$_F$/2") if ring == 0 else (None, None)
         axes.plot(speeds, 0.5 * (rotor + own), color=GREY, linestyle=(0, (5, 3)), label=labels[0])
         axes.plot(speeds, 0.5 * own, color=GREY, linestyle="-", linewidth=0.7, label=labels[1])
     for number, branch in enumerate(found.branches):
@@ -97,7 +118,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
     axes.set_xlim(float(ends[0]), float(ends[1]))
     axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else plain(f"{found.over} in {found.unit}"))
+    axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.unit))
     axes.set_ylabel("frequency in Hz")
 
 

@@ -24,15 +24,16 @@ DASHES = ("-", (0, (5, 2)), (0, (5, 1, 1, 1)))  # of more points than there are 
 
 def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
     """Amplitude and phase over the rotor speed, the forward motion in the complex plane, the bearing forces, and the
-    orbits at the largest amplitude and at the highest speed.
+    orbits at two speeds, see _orbit_speeds.
 
     Dotted where a whirl grows, so that the motion is not seen. tracks: synchronous motion in a run, of points of the
     response by their signals, drawn over it as thin black lines.
     """
     case = found.case
     with styled():
-        figure = new_figure(case.heading, "linear unbalance response about the resting position", 9.6, 10.8)
-        amplitude, phase, polar, force, largest, highest = figure.subplots(3, 2).ravel()
+        grows = ", dotted where a whirl grows and hides it" if (found.growth > 0.0).any() else ""
+        figure = new_figure(case.heading, f"linear unbalance response about the resting position{grows}", 9.6, 10.8)
+        amplitude, phase, polar, force, first, second = figure.subplots(3, 2).ravel()
         draw_amplitude(amplitude, found)
         for number in range(len(found.points)):
             colour, dash = _line_of(number)
@@ -57,19 +58,30 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
         names = ("Bode diagram: amplitude", "Bode diagram: phase", "polar diagram", "bearing forces")
         for panel, name in zip((amplitude, phase, polar, force), names, strict=True):
             panel.set_title(name)
-        for panel, speed in ((largest, int(np.argmax(found.amplitude.max(axis=1)))), (highest, -1)):
+        for panel, speed in zip((first, second), _orbit_speeds(found), strict=False):
             _orbits(panel, found, speed)
+        if len(_orbit_speeds(found)) < 2:
+            second.set_visible(False)
         legend_beside(amplitude)
         legend_beside(force)
     return figure
+
+
+def _orbit_speeds(found: Response) -> list[int]:
+    """The numbers of the speeds of the orbits, ascending: that of the largest amplitude and the highest one, or where
+    both are one, the middle one and the highest."""
+    last = len(found.speeds_Hz) - 1
+    largest = int(np.argmax(found.amplitude.max(axis=1)))
+    return sorted({largest if largest != last else last // 2, last})
 
 
 def draw_amplitude(axes: Axes, found: Response) -> None:
     """The larger semi-axes of all points over the rotor speed on axes of a figure, with the critical speeds."""
     for number, name in enumerate(found.points):
         _line(axes, found, MICRO * found.amplitude[:, number], *_line_of(number), name.replace("_", " "))
-    for critical in found.critical_speeds_Hz:
-        axes.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)))
+    for number, critical in enumerate(found.critical_speeds_Hz):
+        label = None if number else "critical speed"
+        axes.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=label)
     if set(found.validity) != {SOUND}:
         _doubts(axes, found, labelled=True)
         for number, clearance in enumerate(np.unique(found.clearances, axis=1).T):
@@ -103,7 +115,7 @@ def _orbits(axes: Axes, found: Response, speed: int) -> None:
                   linestyle=GROWING if found.growth[speed] > 0.0 else dash)  # fmt: skip
         axes.plot(x[0], y[0], color=colour, marker="o", markersize=4.0)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title(f"orbits at {found.speeds_Hz[speed]:.4g} Hz")
+    axes.set_title(f"orbits at {found.speeds_Hz[speed]:.4g} Hz; dots: mark along x")
     axes.set_xlabel("x in µm")
     axes.set_ylabel("y in µm")
 

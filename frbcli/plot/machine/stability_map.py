@@ -11,7 +11,18 @@ from matplotlib.figure import Figure
 
 from frbcli.cycles.maps.stability_map import BAUTIN, CUSP, MapCurve, StabilityMap
 from frbcli.cycles.result import SPEED, SUBCRITICAL, SUPERCRITICAL
-from frbcli.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, legend_below, new_figure, plain, styled
+from frbcli.plot.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    VERMILION,
+    legend_below,
+    name_of_key,
+    new_figure,
+    styled,
+)
 
 HOPF_STYLES = {
     SUPERCRITICAL: (BLUE, "-", "Hopf points, soft"),
@@ -20,6 +31,7 @@ HOPF_STYLES = {
 }
 MARKS = {BAUTIN: ("o", "soft changes to hard"), CUSP: ("^", "cusp of folds")}
 UNSTABLE = "#f3e3d3"
+MARGIN = 0.15  # of the range of the curves, on both sides
 
 
 def stability_map_figure(found: StabilityMap) -> Figure:
@@ -40,17 +52,25 @@ def stability_map_figure(found: StabilityMap) -> Figure:
         if starts:
             over, values = zip(*starts, strict=True)
             axes.plot(over, values, linestyle="", marker="s", color=ORANGE, markersize=4.0, label="flip, torus point")
-        axes.set_xlim(found.growth.over[0], found.growth.over[-1])
+        axes.set_xlim(*_limits(found))
         axes.set_ylim(found.growth.values[0], found.growth.values[-1])
-        axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else _named(found.over, found.over_unit))
-        axes.set_ylabel(_named(found.key, found.unit))
+        axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.over_unit))
+        axes.set_ylabel(name_of_key(found.key, found.unit))
         _legend_once(axes)
         legend_below(figure, axes)
     return figure
 
 
-def _named(key: str, unit: str) -> str:
-    return plain(f"{key} in {unit}" if unit else key)
+def _limits(found: StabilityMap) -> tuple[float, float]:
+    """Where the curves and the marks are, with a margin, within the range of the map; all of it without any."""
+    low, high = float(found.growth.over[0]), float(found.growth.over[-1])
+    over = np.array([point.over for curve in found.curves for point in curve.points]
+                    + [point.over for point in found.special])  # fmt: skip
+    over = over[(low <= over) & (over <= high)]
+    if not len(over) or not np.ptp(over) > 0.0:
+        return low, high
+    margin = MARGIN * float(np.ptp(over))
+    return max(low, float(over.min()) - margin), min(high, float(over.max()) + margin)
 
 
 def _shade(axes: Axes, found: StabilityMap) -> None:
@@ -58,6 +78,7 @@ def _shade(axes: Axes, found: StabilityMap) -> None:
     grid = np.where(np.isnan(found.growth.rate), -1.0, found.growth.rate)
     if grid.max() > 0.0:
         axes.contourf(found.growth.over, found.growth.values, grid, levels=[0.0, grid.max()], colors=[UNSTABLE])
+        axes.fill([], [], color=UNSTABLE, label="resting position unstable")
 
 
 def _curve(axes: Axes, curve: MapCurve) -> None:

@@ -16,7 +16,7 @@ from frbcli.plot.run.eccentricity import draw_eccentricity
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import ends, events, heading, is_searchable
 from frbcli.plot.spectra.waterfall import draw_levels, level_label, reading, run_spectra
-from frbcli.plot.style import BLACK, GREY, MOST_MARKED, SKY, legend_beside, mark_times, new_figure, styled
+from frbcli.plot.style import BLACK, GREY, MOST_MARKED, SKY, legend_beside, mark_times, new_figure, set_title, styled
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 
@@ -67,7 +67,10 @@ def summary_figure(run: Run) -> Figure:
         for axes in (above, middle):
             axes.set_xlabel("")
         marked = marked[:MOST_MARKED]
-        mark_times((above, middle), [time for time, _ in marked], [told for _, told in marked])
+        left_out = mark_times((above, middle), [time for time, _ in marked], [told for _, told in marked])
+        if left_out:
+            words.append(f"{left_out} of {len(marked)} events have no room for their names")
+            set_title(figure, title, ", ".join(word for word in words if word))
     return figure
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from frbcli.analysis.spectra.ridges import Ridges
 from frbcli.plot.signals import MICRO
 from frbcli.plot.spectra.waterfall import draw_levels, level_label, run_spectra
-from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, legend_below, new_figure, plain, styled
+from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, legend_below, new_figure, styled
 from frbcli.studies.against import AgainstMeasured
 from frbcli.studies.fit import Fit
 from frbcli.units import display
@@ -46,7 +46,7 @@ def fit_figure(found: Fit) -> Figure:
 def against_figure(found: AgainstMeasured) -> Figure:
     """Both waterfalls over the rotor speed in one scale, and below them the ridges over each other."""
     with styled():
-        figure = new_figure(plain(found.run.title), f"beside {found.measurement.path.name}", 9.0, 9.0)
+        figure = new_figure(found.run.title, f"beside {found.measurement.path.name}", 9.0, 9.0)
         grid = figure.add_gridspec(4, 2, height_ratios=(2.2, 1.0, 1.0, 1.0))
         maps = [figure.add_subplot(grid[0, column]) for column in range(2)]
         for axes, run, name in zip(maps, (found.run, found.measurement), ("computed", "measured"), strict=True):
