@@ -248,7 +248,7 @@ def test_displacement_is_in_micrometres(run: Run) -> None:
 def test_displacement_without_a_disk_is_that_of_the_journal(run: Run) -> None:
     rigid = as_run({name: run[name] for name in run.signals if not name.startswith("disk")})
     assert "displacement of the journal" in texts(displacement_figure([rigid]))
-    with pytest.raises(RunFileError, match="disk_x_m"):
+    with pytest.raises(InputError, match="is not a point of the run"):
         displacement_figure([rigid], "disk")
 
 
