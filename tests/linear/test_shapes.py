@@ -140,7 +140,7 @@ def test_the_map_shows_the_films_of_the_case() -> None:
     mean = 0.5 * np.trace(resting[0].films[0].stiffness)
     assert found.film_stiffness[0, 0] == pytest.approx(mean)
     labels = [line.get_label() for line in critical_map_figure(found).axes[0].get_lines()]
-    assert "films at rest" in labels
+    assert "stiffness of the films" in labels
 
 
 @pytest.mark.parametrize("words", [["stability", "jeffcott", "--shapes", "200 Hz"], ["response", "jeffcott", "--map"]])
