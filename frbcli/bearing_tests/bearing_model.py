@@ -12,7 +12,7 @@ from frbcli.bearing_tests.steady_film import Array, FilmMoment
 from frbcli.case.schema import Case
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion
-from frbcli.film.rectangles.film import evaluate
+from frbcli.film.rectangles.film import FilmForce, evaluate
 from frbcli.scene.machine.bearing_model_films import bearing_film
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
@@ -21,14 +21,15 @@ UNKNOWN = math.nan
 
 def model_moment(case: Case, plan: KinematicPlan, motion: Motion) -> FilmMoment:
     """The force for a motion; what a model does not tell is NaN, and there is no field."""
-    x, y = model_forces(case, plan, [motion])[0]
+    x, y = model_forces(case, plan, [motion])[0].force
     return FilmMoment(None, _loads(float(x), float(y)), UNKNOWN, 0, 0)
 
 
 def model_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> Course:
     """The forces along a path at the times after the first; times: (n,) s."""
     motions = [path(float(time)) for time in times[1:]]
-    force, displacement = model_forces(case, plan, motions), np.array([motion.d for motion in motions])
+    force = np.array([moment.force for moment in model_forces(case, plan, motions)])
+    displacement = np.array([motion.d for motion in motions])
     x, y = force[np.argmax(np.hypot(*force.T))]
     history = History(
         time_s=times[1:],
@@ -40,12 +41,18 @@ def model_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> C
     return Course(history, None, _loads(float(x), float(y)), UNKNOWN, 0, 0, "")
 
 
-def model_forces(case: Case, plan: KinematicPlan, motions: list[Motion]) -> Array:
-    """(n, 2) forces in N on the journal by the whole bearing."""
+def model_force(
+    case: Case, plan: KinematicPlan, _: tuple[int, int], motion: Motion, __: FilmForce | None
+) -> FilmForce:
+    """The force in a motion, as film_force of steady_film.py."""
+    return model_forces(case, plan, [motion])[0]
+
+
+def model_forces(case: Case, plan: KinematicPlan, motions: list[Motion]) -> list[FilmForce]:
+    """Forces on the journal by the whole bearing."""
     assert plan.rectangle is not None
     film, c = bearing_film(case, plan.rectangle), plan.section.clearance
-    found = [evaluate(film, c, c * np.array(motion.d), c * np.array(motion.v), motion.omega) for motion in motions]
-    return np.array([moment.force for moment in found])
+    return [evaluate(film, c, c * np.array(motion.d), c * np.array(motion.v), motion.omega) for motion in motions]
 
 
 def _loads(x: float, y: float) -> FilmLoads:

@@ -22,6 +22,7 @@ from frbcli.bearing_tests.history import (
 from frbcli.bearing_tests.journal_path import Path
 from frbcli.bearing_tests.steady_film import FilmField, FilmMoment, pressure_at
 from frbcli.case.schema import Case
+from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.loads import estimate
@@ -35,12 +36,10 @@ from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Array = NDArray[np.float64]
 
-ITERATIONS = 30
 SETTLED = 1e-5  # force left over, relative to the load
 TOLERATED = 1e-2  # the same where no position is better: with a steep step the force itself is not smoother
 PATIENCE = 5  # positions that are not better
 DERIVATIVES = 1e-2  # a solution that is unsettled by more of its force has none to trust
-GAP_KEPT = 0.7  # a step leaves the narrowest gap this share of it
 GENTLE = 0.9  # x_1 of a step less steep, with which the position is sought first
 STARTS = (0.6, 0.3, 0.85, 0.15)
 ATTITUDE = math.radians(40.0)
@@ -142,32 +141,26 @@ def _moment(
     return MovedFilm(time, turned(motion.d, angle), found, probe, gap, solution.iterations)
 
 
-def _rest(film: PublishedFilm, load: float, omega: float, position: Array) -> tuple[Array, NodeState]:
-    """Newton's method with the derivatives that the film gives."""
-    target, slope, least, since = np.array([0.0, load]), np.eye(2), math.inf, 0
-    state: NodeState | None = None
-    best = (position, film.full())
-    for _ in range(ITERATIONS):
-        solution = film.steady(Motion((float(position[0]), float(position[1])), (0.0, 0.0), omega), state)
-        missing = target - solution.response.force
-        left = float(np.hypot(*missing)) / load
-        settled = solution.unsettled < DERIVATIVES
-        slope = solution.response.by_d if settled or least == math.inf else slope
-        since = 0 if left < least else since + 1
-        best, least = ((position, solution.state), left) if since == 0 else (best, least)
-        if left < SETTLED or since == PATIENCE:
-            break
-        step = np.asarray(np.linalg.solve(slope, missing), dtype=np.float64)
-        position = np.asarray(position + _limited(position, step), dtype=np.float64)
-        state = solution.state if settled else None
-    if least < TOLERATED:
-        return best
-    raise NotConverged(f"{least:.1e} of the load is left over at {np.round(best[0], 3)}")
+def _rest(film: PublishedFilm, load: float, omega: float, start: Array) -> tuple[Array, NodeState]:
+    """Where a film carries a load, sought from a displacement (2,) over the clearance, and the film there."""
+    c = film.section.clearance
 
+    def balance(position: Array, before: ForceBalance[PublishedSolution] | None) -> ForceBalance[PublishedSolution]:
+        x, y = (position[0] / c).tolist()
+        trusted = before is not None and before.films.unsettled < DERIVATIVES
+        state = before.films.state if before is not None and trusted else None
+        solution = film.steady(Motion((x, y), (0.0, 0.0), omega), state)
+        slope = solution.response.by_d / c
+        if before is not None and solution.unsettled >= DERIVATIVES:
+            slope = before.slope
+        return ForceBalance(solution.response.force - [0.0, load], slope, solution)
 
-def _limited(position: Array, step: Array) -> Array:
-    largest = (1.0 - GAP_KEPT) * (1.0 - float(np.hypot(*position)))
-    return np.asarray(step * min(1.0, largest / max(float(np.hypot(*step)), np.finfo(float).tiny)), dtype=np.float64)
+    search = Search(step=0.0, force=SETTLED * load, share=1.0, patience=PATIENCE)
+    found = search_rest(balance, c * start[None], np.array([[c]]), search)
+    place: Array = found.position[0] / c
+    if found.balance.left < TOLERATED * load:
+        return place, found.balance.films.state
+    raise NotConverged(f"{found.balance.left / load:.1e} of the load is left over at {np.round(place, 3)}")
 
 
 def _pair(solution: PublishedSolution) -> tuple[float, float]:

@@ -5,29 +5,33 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.bearing_tests.steady_film import film_force, settled
+from frbcli.bearing_tests.steady_film import film_force
 from frbcli.case.schema import Case
-from frbcli.equilibrium.under_load import position_under_load
+from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
 from frbcli.errors import NotConverged
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
-from frbcli.film.rectangles.film import evaluate, make_film
+from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.section_faults import no_inflow
-from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
+from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Array = NDArray[np.float64]
-ForceOf = Callable[[Case, KinematicPlan, Motion, tuple[int, int]], Array]  # (2,) N on the journal, on cells
+Near = Callable[[Motion, FilmForce | None], FilmForce]  # on the journal in a motion, sought from one near by
+ForceOf = Callable[[Case, KinematicPlan, tuple[int, int], Motion, FilmForce | None], FilmForce]  # the same on cells
 
 BAR = 1e5
 COARSE_CELLS = (80, 20)
 TABLE_MESH = Mesh(4, 64)  # of the film that tells where to begin
 STARTS = (0.6, 0.85, 0.3, 0.95)
 ATTITUDE = math.radians(20.0)
+SETTLED = 1e-5  # force left over, relative to the load
+SMALLEST_SHARE = 0.05  # of a step that is tried
 
 
 def resting_displacement(
@@ -56,8 +60,8 @@ def resting_displacement(
         try:
             coarse = start
             if plan.on_cells:
-                coarse = position_under_load(_missing(case, plan, target, omega, COARSE_CELLS, force), target, start)
-            return position_under_load(_missing(case, plan, target, omega, plan.cells, force), target, coarse)
+                coarse = _carried(partial(force, case, plan, COARSE_CELLS), plan.section, target, omega, start)
+            return _carried(partial(force, case, plan, plan.cells), plan.section, target, omega, coarse)
         except NotConverged as problem:
             problems.append(str(problem))
     raise NotConverged(
@@ -74,39 +78,35 @@ def _capacity(case: Case, plan: KinematicPlan, omega: float, force_of: ForceOf) 
     for e in sorted(STARTS):
         place = (side * e * math.sin(ATTITUDE), -e * math.cos(ATTITUDE))
         with suppress(NotConverged):
-            force = force_of(case, plan, Motion(place, (0.0, 0.0), omega), COARSE_CELLS)
-            forces[e] = float(np.linalg.norm(force))
+            found = force_of(case, plan, COARSE_CELLS, Motion(place, (0.0, 0.0), omega), None)
+            forces[e] = float(np.linalg.norm(found.force))
     if not forces:
         return f"There is no steady film at the eccentricities {', '.join(f'{e:g}' for e in sorted(STARTS))}."
     highest = max(forces, key=forces.__getitem__)
     return f"The largest film force found is {forces[highest]:.3g} N, at an eccentricity of {highest:g}."
 
 
-def _in_a_table(bearing: Section, target: Array, omega: float, starts: list[Array]) -> list[Array]:
+def _in_a_table(bearing: Section, load: Array, omega: float, starts: list[Array]) -> list[Array]:
     """The resting position in the tabulated half-Sommerfeld film, to begin from, if there is one."""
     film, c, still = make_film(bearing, "finite", "half-sommerfeld", TABLE_MESH), bearing.clearance, np.zeros(2)
     for start in starts:
         with suppress(NotConverged):
-            return [position_under_load(lambda d: evaluate(film, c, c * d, still, omega).force - target, target, start)]
+            return [_carried(lambda motion, _: evaluate(film, c, c * np.array(motion.d), still, omega), bearing, load,
+                             omega, start)]  # fmt: skip
     return []
 
 
-def _missing(
-    case: Case, plan: KinematicPlan, target: Array, omega: float, cells: tuple[int, int], force_of: ForceOf
-) -> Callable[[Array], Array]:
-    """Force (2,) in N that a displacement over the clearance leaves over; cells begin with their last state."""
-    before: Array | None = None
+def _carried(force: Near, section: Section, load: Array, omega: float, start: Array) -> Array:
+    """(2,) displacement over the clearance at which a film carries the load (2,). Raises NotConverged."""
 
-    def missing(d: Array) -> Array:
-        nonlocal before
-        motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
-        if not plan.on_cells:
-            return force_of(case, plan, motion, cells) - target
-        law = law_at(case, plan, math.hypot(*motion.d))
-        try:
-            force, before = settled(plan.section, law, motion, cells, before)
-        except NotConverged:
-            force, before = settled(plan.section, law, motion, cells, None)
-        return force - target
+    def balance(position: Array, before: ForceBalance[FilmForce] | None) -> ForceBalance[FilmForce]:
+        x, y = (position[0] / section.clearance).tolist()
+        found = force(Motion((x, y), (0.0, 0.0), omega), before.films if before else None)
+        return ForceBalance(found.force - load, found.by_displacement, found)
 
-    return missing
+    size, c = float(np.linalg.norm(load)), section.clearance
+    found = search_rest(balance, c * start[None], np.array([[c]]), Search(0.0, SETTLED * size, SMALLEST_SHARE))
+    place: Array = found.position[0] / c
+    if not found.settled:
+        raise NotConverged(f"{found.balance.left / size:.1e} of the load is left over at {np.round(place, 3)}.")
+    return place

@@ -9,20 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
-from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, force, loads
+from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.steady_force import settled_force
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
+from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 
 Array = NDArray[np.float64]
 
 MODAL_MESH, COARSE_MODAL_MESH = Mesh(10, 192), Mesh(5, 96)
+NUDGE = 1e-3  # share of the gap by which the journal is moved for a derivative
 
 
 @dataclass(frozen=True)
@@ -75,14 +79,13 @@ def steady_film(
 
 def settled(
     section: Section, law: Law, motion: Motion, cells: tuple[int, int], start: Array | None
-) -> tuple[Array, Array]:
-    """Force (2,) in N on the journal by the whole bearing, and the unknown of the cells, from which to start a motion
-    that is nearly the same: it is sought from `start`, or from half the cells. Raises NotConverged."""
+) -> FilmForce:
+    """Force of the whole bearing on the journal, and the unknown of the cells, from which to start a motion that is
+    nearly the same: it is sought from `start`, or from half the cells. Raises NotConverged."""
     coarse, film = _films(section, law, motion, cells)
     if start is None or start.shape != film.grid.shape:  # the edges of openings cut other cells
         start = film.from_coarser(coarse, FilmSolver(coarse).steady(motion).w)
-    solution = FilmSolver(film).steady(motion, start)
-    return np.array(force(film, film.mean_pressure(solution.state))), solution.w
+    return settled_force(film, motion, FilmSolver(film).steady(motion, start))
 
 
 def _films(
@@ -111,16 +114,32 @@ def film_moment(
     return replace(found, loads=told, force_error=estimate(force, coarse))
 
 
-def film_force(case: Case, plan: KinematicPlan, motion: Motion, cells: tuple[int, int]) -> Array:
-    """(2,) force in N on the journal by the whole bearing. Raises NotConverged."""
+def film_force(
+    case: Case, plan: KinematicPlan, cells: tuple[int, int], motion: Motion, near: FilmForce | None
+) -> FilmForce:
+    """Force of the whole bearing on a journal that stays where it is; near: in a motion near by, from which it is
+    sought. Raises NotConverged."""
     if plan.modal:
-        return np.array(modal_force(plan, motion))
+        return _modal_differences(plan, motion)
     law = law_at(case, plan, math.hypot(*motion.d))
-    return np.array(steady_film(plan.section, law, motion, cells).loads.force)
+    try:
+        return settled(plan.section, law, motion, cells, None if near is None else near.field)
+    except NotConverged:
+        return settled(plan.section, law, motion, cells, None)
+
+
+def _modal_differences(plan: KinematicPlan, motion: Motion) -> FilmForce:
+    """The force of the modal film, with its derivative by the displacement."""
+    force, nudge = np.array(modal_force(plan, motion)), NUDGE * (1.0 - math.hypot(*motion.d))
+    x, y = motion.d
+    moved = (replace(motion, d=place) for place in ((x + nudge, y), (x, y + nudge)))
+    changes = [np.array(modal_force(plan, each)) - force for each in moved]
+    return FilmForce(force, np.column_stack(changes) / (nudge * plan.section.clearance), np.full((2, 2), math.nan))
 
 
 def modal_force(plan: KinematicPlan, motion: Motion, mesh: Mesh = MODAL_MESH) -> tuple[float, float]:
-    """The same of a rectangular gap without a state, by the accurate modal film."""
+    """(2,) force in N on the journal by the whole bearing with a rectangular gap and no state, by the accurate modal
+    film."""
     assert plan.rectangle is not None
     place, velocity = _si(plan, motion)
     force = direct_force(plan.rectangle, plan.cavitation, mesh, place, velocity, motion.omega)

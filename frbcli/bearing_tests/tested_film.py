@@ -6,9 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from frbcli.bearing_tests.bearing_model import model_course, model_forces, model_moment
+from frbcli.bearing_tests.bearing_model import model_course, model_force, model_moment
 from frbcli.bearing_tests.history import Course, film_course
 from frbcli.bearing_tests.journal_path import Path
 from frbcli.bearing_tests.published import published_course, published_moment, resting_in_published
@@ -85,11 +83,7 @@ class ModelFilm(TestedFilm):
 
     def rest(self, load: float, omega: float) -> tuple[Array, NodeState | None]:
         """See TestedFilm."""
-
-        def force(case: Case, plan: KinematicPlan, motion: Motion, _: tuple[int, int]) -> Array:
-            return np.asarray(model_forces(case, plan, [motion])[0])
-
-        return resting_displacement(self.case, self.plan, load, omega, force), None
+        return resting_displacement(self.case, self.plan, load, omega, model_force), None
 
     def moment(self, motion: Motion, _: NodeState | None) -> FilmMoment:
         """See TestedFilm."""

@@ -8,13 +8,13 @@ journals: they are no unknowns of their own.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.equilibrium.under_load import largest_share
+from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
@@ -23,10 +23,7 @@ from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
 
-ITERATIONS = 80
-STEP = 1e-10  # of the clearance: a full Newton step below this ends the iteration
-SMALLEST_GAP_CHANGE = 0.25  # a step may shrink 1 - eps of a journal to this share of it
-SMALLEST_SHARE = 1e-8  # of a Newton step that is tried
+SEARCH = Search(step=1e-10, force=0.0, share=1e-8)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
 OUTER_START = 0.9  # eccentricity of the last start that is tried
 NUDGE = 1e-6  # of the clearance: of the differences by which the rings' speeds follow a journal
@@ -66,10 +63,12 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
         starts.insert(0, system.rotor.journals @ start)
     left = np.inf
     for first in starts:
-        position, residual, films = _newton(system, held, omega, first)
-        if residual is None:
-            return _position(system, held, omega, held.shape + held.following @ position.ravel(), films)
-        left = min(left, residual)
+        found = search_rest(partial(_balance, system, held, omega), first, clearances, SEARCH)
+        within = np.linalg.norm(found.position / clearances, axis=1).max() < LARGEST_ECCENTRICITY
+        if found.settled and within:
+            displacements = held.shape + held.following @ found.position.ravel()
+            return _position(system, held, omega, displacements, found.balance.films)
+        left = min(left, found.balance.left)
     if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
         return _position(system, held, omega, held.shape, ())
     raise NotConverged(
@@ -107,40 +106,11 @@ def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) 
     return speeds
 
 
-def _newton(
-    system: System, held: HeldRotor, omega: float, start: Array
-) -> tuple[Array, float | None, tuple[FilmForce, ...]]:
-    """The position reached, the force in N that is left over, None if it is at rest, and the films."""
-    clearances = np.array(system.clearances)[:, None]
-    position = start
-    residual, slope, forces = _balance(system, held, omega, position, ())
-    for _ in range(ITERATIONS):
-        if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
-            break
-        step = -np.linalg.solve(slope, residual).reshape(-1, 2)
-        pairs = zip(position / clearances, step / clearances, strict=True)
-        share = min([1.0, *(largest_share(d, change, SMALLEST_GAP_CHANGE) for d, change in pairs)])
-        length = np.abs(step / clearances).max()
-        while share > SMALLEST_SHARE:
-            following = position + share * step
-            new_residual, new_slope, new_forces = _balance(system, held, omega, following, forces)
-            if length < STEP or np.linalg.norm(new_residual) < np.linalg.norm(residual):
-                break
-            share *= 0.5
-        else:
-            break
-        position, residual, slope, forces = following, new_residual, new_slope, new_forces
-        if length < STEP and share == 1.0:
-            resting = np.linalg.norm(position / clearances, axis=1).max() < LARGEST_ECCENTRICITY
-            return position, None if resting else float(np.linalg.norm(residual)), forces
-    return position, float(np.linalg.norm(residual)), forces
-
-
 def _balance(
-    system: System, held: HeldRotor, omega: float, position: Array, before: Sequence[FilmForce]
-) -> tuple[Array, Array, tuple[FilmForce, ...]]:
-    """Sum (2 films,) of what rotor and films put on the journals, N, its derivative (2 films, 2 films), N/m, and the
-    films; before: those of a place near by, from whose fields films on cells are sought.
+    system: System, held: HeldRotor, omega: float, position: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
+) -> ForceBalance[tuple[FilmForce, ...]]:
+    """What rotor and films put on the journals; before: at a place near by, from whose fields films on cells are
+    sought.
 
     The derivative by the speed of a film is that of the motion of its gap, as if its journal moved across: a law that
     follows the speed itself makes Newton's method a little slower, and the position no other one.
@@ -151,7 +121,7 @@ def _balance(
     following = _following_omegas(system, held, omega, position)
     forces = []
     for i, many in enumerate(system.rotor.multiplicity):
-        near = before[i] if before else None
+        near = before.films[i] if before else None
         force = system.films.force(i, position[i], np.zeros(2), float(omegas[i]), near)
         own = slice(2 * i, 2 * i + 2)
         surplus[own] += many * force.force
@@ -159,7 +129,7 @@ def _balance(
         by_omega = 0.5 * force.by_velocity @ [position[i, 1], -position[i, 0]]
         slope[own] += many * np.outer(by_omega, following[i])
         forces.append(force)
-    return surplus, slope, tuple(forces)
+    return ForceBalance(surplus, slope, tuple(forces))
 
 
 def _following_omegas(system: System, held: HeldRotor, omega: float, position: Array) -> Array:

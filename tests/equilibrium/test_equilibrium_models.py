@@ -87,7 +87,7 @@ def test_coefficients_are_differences_of_the_steady_film(row: dict[str, str]) ->
     def slope(displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """-dF along a change of displacement over the clearance and of its rate, by a central difference."""
         ends = (Motion(tuple(rest + sign * displacement), tuple(sign * velocity), omega) for sign in (1.0, -1.0))
-        ahead, behind = (film_force(case, plan, motion, plan.cells) for motion in ends)
+        ahead, behind = (film_force(case, plan, plan.cells, motion, None).force for motion in ends)
         return (behind - ahead) / (2.0 * clearance)
 
     none, step = np.zeros(2), 1e-4
@@ -113,7 +113,7 @@ def test_elrods_load_falls_with_the_supply_pressure_to_nothing() -> None:
         settings = ["bearing.ends=oil-bath", f"bearing.supply.pressure={supply}"]
         case = load_case("bearing", settings)
         plan = kinematic_plan(case, "elrod")
-        force = film_force(case, plan, Motion((0.2, -0.56), (0.0, 0.0), 40.0 * math.pi), (64, 16))
+        force = film_force(case, plan, (64, 16), Motion((0.2, -0.56), (0.0, 0.0), 40.0 * math.pi), None).force
         sizes.append(float(np.linalg.norm(force)))
     assert sizes[0] < 2.0  # N; 60 N if it is full
     assert sizes[1] == pytest.approx(0.1 * sizes[0], rel=0.3)

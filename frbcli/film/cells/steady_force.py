@@ -47,15 +47,19 @@ def steady_force(
         if start is None:
             raise
         solution = steady_solution(film, motion)
-    data = volume_films([film_at(film, math.hypot(*motion.d), omega)])
-    m, k = film.grid.shape
+    return settled_force(film_at(film, math.hypot(*motion.d), omega), motion, solution)
+
+
+def settled_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> FilmForce:
+    """Force and derivatives of a steady film that is solved, in SI units."""
+    data, c, (m, k) = volume_films([film]), film.section.clearance, film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
     states[BEFORE_UPSTREAM] = solution.before
     slopes = []
     for g in (CARRIED, HELD):
         scratch = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
         values = film_newton(
-            data, 0, solution.w.copy(), GridMotion(*motion.d, omega, *motion.v, g=g), nothing, states, *scratch,
+            data, 0, solution.w.copy(), GridMotion(*motion.d, motion.omega, *motion.v, g=g), nothing, states, *scratch,
             np.zeros(FLOWS),
         )  # fmt: skip
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)

@@ -1,0 +1,101 @@
+"""Newton's method for rest: the journals move until no force is left over on them.
+
+A machine, a journal under a load and a film in any form differ in the forces that are left over alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.parabola import share_within
+
+Array = NDArray[np.float64]
+Films = TypeVar("Films")
+
+ITERATIONS = 80
+GAP_KEPT = 0.25  # a step may shrink 1 - eps of a journal to this share of it
+SHORTER = 0.5  # of the share of a step that is tried, while the force that is left over does not fall
+
+
+@dataclass(frozen=True)
+class ForceBalance(Generic[Films]):
+    """Journals at given places. residual: (2 films,) N left over on them; slope: (2 films, 2 films) its derivative by
+    the places, N/m; films: their state there, from which places near by are solved."""
+
+    residual: Array
+    slope: Array
+    films: Films
+
+    @property
+    def left(self) -> float:
+        """Size of the residual, N."""
+        return float(np.linalg.norm(self.residual))
+
+
+@dataclass(frozen=True)
+class Search:
+    """When a search ends. step: over the clearance, a full step below it has arrived; force: N, and so has less left
+    over; share: smallest one of a step that is tried until less is left over; patience: places that may be no better
+    one after the other, where forces have jumps."""
+
+    step: float
+    force: float
+    share: float
+    patience: int = 0
+
+
+@dataclass(frozen=True)
+class SearchEnd(Generic[Films]):
+    """Where a search ended. position: (films, 2) in m; settled: whether the journals rest there."""
+
+    position: Array
+    balance: ForceBalance[Films]
+    settled: bool
+
+
+def search_rest(
+    balance: Callable[[Array, ForceBalance[Films] | None], ForceBalance[Films]],
+    start: Array,
+    clearances: Array,
+    search: Search,
+) -> SearchEnd[Films]:
+    """Where journals rest, sought from `start` (films, 2) in m; clearances: (films, 1) in m.
+
+    balance: of the journals at a position (films, 2) in m, and the balance at the position before, if there is one.
+    Raises what it raises.
+    """
+    best = here = SearchEnd(start, balance(start, None), False)
+    since = 0
+    for _ in range(ITERATIONS):
+        found = here.balance
+        if found.left < search.force:
+            return replace(here, settled=True)
+        if not (np.isfinite(found.slope).all() and np.linalg.matrix_rank(found.slope) == len(found.slope)):
+            break
+        step = -np.linalg.solve(found.slope, found.residual).reshape(-1, 2)
+        pairs = zip(here.position / clearances, step / clearances, strict=True)
+        share = min([1.0, *(largest_share(*pair) for pair in pairs)])
+        arrives = bool(np.abs(step / clearances).max() < search.step)
+        while True:
+            following = here.position + share * step
+            new = balance(following, found)
+            if arrives or new.left < found.left or SHORTER * share <= search.share:
+                break
+            share *= SHORTER
+        here = SearchEnd(following, new, arrives and share == 1.0)
+        since = 0 if arrives or new.left < best.balance.left else since + 1
+        best = here if since == 0 else best
+        if here.settled or since > search.patience:
+            break
+    return best
+
+
+def largest_share(position: Array, step: Array) -> float:
+    """Largest share of a step (2,), at most 1, after which a journal at `position` (2,) keeps GAP_KEPT of its gap; both
+    over the clearance."""
+    return share_within(position, step, 1.0 - GAP_KEPT * (1.0 - float(np.linalg.norm(position))))
