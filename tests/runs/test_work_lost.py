@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from paths import ROOT
 
-from frbcli.bearing_tests import kinematic
+from frbcli.bearing_tests import tested_film
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
@@ -184,7 +184,7 @@ def test_a_ladder_without_its_reference_is_none(monkeypatch: pytest.MonkeyPatch)
 def test_models_of_a_test_that_are_done_are_printed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    after_calls(monkeypatch, kinematic, "film_moment", 1, KeyboardInterrupt())
+    after_calls(monkeypatch, tested_film, "film_moment", 1, KeyboardInterrupt())
     words = ["rotation", "bearing-axial-groove", "--set", "accuracy.mesh=[4, 16]", "--no-picture", "--json"]
     assert frb([*words, "--cavitation", "half-sommerfeld,reynolds"]) == 130
     said = capsys.readouterr()
