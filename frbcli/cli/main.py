@@ -70,7 +70,7 @@ COMMANDS = {
     ),
     "bearing": (
         "frbcli.cli.bearings.bearing",
-        "Resting position, K, D, loss, flow of every film over speed or eccentricity.",
+        "Resting position, K, C, loss, flow of every film over speed or eccentricity.",
         "frb bearing jeffcott --speed '50 Hz' --speed '100 Hz' --csv sheet.csv",
     ),
     "fit": (
@@ -121,6 +121,15 @@ COMMANDS = {
     ),
 }
 
+# The commands in the order of an engineer's work, as `frb --help` shows them
+GROUPS = {
+    "Describe a machine": ("cases", "check", "schema"),
+    "Run": ("runup", "rundown"),
+    "Look at a run": ("waterfall", "plot", "report"),
+    "Study a machine": ("bearing", "stability", "response", "limit-cycles", "sweep", "compare", "accuracy"),
+    "Test a bearing": ("rotation", "squeeze", "whirl"),
+    "Exchange data": ("fit", "export"),
+}
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
 LIGHT = ("cases", "schema")  # compute nothing
 
@@ -158,8 +167,10 @@ class LazyGroup(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, summary) for name, (_, summary, _) in COMMANDS.items()])
+        longest = max(map(len, COMMANDS))
+        for group, names in GROUPS.items():
+            with formatter.section(group):
+                formatter.write_dl([(f"{name:<{longest}}", COMMANDS[name][1]) for name in names])
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import datetime
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
@@ -20,6 +22,7 @@ from frbcli.errors import Fault, FrbError, InputError, printable
 from frbcli.plot.run.displacement import displacement_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure
 from frbcli.plot.run.film_signals import film_signal_figure
+from frbcli.plot.run.heat import heat_figure
 from frbcli.plot.run.oil_content import SIGNAL as OIL_CONTENT
 from frbcli.plot.run.oil_content import oil_content_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
@@ -30,8 +33,9 @@ from frbcli.plot.spectra.levels import levels
 from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
+from frbcli.report.speed_words import SpeedWords, speed_words
 from frbcli.report.waterfall import Waterfall, page_waterfall
-from frbcli.results.columns import event_place
+from frbcli.results.columns import event_name
 from frbcli.results.files.kinds import PAGE
 from frbcli.results.files.place import require_places
 from frbcli.results.files.write import write
@@ -41,10 +45,12 @@ from frbcli.runs.errors.account import account
 from frbcli.runs.record.header import FILM_SIGNALS
 from frbcli.scene.machine.findings import Findings, findings
 from frbcli.scene.planning.plan import make_plan
+from frbcli.version import __version__
 
 MOST_EVENTS = 60  # of the table and the picture
 CHOSEN = 4  # moments of orbits and spectra, where none are asked for
 SPEEDS_NOTE = "Orbits of the last revolutions before a moment, and the spectrum about it."
+NARROW_COLUMNS = 2  # of the legends of narrow pictures
 NARROW = 4.9  # inches: the width of one of two pictures beside each other
 TEXTS = ("page.html", "style.css", "waterfall.js")
 
@@ -58,8 +64,9 @@ class ShownRun:
 
 
 def write_report(
-    run: Run, path: str | Path, speeds_Hz: Sequence[float] = (), signal: str = "journal"
-) -> Path:
+    run: Run, path: str | Path, speeds_Hz: Sequence[float] = (), signal: str = "journal", author: str = "",
+    both_units: bool = False,
+) -> Path:  # fmt: skip
     """Write the page of a run.
 
     Parameters
@@ -72,6 +79,10 @@ def write_report(
         Rotor speeds in Hz at which spectra and orbits are shown.
     signal : str
         The point: "journal", "disk", or the name of a bearing or disk.
+    author : str
+        Who made it, for the line on top, which also has the date and the version.
+    both_units : bool
+        Rotor speeds in Hz and in rpm; without it in rpm where the case gives them so, else in Hz.
 
     Returns
     -------
@@ -91,22 +102,26 @@ def write_report(
     """
     path = Path(path)
     require_places([(path, PAGE)])
-    write(path, PAGE, report(run, speeds_Hz, signal))
+    write(path, PAGE, report(run, speeds_Hz, signal, author, both_units))
     return path
 
 
-def report(run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal") -> str:
+def report(
+    run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal", author: str = "", both_units: bool = False
+) -> str:
     """The page as HTML. speeds_Hz: of the orbits and spectra, by default those of the events and the last one; signal:
-    of waterfall, orbits and spectra, as in `frb waterfall`.
+    of waterfall, orbits and spectra, as in `frb waterfall`; author and both_units: see write_report.
 
     Raises RunFileError for a run without samples, InputError for a speed that the run does not reach.
     """
     end = ends(run)[1]
-    found = events(run)[:MOST_EVENTS]
+    found = with_whirl_names(events(run)[:MOST_EVENTS])
+    unit = speed_words(run, both_units)
     spectra = run_spectra(run, signal, None, "x") if len(run) >= FEWEST_SAMPLES else None
     waterfall: Waterfall | None = None
     if spectra is not None and min(spectra.level_dB.shape) > 1:  # else it has no area
-        waterfall = page_waterfall(levels(run, signal, spectra), clearance(run, bearing_of(run, signal)), found)
+        room = clearance(run, bearing_of(run, signal))
+        waterfall = page_waterfall(levels(run, signal, spectra), room, found, unit)
     times = _moments(run, speeds_Hz, found, end)
     title, words = heading([run])
     environment = Environment(
@@ -116,14 +131,16 @@ def report(run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal") -
     return environment.get_template(TEXTS[0]).render(
         title=printable(title),
         subtitle=printable(", ".join(word for word in (run.command.replace("run", "run-"), words, run.status) if word)),
+        made=printable(", ".join(word for word in (_today(), f"frb {__version__}", author) if word)),
         style=style,
         script=script,
-        cards=_cards(run, found),
-        events=[_event(number, event) for number, event in enumerate(found, start=1)],
+        cards=_cards(run, found, unit),
+        events=[_event(number, event, unit) for number, event in enumerate(found, start=1)],
+        speed_unit=unit.head,
         waterfall=None if waterfall is None else Waterfall(Markup(waterfall.svg), Markup(waterfall.data)),
         waterfall_note="" if spectra is None else _note(run, signal, reading(spectra)),
         courses=_courses(run),
-        speeds=None if spectra is None else _shown(speeds_figure(run, times, spectra, signal), SPEEDS_NOTE),
+        speeds=None if spectra is None else _shown(speeds_figure(run, times, spectra, signal, unit.words), SPEEDS_NOTE),
         account=account(run) if run.cost and run.error else [],
         file=f"{run.case_name or 'case'}.toml",
         commands=_commands(run),
@@ -172,10 +189,14 @@ def _value(value: Any) -> tuple[str, str, str]:
     return value.key, f"{number} {value.unit}".rstrip(), value.shown if value.unit else ""
 
 
-def _cards(run: Run, found: Sequence[dict[str, Any]]) -> list[tuple[str, str]]:
+def _today() -> str:
+    return datetime.datetime.now(tz=datetime.UTC).astimezone().date().isoformat()
+
+
+def _cards(run: Run, found: Sequence[dict[str, Any]], unit: SpeedWords) -> list[tuple[str, str]]:
     """The figures that are asked for first."""
     fastest = max(float(np.max(np.abs(run[SPEED]))), 0.0)
-    cards = [(f"{fastest:.4g} Hz", f"highest speed, {60.0 * fastest:.0f} rpm")]
+    cards = [(unit.words(fastest), "highest speed")]
     for kind, words in (("critical-speed", "critical speed"), ("onset", "onset of whirl")):
         first = next((event for event in found if event["kind"] == kind), None)
         if first is None:
@@ -183,24 +204,24 @@ def _cards(run: Run, found: Sequence[dict[str, Any]]) -> list[tuple[str, str]]:
             continue
         ratio = first["frequency_ratio"]
         share = "" if ratio in (None, 1.0) else f", {ratio:.3f} ω"
-        cards.append((f"{first['speed_Hz']:.1f} Hz", words + share))
+        cards.append((unit.words(first["speed_Hz"]), words + share))
     eccentricities = [float(np.max(run[name])) for name in run.signals if name.startswith("eccentricity")]
     if eccentricities:
         cards.append((f"{max(max(eccentricities), 0.0):.3f}", "largest eccentricity"))
     if run.error.get("eccentricity") is not None:
-        cards.append((f"{run.error['eccentricity']:.1e}", "stated error of the eccentricity"))
+        until = f", until {run.error['quiet_until_s']:.3g} s" if "quiet_until_s" in run.error else ""
+        cards.append((f"{run.error['eccentricity']:.1e}", f"stated error of the eccentricity{until}"))
     if "cpu_s" in run.cost:
         cards.append((f"{run.cost['cpu_s']:.3g} s", "CPU time"))
     return cards
 
 
-def _event(number: int, event: dict[str, Any]) -> tuple[str, ...]:
+def _event(number: int, event: dict[str, Any], unit: SpeedWords) -> tuple[str, ...]:
     def told(key: str, form: str) -> str:
         return "-" if event[key] is None else format(event[key], form)
 
-    place = event_place(event)
-    name = event["kind"].replace("-", " ") + (f", {place}" if place else "")
-    return (str(number), name.replace("_", " "), told("t_s", ".3f"), told("speed_Hz", ".1f"),
+    named = event_name(event | {"film": (event["film"] or "").replace("_", " ")})
+    return (str(number), named, told("t_s", ".3f"), unit.cell(event["speed_Hz"]),
             told("frequency_Hz", ".1f"), told("frequency_ratio", ".3f"))  # fmt: skip
 
 
@@ -219,6 +240,8 @@ def _courses(run: Run) -> list[ShownRun]:
         figures.append((ring_speed_figure([run]), "Speed of the rings over that of the rotor."))
     if any(name.startswith(OIL_CONTENT) for name in run.signals):
         figures.append((oil_content_figure([run]), "Oil fraction of the films."))
+    if any(name.startswith("temperature") for name in run.signals):
+        figures.append((heat_figure([run]), "Temperatures, viscosities, losses and side flows."))
     for kind, (quantity, _, _) in FILM_SIGNALS.items():
         if any(name.startswith(quantity) for name in run.signals):
             words = quantity.replace("_", " ")
@@ -226,6 +249,8 @@ def _courses(run: Run) -> list[ShownRun]:
     for figure, _ in figures:
         width, height = figure.get_size_inches()
         figure.set_size_inches(NARROW, height * NARROW / width)
+        for legend in figure.legends:
+            legend.set_ncols(NARROW_COLUMNS)
     return [_shown(*figure) for figure in figures]
 
 

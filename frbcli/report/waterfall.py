@@ -13,11 +13,14 @@ import numpy as np
 
 from frbcli.plot.spectra.levels import Levels, LOWEST_dB, STEP_dB, Values, scale_colours, ticks
 from frbcli.plot.spectra.waterfall import LEVELS_dB
+from frbcli.report.speed_words import SpeedWords
 from frbcli.report.svg import curve, drawing, element, line, text
 
-WIDTH, HEIGHT = 900.0, 470.0
-LEFT, RIGHT, TOP, BOTTOM = 62.0, 90.0, 52.0, 46.0
+WIDTH, HEIGHT = 900.0, 500.0
+LEFT, RIGHT, TOP, BOTTOM = 62.0, 90.0, 84.0, 46.0
+FLAG_ROWS, FLAG_ROW = 4, 16.0  # of the numbers of events above the picture
 BAR, BAR_WIDTH = WIDTH - RIGHT + 18.0, 14.0
+HERTZ = SpeedWords()
 FLAG = 7.5  # radius of the number of an event
 
 
@@ -29,9 +32,12 @@ class Waterfall:
     data: str
 
 
-def page_waterfall(found: Levels, clearance: float, events: Sequence[dict[str, Any]]) -> Waterfall:
-    """The waterfall of the levels of a run over the clearance in m; events: of the run, numbered from 1 on."""
-    return Waterfall(_picture(found, events), _numbers(found, clearance))
+def page_waterfall(
+    found: Levels, clearance: float, events: Sequence[dict[str, Any]], unit: SpeedWords = HERTZ
+) -> Waterfall:
+    """The waterfall of the levels of a run over the clearance in m; events: of the run, numbered from 1 on; unit: of
+    the rotor speeds above it."""
+    return Waterfall(_picture(found, events, unit), _numbers(found, clearance))
 
 
 def _numbers(found: Levels, clearance: float) -> str:
@@ -50,7 +56,7 @@ def _numbers(found: Levels, clearance: float) -> str:
     )
 
 
-def _picture(found: Levels, events: Sequence[dict[str, Any]]) -> str:
+def _picture(found: Levels, events: Sequence[dict[str, Any]], unit: SpeedWords) -> str:
     right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
     begin, end = _edges(found.time_s)
     top_Hz = _edges(found.frequency_Hz)[1]
@@ -80,12 +86,12 @@ def _picture(found: Levels, events: Sequence[dict[str, Any]]) -> str:
         parts.append(line(across(t), bottom, across(t), bottom + 4.0, "tick"))
         parts.append(text(across(t), bottom + 16.0, f"{t:g}"))
         speed = float(np.interp(t, found.time_s, found.speed_Hz))
-        parts.append(text(across(t), TOP - 8.0, f"{speed:.4g}", "small"))
+        parts.append(text(across(t), TOP - 8.0, unit.number(speed), "small"))
     for f in ticks(0.0, top_Hz):
         parts.append(line(LEFT - 4.0, up(f), LEFT, up(f), "tick"))
         parts.append(text(LEFT - 8.0, up(f) + 4.0, f"{f:g}", anchor="end"))
     parts.append(text(0.5 * (LEFT + right), HEIGHT - 8.0, "time in s"))
-    parts.append(text(right + 8.0, TOP - 8.0, "rotor, Hz", "small", "start"))
+    parts.append(text(right + 8.0, TOP - 8.0, f"rotor, {unit.unit}", "small", "start"))
     parts.append(
         element("text", "frequency in Hz", kind="label", text_anchor="middle",
                 transform=f"translate(16 {0.5 * (TOP + bottom):.0f}) rotate(-90)")
@@ -116,19 +122,23 @@ def _bar(bottom: float) -> list[str]:
 
 
 def _flags(events: Sequence[dict[str, Any]], across: Any, bottom: float, span: tuple[float, float]) -> list[str]:
-    """Numbered lines of the events; numbers that would meet stand in a higher row."""
-    parts, free = list[str](), [-1e9] * 2
+    """Numbered lines of the events; numbers that would meet stand in a higher row, and where all rows are taken the
+    line has none."""
+    lines, flags, free = list[str](), list[str](), [-1e9] * FLAG_ROWS
     for number, event in enumerate(events, start=1):
         if not span[0] <= event["t_s"] <= span[1]:
             continue
         x = across(event["t_s"])
-        row = next((row for row, until in enumerate(free) if x - FLAG > until), len(free) - 1)
+        row = next((row for row, until in enumerate(free) if x - FLAG > until), None)
+        if row is None:
+            lines.append(line(x, TOP, x, bottom, "event"))
+            continue
         free[row] = x + FLAG
-        y = TOP - 26.0 - 16.0 * row
-        parts.append(line(x, y + FLAG, x, bottom, "event"))
-        parts.append(element("circle", cx=x, cy=y, r=FLAG, kind="flag"))
-        parts.append(text(x, y + 3.5, str(number), "flagname"))
-    return parts
+        y = TOP - 26.0 - FLAG_ROW * row
+        lines.append(line(x, y + FLAG, x, bottom, "event"))
+        flags.append(element("circle", cx=x, cy=y, r=FLAG, kind="flag"))
+        flags.append(text(x, y + 3.5, str(number), "flagname"))
+    return lines + flags
 
 
 def _edges(middles: Values) -> tuple[float, float]:

@@ -25,9 +25,9 @@ EVENTS = (
            key="", flat=False),
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `clearance-step`"),
     Column("film", "", "film, none where there is but one"),
-    Column("t", "s", "time", shown=(Shown("time in s", ".3f"),)),
-    Column("speed", "Hz", "rotor speed", shown=(Shown("speed in Hz", ".1f"),)),
-    Column("frequency", "Hz", "frequency of the motion, if it has one", shown=(Shown("frequency in Hz", ".1f"),)),
+    Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
+    Column("speed", "Hz", "rotor speed", shown=(Shown("speed, Hz", ".1f"),)),
+    Column("frequency", "Hz", "frequency of the motion, if it has one", shown=(Shown("frequency, Hz", ".1f"),)),
     Column("frequency_ratio", "", "frequency over the rotor speed", shown=(Shown("ratio", ".3f"),)),
     Column("point", "", "point of the rotor whose motion shows it"),
 )  # fmt: skip

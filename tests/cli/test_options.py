@@ -6,8 +6,9 @@ import shlex
 
 import click
 import pytest
+from click.testing import CliRunner
 
-from frbcli.cli.main import COMMANDS, command_named
+from frbcli.cli.main import COMMANDS, GROUPS, command_named, frb
 
 SHARED = ("--set", "--json", "--quiet", "--csv", "--picture", "--size", "--dpi", "--xlim", "--ylim", "--rpm",
           "--signal", "--cavitation", "--theory", "--coupling", "--format")  # fmt: skip
@@ -35,3 +36,13 @@ def test_the_example_of_a_command_can_be_called(name: str) -> None:
     with command_named(name).make_context(f"frb {name}", words):
         pass
     assert COMMANDS[name][2] in command_named(name).get_help(click.Context(command_named(name)))
+
+
+def test_the_help_shows_every_command_in_one_group() -> None:
+    named = [name for names in GROUPS.values() for name in names]
+    assert sorted(named) == sorted(COMMANDS)
+    told = CliRunner().invoke(frb, ["--help"]).output
+    places = [told.index(f"{group}:") for group in GROUPS]
+    assert places == sorted(places)
+    assert max(map(len, told.splitlines())) <= 80
+    assert [told.index(f"\n  {name} ") for name in named] == sorted(told.index(f"\n  {name} ") for name in named)

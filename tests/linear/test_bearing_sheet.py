@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import re
 import subprocess
 import tomllib
 from pathlib import Path
@@ -230,9 +231,32 @@ def test_over_eccentricity_the_command_draws_sommerfeld_s_chart(tmp_path: Path) 
     assert "Sommerfeld number" in (tmp_path / "chart.svg").read_text(encoding="utf-8")
 
 
+def test_a_sheet_fills_one_screen_unless_more_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    """Short: a row at the first and the last speed; --all: every speed, K and C; of few speeds all is short enough."""
+    def said(*words: str) -> list[str]:
+        assert frb(["bearing", "jeffcott", "--set", "film.theory=short", "--no-picture", *words]) == 0
+        return capsys.readouterr().out.splitlines()
+
+    def rows(lines: list[str]) -> list[float]:
+        return [float(line.split()[0]) for line in lines if re.match(r"  \d", line)]
+
+    short, everything, one = said(), said("--all"), said("--speed", "50 Hz")
+    assert len(short) <= 24
+    assert max(map(len, short)) <= 80
+    assert (min(rows(short)), max(rows(short))) == (min(rows(everything)), max(rows(everything)))
+    assert len(rows(everything)) == 3 * 20
+    for words in ("stiffness K in N/um", "damping C in N s/mm"):
+        assert not any(words in line for line in short if not line.startswith("--all"))
+        assert any(words in line for line in everything)
+        assert any(words in line for line in one)
+    assert "--all" in short[-2] + short[-1]
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
+        (["bearing", "jeffcott", "--film", "inner"], "one film, without a name"),
+        (["bearing", "floating-ring", "--film", "iner"], "inner"),
         (["bearing", "squeeze", "--speed", "20 Hz"], "motion.load"),
         (["bearing", "jeffcott", "--csv", "nowhere/t.csv"], "does not exist"),
         (["bearing", "jeffcott-two-phase", "--set", "film.two-phase.form=published"], "conservative"),

@@ -97,7 +97,7 @@ def test_a_page_says_what_the_run_says(page: str, run: Run) -> None:
 
 
 def test_repeating_it_gives_the_same_run(page: str, run: Run) -> None:
-    text = unescape(re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)[-1])
+    text = unescape(re.findall(r"<pre[^>]*>(.*?)</pre>", page, re.DOTALL)[-1])
     assert frbcli.load_case_text(text, name=run.case_name).same_run(frbcli.load_case("jeffcott", SETTINGS))
 
 
@@ -216,3 +216,49 @@ def test_a_browser_shows_it_and_reads_it_out(run: Run, tmp_path: Path) -> None:
         capture_output=True, timeout=120, check=True,
     )  # fmt: skip
     assert picture.stat().st_size > 50_000
+
+
+@pytest.fixture(scope="module")
+def warm(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A run-up of floating rings with heat, whose case gives its speed in rpm."""
+    settings = ["accuracy.target=2e-2", "speed.to=12000 rpm", "speed.duration=0.15 s"]
+    return frbcli.runup(frbcli.load_case("floating-ring-heat", settings), tmp_path_factory.mktemp("warm") / "warm.h5")
+
+
+def test_a_page_about_heat_has_its_pictures_and_speeds_as_the_case(warm: Run) -> None:
+    told = report(warm, author="A. Engineer")
+    for words in ("Temperatures, viscosities, losses and side flows.", "Speed of the rings over that of the rotor.",
+                  "J with the oil", "12000 rpm", "rotor, rpm", "A. Engineer",
+                  f"frb {frbcli.__version__}", "stated error of the eccentricity, until"):  # fmt: skip
+        assert words in told
+    assert "12000 rpm, 200.0 Hz" not in told
+    event = {"kind": "onset", "film": "inner", "t_s": 0.1, "speed_Hz": 50.0, "frequency_Hz": 20.0}
+    table = report(dataclasses.replace(warm, events=[event | {"frequency_ratio": 0.4}]))
+    assert "rotor speed in rpm" in table
+    assert '<td>onset Sub_i inner</td><td class="number">0.100</td><td class="number">3000</td>' in table
+    assert "12000 rpm, 200.0 Hz" in report(warm, both_units=True)
+
+
+def test_numbers_of_events_above_the_waterfall_do_not_meet(run: Run) -> None:
+    """Of many at once those have none that have no room; their lines stay."""
+    event = {"kind": "onset", "film": "", "speed_Hz": 50.0, "frequency_Hz": 20.0, "frequency_ratio": 0.4}
+    told = report(dataclasses.replace(run, events=[event | {"t_s": 0.3 + 0.002 * i} for i in range(12)]))
+    flags = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="7.5" class="flag"', told)
+    places = [tuple(map(float, place)) for place in flags]
+    assert 4 <= len(places) < 12
+    assert all(y >= 7.5 for _, y in places)
+    distances = [np.hypot(a[0] - b[0], a[1] - b[1]) for i, a in enumerate(places) for b in places[:i]]
+    assert min(distances) >= 15.0
+    assert told.count('class="event"') == 12
+
+
+@pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no browser")
+def test_a_page_has_at_most_six_pages_of_a4(warm: Run, tmp_path: Path) -> None:
+    (tmp_path / "page.html").write_text(report(warm), encoding="utf-8")
+    browser = next(found for found in map(shutil.which, BROWSERS) if found)
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+               "--disable-background-networking", "--disable-component-update", "--no-pdf-header-footer",
+               f"--user-data-dir={tmp_path / 'profile'}", f"--print-to-pdf={tmp_path / 'page.pdf'}"]  # fmt: skip
+    subprocess.run([browser, *options, str(tmp_path / "page.html")], capture_output=True, check=True, timeout=120)
+    printed = (tmp_path / "page.pdf").read_bytes()
+    assert 2 <= len(re.findall(rb"/Type\s*/Page[^s]", printed)) <= 6

@@ -14,10 +14,14 @@ from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from frbcli.case.schema import Case
     from frbcli.linear.bearing_sheet import BearingSheet
+    from frbcli.linear.film_state import FilmState
     from frbcli.plot.style import Picture
 
+FEW_POINTS, SCREEN_ROWS = 2, 8  # points that are always shown in full; rows of all films on one screen
 EXPLANATION = (
     "{}. Errors of stiffness and damping are over their largest entry. The rise is with {:.4g} kg/m^3 and "
     "{:.4g} J/(kg K). All per bearing."
@@ -34,6 +38,8 @@ SETTLED = "Coefficients of mass-conserving films are of oil that has settled; th
               "[that of the rotor]")  # fmt: skip
 @click.option("--ross", metavar="FILE", type=OUTPUT,
               help="Write stiffness and damping over speed as ROSS reads them, a file per film.")  # fmt: skip
+@click.option("--film", metavar="FILM", default=None, help="Show this film alone, with all of its numbers.")
+@click.option("--all", "everything", is_flag=True, help="Show K, C and all speeds of all films. [a short sheet]")
 @outputs_options("CASE-bearing.png, here")
 @output_options
 def command(
@@ -42,6 +48,8 @@ def command(
     speeds: tuple[float, ...],
     load: float | None,
     ross: Path | None,
+    film: str | None,
+    everything: bool,
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> int | None:
@@ -52,6 +60,7 @@ def command(
     from frbcli.results.files.kinds import ROSS
 
     _check_options(over, speeds, load, ross)
+    _check_film(case, film)
     elements = _ross_files(case, ross)
     places = outputs.check(here(case.name, "-bearing.png"), *((file, ROSS) for file in elements.values()))
     with computing(terminal, case) as shown:
@@ -59,7 +68,7 @@ def command(
             found = bearing_sheet(case, speeds or None, load, shown.counting())
         else:
             found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
-    _tell(terminal, found)
+    _tell(terminal, found, (film,) if film is not None else found.films, everything or film is not None)
     _write_ross(terminal, found, elements)
     terminal.emit(
         {
@@ -89,6 +98,16 @@ def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ros
         raise click.UsageError("--ross is a table over speed.")
 
 
+def _check_film(case: Case, film: str | None) -> None:
+    from frbcli.nearest import did_you_mean
+    from frbcli.scene.films import film_places
+
+    names = [place.name for place in film_places(case)]
+    if film is not None and film not in names:
+        known = did_you_mean(film, names) if any(names) else "It has one film, without a name."
+        raise click.UsageError(f"--film {film} is not a film of {case.name}. {known}")
+
+
 def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
     """The file for ROSS of each film, if they are asked for."""
     if ross is None:
@@ -108,22 +127,39 @@ def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Pat
         terminal.result(f"ROSS: {path}")
 
 
-def _tell(terminal: Terminal, found: BearingSheet) -> None:
+def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: bool) -> None:
+    """The sheets of some films; not full: without matrices, at so many of the points as fill a screen, unless there are
+    few of them."""
     from frbcli.columns import legend, table_of
     from frbcli.film.cavitation.table import law_named
     from frbcli.linear.columns import FILMS, MATRICES, SHEET, WARM
     from frbcli.linear.film_state import heat_capacity
 
+    points = len(found.of(films[0]))
+    full = full or points <= FEW_POINTS
+    rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
     for film, law in zip(found.films, found.laws, strict=True):
+        if film not in films:
+            continue
         name = " ".join(filter(None, (found.case.heading, film)))
         warm = {} if found.case.heat is None else {WARM: "film when everything is warm"}
-        matrices = zip(MATRICES, ("stiffness in N/um", "damping in N s/mm"), strict=True)
-        states = table_of(SHEET, found.of(film))
-        for table, title in ({FILMS: f"{name}, {law_named(law).label}"} | warm | dict(matrices)).items():
+        matrices = dict(zip(MATRICES, ("stiffness K in N/um", "damping C in N s/mm"), strict=True))
+        states = table_of(SHEET, _spread(found.of(film), rows))
+        for table, title in ({FILMS: f"{name}, {law_named(law).label}"} | (warm | matrices if full else {})).items():
             terminal.show(title, states, table)
     terminal.sentence(EXPLANATION.format(legend(SHEET, FILMS), found.case.oil.density, heat_capacity(found.case)))
+    if not full:
+        one = f", --film {films[0]} those of one film" if len(films) > 1 else ""
+        terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")
     if any(law_named(law).keeps_oil for law in found.laws):
         terminal.sentence(SETTLED)
     problems = [point for point in found.points if point.problem]
     if problems:
         terminal.result(f"No state at {len(problems)} of {len(found.points)} points. The first: {problems[0].problem}")
+
+
+def _spread(states: Sequence[FilmState], rows: int) -> list[FilmState]:
+    """At most so many of the states, evenly spread, with the first and the last one."""
+    if len(states) <= rows:
+        return list(states)
+    return [states[round(number * (len(states) - 1) / (rows - 1))] for number in range(rows)]

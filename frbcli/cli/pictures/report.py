@@ -16,10 +16,14 @@ from frbcli.cli.options import signal_option, speeds_option
 @click.option("-o", "--output", metavar="PAGE.html", type=OUTPUT, help="Page. [RUN-report.html]")
 @speeds_option("those of the events, and the last; orbits and spectra are drawn there")
 @signal_option()
+@click.option("--author", default="", metavar="NAME", help="Name on top of the page, beside date and version.")
+@click.option("--both-units", is_flag=True,
+              help="Rotor speeds in Hz and rpm. [rpm where the case gives them so, else Hz]")  # fmt: skip
 @output_options
 def command(
-    run_file: Path, output: Path | None, speeds: tuple[float, ...], signal: str, terminal: Terminal
-) -> None:
+    run_file: Path, output: Path | None, speeds: tuple[float, ...], signal: str, author: str, both_units: bool,
+    terminal: Terminal,
+) -> None:  # fmt: skip
     """Write RUN.h5 as one page: machine, plan, events, waterfall that reads out under the pointer, orbits, spectra,
     errors, balances, cost and how to repeat it."""
     from frbcli.report.page import write_report
@@ -28,6 +32,6 @@ def command(
 
     target = output or beside(run_file, "-report.html")
     check_outputs((target, PAGE))
-    write_report(read_run(run_file), target, speeds, signal)
+    write_report(read_run(run_file), target, speeds, signal, author, both_units)
     terminal.result(f"report: {target}")
     terminal.emit({"command": "report", "run": run_file, "output": target})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,16 +26,22 @@ AHEAD = 2.2  # of the rotor speed: up to where a spectrum is drawn
 CLOSE, LINE_pt = 0.2, 10.0  # share of an axis within which names stand one below the other, so far apart
 
 
-def speeds_figure(run: Run, times_s: Sequence[float], found: Spectrogram, signal: str = "journal") -> Figure:
+def speeds_figure(
+    run: Run, times_s: Sequence[float], found: Spectrogram, signal: str = "journal",
+    words: Callable[[float], str] = "{:.4g} Hz".format,
+) -> Figure:  # fmt: skip
     """A row for each of some moments in s: the orbit of the last revolutions until then, and the spectrum of the
-    window about it, from the spectra of `run_spectra`. Raises RunFileError if the run has no samples there."""
+    window about it, from the spectra of `run_spectra`; words: of a speed in Hz.
+
+    Raises RunFileError if the run has no samples there.
+    """
     with styled():
         figure = NotebookFigure(figsize=(WIDTH, ROW * len(times_s)))
         rows = figure.subplots(len(times_s), 2, squeeze=False, width_ratios=(1.0, 2.0))
         for (left, right), time_s in zip(rows, times_s, strict=True):
             draw_orbit_until(left, run, time_s, signal)
             draw_spectrum_at(right, run, time_s, found, signal)
-            left.set_title(f"{speed_at(run, time_s):.4g} Hz, {time_s:.4g} s")
+            left.set_title(f"{words(speed_at(run, time_s))}, {time_s:.4g} s")
     return figure
 
 
