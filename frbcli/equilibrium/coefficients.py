@@ -80,9 +80,12 @@ class FilmsAtRest:
     forces: tuple[FilmForce, ...]
 
 
-def films_at_rest(system: System, omega: float, position: RestingPosition) -> FilmsAtRest:
-    """The films of a machine that rests at omega rad/s. Raises NotConverged."""
+def films_at_rest(system: System, omega: float, position: RestingPosition, settled: bool = True) -> FilmsAtRest:
+    """The films of a machine that rests at omega rad/s. settled: whether the derivatives of films that keep oil are
+    those of settled_force, else one-sided ones. Raises NotConverged."""
     totals, near = system.omegas(omega, position.ring_speeds), position.films
+    if near and not settled:
+        return FilmsAtRest(position, totals, near)
     forces = tuple(
         settled_force(system, i, place, float(totals[i]), near[i] if near else None)
         for i, place in enumerate(position.journals)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm, coefficient_error, films_at_rest, resting_film
+from frbcli.equilibrium.dynamic_films import DynamicFilm, constant_film, dynamic_film
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
@@ -24,7 +25,9 @@ Array = NDArray[np.float64]
 class MachineAtRest:
     """A machine at omega rad/s. static: its films at their viscosities; films: coefficients and their error; at_rest:
     its position and the films as they are solved; warm: the heat of the machine, None without; others: the same on
-    other meshes, each with the share of the difference that is the error, see MeshFilms; none without errors."""
+    other meshes, each with the share of the difference that is the error, see MeshFilms; none without errors; dynamic:
+    the films with the memory of their oil, of machines that were asked for with it and have such films, whose
+    coefficients in `films` are then one-sided ones without error."""
 
     static: StaticFilms
     omega: float
@@ -32,6 +35,7 @@ class MachineAtRest:
     at_rest: FilmsAtRest
     warm: WarmMachine | None = None
     others: tuple[tuple[FilmsAtRest, float], ...] = ()
+    dynamic: tuple[DynamicFilm, ...] = ()
 
     @property
     def system(self) -> System:
@@ -40,13 +44,17 @@ class MachineAtRest:
 
 
 class StaticMachines:
-    """Machines of a case at rest at any speed; their films are made once. load, top_Hz: as static_films.
+    """Machines of a case at rest at any speed; their films are made once. load, top_Hz: as static_films; memory:
+    whether films that keep oil are wanted with its memory.
 
     With heat, the temperatures are those at which the heat balances with the films of a run; positions and coefficients
     are then of static films with these viscosities and clearances."""
 
-    def __init__(self, case: Case, load: float | None = None, top_Hz: float | None = None) -> None:
+    def __init__(
+        self, case: Case, load: float | None = None, top_Hz: float | None = None, memory: bool = False
+    ) -> None:
         self._static, self._heat = static_films(case, load, top_Hz), None
+        self._memory = memory and self._static.system.remembers
         if case.heat is not None:
             plan = make_plan(case)
             self._heat = WarmMachines(case, plan, make_system(case, plan))
@@ -73,10 +81,11 @@ class StaticMachines:
             )
             static, start = static.warm(viscosities, clearances), warm.resting.displacements
         others: list[tuple[FilmsAtRest, float]] = []
+        settled, with_error = not self._memory, with_error and not self._memory
         if static.on_cells:  # a coarse mesh also brings the journals near to where they rest
-            start, others = _on_others(static.others if with_error else static.others[:1], omega, start)
+            start, others = _on_others(static.others if with_error else static.others[:1], omega, start, settled)
         position = resting_position(static.system, omega, start)
-        found = films_at_rest(static.system, omega, position)
+        found = films_at_rest(static.system, omega, position, settled)
         if with_error and not static.on_cells:
             _, others = _on_others(static.others, omega, position.displacements)
         films = tuple(
@@ -90,11 +99,21 @@ class StaticMachines:
             )
             for i, (name, force) in enumerate(zip(static.system.names, found.forces, strict=True))
         )
-        return MachineAtRest(static, omega, films, found, warm, tuple(others) if with_error else ())
+        dynamic = _dynamic(static.system, omega, found) if self._memory else ()
+        return MachineAtRest(static, omega, films, found, warm, tuple(others) if with_error else (), dynamic)
+
+
+def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:
+    """The films of a machine at rest at omega rad/s with the memory of their oil. Raises NotConverged."""
+    places, totals = found.position.journals, found.totals.tolist()
+    return tuple(
+        dynamic_film(system.films.volumes[i], places[i], totals[i], omega) if keeps else constant_film(found.forces[i])
+        for i, keeps in enumerate(system.remembering)
+    )
 
 
 def _on_others(
-    meshes: tuple[MeshFilms, ...], omega: float, start: Array | None
+    meshes: tuple[MeshFilms, ...], omega: float, start: Array | None, settled: bool = True
 ) -> tuple[Array | None, list[tuple[FilmsAtRest, float]]]:
     """The displacements on the last of several meshes, each sought from those on the one before, and the films of all;
     meshes on which no position is found are left out."""
@@ -102,7 +121,7 @@ def _on_others(
     for mesh in meshes:
         try:
             position = resting_position(mesh.system, omega, start)
-            found.append((films_at_rest(mesh.system, omega, position), mesh.share))
+            found.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
             start = position.displacements
         except NotConverged:
             continue

@@ -11,14 +11,18 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.dynamic_films import modes
 from frbcli.equilibrium.hopf import oscillating
 from frbcli.equilibrium.linearised import state_matrix
-from frbcli.errors import Fault, InputError
+from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
+from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
-from frbcli.linear.stability import stability_points
+from frbcli.linear.stability import check_machine
+from frbcli.linear.stability_point import linear_machine, point_at_rest
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.order import EQUAL, first_largest, ranks
+from frbcli.scene.remedies import advised
 from frbcli.scene.shafts.table import shaft_of
 
 Array = NDArray[np.float64]
@@ -110,36 +114,41 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> found = frbcli.damped_modes(case, 100.0)  # doctest: +SKIP
     """
-    system, (point,) = stability_points(case, [speed_Hz])
-    if not point.rests:
-        raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, point.problem, ""),))
-    rotor = without_spins(system.rotor, system.ring_count)
-    stiffness, damping = coefficients_of(point.films)
+    check_machine(case, [speed_Hz])
+    try:
+        with advised(case):
+            machine = StaticMachines(case, memory=True).at(2.0 * math.pi * speed_Hz)
+    except NotConverged as none:
+        raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, str(none), ""),)) from none
+    rotor = without_spins(machine.system.rotor, machine.system.ring_count)
     stations = shaft_of(case).stations(rotor)
-    modes = []
-    for value, vector in _eigenvectors(rotor, 2.0 * math.pi * speed_Hz, stiffness, damping):
+    shapes = []
+    for value, vector in _eigenvectors(rotor, machine):
         motion: Amplitudes = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
         shape = np.einsum("sij,j->si", stations.maps, vector)
         size = float(np.max(_larger(np.concatenate([motion, shape]))))
         if size > 0.0:
             there = shape.ravel()[first_largest(shape.ravel())]
             unit = size * there / abs(there)  # its displacement is real: eigenvectors have any phase
-            modes.append(DampedMode(value, _direction(motion / unit), motion / unit, shape / unit))
-    keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in modes), strict=True)]
-    modes = [modes[i] for i in np.lexsort(keys)] if modes else []
+            shapes.append(DampedMode(value, _direction(motion / unit), motion / unit, shape / unit))
+    keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in shapes), strict=True)]
+    shapes = [shapes[i] for i in np.lexsort(keys)] if shapes else []
     names = tuple(name for name, _ in rotor.points)
-    error = max((film.error for film in point.films), default=math.nan)
+    films = point_at_rest(machine, speed_Hz).films
+    error = max((film.error for film in films), default=math.nan)
     return DampedModes(
-        case, speed_Hz, names, stations.positions, stations.to_scale, stations.marks, tuple(modes), error
+        case, speed_Hz, names, stations.positions, stations.to_scale, stations.marks, tuple(shapes), error
     )
 
 
-def _eigenvectors(
-    rotor: LinearRotor, omega: float, stiffness: Array, damping: Array
-) -> list[tuple[complex, Amplitudes]]:
+def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[complex, Amplitudes]]:
     """Eigenvalues with positive imaginary part in 1/s, and displacements (n,), as eigenvalues of stability.py."""
-    n = rotor.size
-    values, vectors = np.linalg.eig(state_matrix(rotor, omega, stiffness, damping))
+    if machine.dynamic:
+        own = [film.own for film in machine.dynamic]
+        found = modes(linear_machine(machine), machine.dynamic, own, machine.omega)
+        return [(value, vector) for value, vector in found if oscillating(np.array([value]))[0]]
+    n, (stiffness, damping) = rotor.size, coefficients_of(machine.films)
+    values, vectors = np.linalg.eig(state_matrix(rotor, machine.omega, stiffness, damping))
     return [(complex(values[i]), vectors[:n, i]) for i in np.flatnonzero(oscillating(values))]
 
 

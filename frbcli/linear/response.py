@@ -1,6 +1,7 @@
 """Linear unbalance response: the synchronous motion of a rotor in its films about the resting position.
 
-At each rotor speed Omega the films are the eight coefficients of stability.py, and the motion q = Re(Q exp(i alpha))
+At each rotor speed Omega the films are the eight coefficients of stability.py, of films that keep oil those at the
+frequency Omega, and the motion q = Re(Q exp(i alpha))
 with the angle alpha of the rotor follows from
 
     (K + P^T K_f P + i Omega (D + Omega G + P^T D_f P) - Omega^2 M) Q = Omega^2 (u_sin + i u_cos),
@@ -170,7 +171,7 @@ def response(
     """
     require(case)
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
-    system, points = stability_points(case, asked, observe)
+    system, points = stability_points(case, asked, observe, synchronous=True)
     resting = [point for point in points if point.rests]
     if not resting:
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"

@@ -2,7 +2,9 @@
 
 In its resting position films and shaft carry the static load of the rotor. Linearised there, each film is a stiffness
 K = -dF/dD and a damping D = -dF/dD' per bearing, and the rotor has 2 n eigenvalues: a positive real part is a motion
-that grows. The threshold is the lowest speed at which one of the oscillating motions, a whirl, begins to grow.
+that grows. Films that keep oil are linearised together with it (dynamic_films.py); K and D are then those at the
+frequency of the least damped whirl. The threshold is the lowest speed at which one of the oscillating motions, a
+whirl, begins to grow.
 """
 
 from __future__ import annotations
@@ -23,10 +25,11 @@ from frbcli.linear.stability_point import StabilityPoint, point_at_rest
 from frbcli.linear.threshold import Threshold, find_threshold
 from frbcli.scene.gate.analysis import STABILITY
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.static import keeps_oil
 from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
 
-SPEEDS = 60  # of the default sweep: 5 Hz apart from 0 to 300 Hz
+SPEEDS, SPEEDS_WITH_MEMORY = 60, 20  # of the default sweep: 5 and 15 Hz apart from 0 to 300 Hz
 
 
 @dataclass(frozen=True, repr=False)
@@ -94,42 +97,50 @@ def stability(
 
 
 def stability_points(
-    case: Case, speeds_Hz: Sequence[float], observe: Callable[[int, int], None] | None = None
+    case: Case,
+    speeds_Hz: Sequence[float],
+    observe: Callable[[int, int], None] | None = None,
+    synchronous: bool = False,
 ) -> tuple[System, tuple[StabilityPoint, ...]]:
     """The machine, and its points at speeds_Hz, ascending.
 
-    observe: called with each speed's number and their number. Raises InputError if the case cannot be modelled, a speed
-    is not positive, or a film has no eight coefficients.
+    observe: called with each speed's number and their number; synchronous: see point_at_rest. Raises InputError if the
+    case cannot be modelled, a speed is not positive, or a film cannot be linearised.
     """
     check_machine(case, speeds_Hz)
-    machines, points = _sweep(case, speeds_Hz, observe)
+    machines, points = _sweep(case, speeds_Hz, observe, synchronous)
     return machines.system, points
 
 
 def check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
-    """Raises InputError if a case cannot be modelled, a speed is not positive, or a film has no eight coefficients."""
+    """Raises InputError if a case cannot be modelled, a speed is not positive, or a film cannot be linearised."""
     require(case)
     _check_speeds(case, speeds_Hz)
     require(case, STABILITY)
 
 
 def _sweep(
-    case: Case, speeds_Hz: Sequence[float], observe: Callable[[int, int], None] | None = None
+    case: Case,
+    speeds_Hz: Sequence[float],
+    observe: Callable[[int, int], None] | None = None,
+    synchronous: bool = False,
 ) -> tuple[StaticMachines, tuple[StabilityPoint, ...]]:
     """As stability_points, with the machines at further speeds."""
-    machines = StaticMachines(case)
+    machines = StaticMachines(case, memory=True)
     points: list[StabilityPoint] = []
     near: MachineAtRest | None = None
     for speed in sorted(speeds_Hz, reverse=True):  # from near the centre, where a fast journal rests, outwards
-        point, near = _point(case, machines, speed, near)
+        point, near = _point(case, machines, speed, near, synchronous)
         points.append(point)
         if observe is not None:
             observe(len(points), len(speeds_Hz))
     return machines, tuple(reversed(points))
 
 
-def default_speeds(case: Case, count: int = SPEEDS) -> tuple[float, ...]:
-    """Speeds in Hz, greater than zero, that sweep the range of the case."""
+def default_speeds(case: Case, count: int | None = None) -> tuple[float, ...]:
+    """Speeds in Hz, greater than zero, that sweep the range of the case; fewer where a film keeps oil, whose memory
+    takes longer to compute."""
+    count = count or (SPEEDS_WITH_MEMORY if keeps_oil(case) else SPEEDS)
     low, high = sorted((case.speed.start, case.speed.end))
     if low > 0.0:
         return tuple(np.unique(np.linspace(low, high, count)).tolist())
@@ -137,13 +148,13 @@ def default_speeds(case: Case, count: int = SPEEDS) -> tuple[float, ...]:
 
 
 def _point(
-    case: Case, machines: StaticMachines, speed: float, near: MachineAtRest | None
+    case: Case, machines: StaticMachines, speed: float, near: MachineAtRest | None, synchronous: bool
 ) -> tuple[StabilityPoint, MachineAtRest | None]:
     """The point at a speed in Hz, sought from the machine `near`, and that from which to seek the next one."""
     try:
         with advised(case):
             machine = machines.at(2 * math.pi * speed, near)
-            return point_at_rest(machine, speed), machine
+            return point_at_rest(machine, speed, synchronous), machine
     except NotConverged as error:
         return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), near
 

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm
+from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes, oscillator
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
+from frbcli.errors import NotConverged
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.order import fastest_first, ranks
 
 Array = NDArray[np.float64]
 Eigenvalues = NDArray[np.complex128]
 
+HARDLY_KNOWN = 0.25  # error of coefficients of films that keep oil, relative, above which they are not told
+UNKNOWN_WHIRL = 0.5  # over the rotor's speed: frequency of coefficients where no motion oscillates
 DIVERGENT = 1e-9  # real part over the largest absolute value from which a motion grows without oscillating
 
 
@@ -27,10 +32,10 @@ class StabilityPoint:
     """The rotor at one speed.
 
     films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
-    ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
-    ring_speeds_Hz: of the rings that turn; their speeds stand while the rotor moves. warm: the machine with its heat,
-    of a case that has it; its temperatures stand, too. All are empty where no resting
-    position was found; problem then says why, and is empty otherwise.
+    on films that keep oil those that grow or decay slowly, see dynamic_films.modes; ascending in |imaginary part|, then
+    in the real part, of a pair the one with positive imaginary part first. ring_speeds_Hz: of the rings that turn;
+    their speeds stand while the rotor moves. warm: the machine with its heat, of a case that has it; its temperatures
+    stand, too. All are empty where no resting position was found; problem then says why, and is empty otherwise.
     """
 
     speed_Hz: float
@@ -95,10 +100,14 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
 
     Ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
     """
-    values = np.linalg.eigvals(state_matrix(rotor, omega, stiffness, damping)).astype(complex)
+    return _ordered(np.linalg.eigvals(state_matrix(rotor, omega, stiffness, damping)).astype(complex))
+
+
+def _ordered(values: Eigenvalues) -> Eigenvalues:
+    """Eigenvalues (N,) in the order of `eigenvalues`."""
     # frequencies that are equal but for round-off are one, and the real parts decide
     frequency = np.abs(values.imag)
-    equal = ranks(frequency, float(np.max(np.abs(values))))
+    equal = ranks(frequency, float(np.max(np.abs(values), initial=0.0)))
     return values[np.lexsort((-values.imag, frequency, values.real, equal))]
 
 
@@ -120,8 +129,61 @@ def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Eigenvalu
     return eigenvalues(without_spins(system.rotor, system.ring_count), machine.omega, stiffness, damping)
 
 
-def point_at_rest(machine: MachineAtRest, speed: float) -> StabilityPoint:
-    """The point at a speed in Hz of a machine that rests."""
+def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Eigenvalues, float]]:
+    """The eigenvalues of a machine at rest on the other meshes of its films, each with the share of the difference that
+    is the error."""
+    if machine.dynamic:
+        return [(_with_memory(machine, fine=True), 1.0)]
+    return [(machine_eigenvalues(machine, films), share) for films, share in machine.others]
+
+
+def point_at_rest(machine: MachineAtRest, speed: float, synchronous: bool = False) -> StabilityPoint:
+    """The point at a speed in Hz of a machine that rests. synchronous: whether coefficients of films that keep oil are
+    those at the frequency of the rotor, else at that of the least damped whirl."""
     rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
+    if machine.dynamic:
+        values = _with_memory(machine)
+        whirl = critical_eigenvalue(values).imag
+        frequency = machine.omega if synchronous else whirl if whirl > 0.0 else UNKNOWN_WHIRL * machine.omega
+        pairs = zip(machine.films, machine.dynamic, strict=True)
+        films = tuple(_at_frequency(film, dynamic, frequency) for film, dynamic in pairs)
+        _check_known(films)
+        return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm)
     values = machine_eigenvalues(machine, machine.at_rest)
     return StabilityPoint(speed, machine.films, values, ring_speeds_Hz=rings, warm=machine.warm)
+
+
+def _check_known(films: Sequence[RestingFilm]) -> None:
+    """Raises NotConverged if a film's coefficients are hardly known."""
+    error, name = max((film.error, film.name) for film in films if not math.isnan(film.error))
+    if error > HARDLY_KNOWN:
+        which = f"The film {name}" if name else "The film"
+        raise NotConverged(
+            f"{which} has no linear coefficients on these cells: those of two meshes differ by {100.0 * error:.2g} %. "
+            "Its fronts of oil cross cells at the least motion. Give it more supply pressure."
+        )
+
+
+def _with_memory(machine: MachineAtRest, fine: bool = False) -> Eigenvalues:
+    """The eigenvalues of a machine with the memory of its oil, both of each pair, in the order of `eigenvalues`. fine:
+    on the finer of two meshes in place of the extrapolation."""
+    own = [film.fine if fine else film.own for film in machine.dynamic]
+    found = np.array([value for value, _ in modes(linear_machine(machine), machine.dynamic, own, machine.omega)])
+    values = found.astype(complex)
+    return _ordered(np.concatenate([values, values[hopf.oscillating(values)].conj()]))
+
+
+def linear_machine(machine: MachineAtRest) -> Oscillator:
+    """A machine at rest without its films; its rings turn with the speeds that they have there."""
+    system = machine.system
+    return oscillator(without_spins(system.rotor, system.ring_count), machine.omega)
+
+
+def _at_frequency(film: RestingFilm, dynamic: DynamicFilm, frequency: float) -> RestingFilm:
+    """The film with K = Re Z(i frequency) and D = Im Z(i frequency) / frequency in rad/s, above 0."""
+    own, fine = (each.at(1j * frequency)[0] for each in (dynamic.own, dynamic.fine))
+    error = film.error
+    if dynamic.exact is not None:
+        pairs: Sequence[tuple[Array, Array]] = ((own.real, fine.real), (own.imag, fine.imag))
+        error = max(float(np.abs(mine - other).max() / np.abs(mine).max()) for mine, other in pairs)
+    return replace(film, stiffness=own.real, damping=own.imag / frequency, error=error)

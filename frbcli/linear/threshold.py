@@ -12,12 +12,14 @@ from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import NotConverged
-from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, machine_eigenvalues, point_at_rest
+from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, other_eigenvalues, point_at_rest
 from frbcli.scene.remedies import advised
 
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
 STABLE, UNSTABLE = "Stable up to the highest speed", "Unstable from the lowest speed on"  # begin a note
 AHEAD = 1e-3  # of the speed, for the derivative of the eigenvalue
+# The same with films that keep oil, whose eigenvalues scatter as fronts of the oil cross cells.
+SCATTERED_TOLERANCE, SCATTERED_AHEAD = 1e-3, 0.03
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,8 @@ def _crossing(
     """The threshold between two points."""
     try:
         with advised(case):
-            found = hopf.located(lambda speed: _point(machines, speed), low, high, 0, THRESHOLD_TOLERANCE)
+            close = SCATTERED_TOLERANCE if machines.system.remembers else THRESHOLD_TOLERANCE
+            found = hopf.located(lambda speed: _point(machines, speed), low, high, 0, close)
             return _with_error(machines, found.speed_Hz), ""
     except NotConverged as error:
         between = f"{low.speed_Hz:.4g} and {high.speed_Hz:.4g} Hz"
@@ -101,13 +104,14 @@ def _with_error(machines: StaticMachines, speed: float) -> Threshold:
     machine = machines.at(2 * math.pi * speed)
     own = point_at_rest(machine, speed).critical
     frequency = own.imag / (2 * math.pi)
-    slope = (_point(machines, speed * (1.0 + AHEAD)).critical - own) / (AHEAD * speed)
-    known = machine.static.case.bearings == () or bool(machine.others)
+    ahead = SCATTERED_AHEAD if machine.dynamic else AHEAD
+    slope = (_point(machines, speed * (1.0 + ahead)).critical - own) / (ahead * speed)
+    known = machine.static.case.bearings == () or bool(machine.others or machine.dynamic)
     least = (LEAST if machine.static.case.bearings else THRESHOLD_TOLERANCE) if known else math.nan
     speeds, frequencies = [least * speed], [least * frequency]
-    for films, share in machine.others:
-        apart = critical_eigenvalue(machine_eigenvalues(machine, films)) - own
-        ahead = -apart.real / slope.real
-        speeds.append(share * abs(ahead))
-        frequencies.append(share * abs(apart.imag + slope.imag * ahead) / (2 * math.pi))
+    for others, share in other_eigenvalues(machine):
+        apart = critical_eigenvalue(others) - own
+        further = -apart.real / slope.real
+        speeds.append(share * abs(further))
+        frequencies.append(share * abs(apart.imag + slope.imag * further) / (2 * math.pi))
     return Threshold(speed, frequency, max(speeds), max(frequencies))

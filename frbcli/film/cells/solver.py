@@ -75,20 +75,21 @@ class FilmSolver:
         self._before = np.full((m, k), UPWIND)
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
 
-    def steady(self, motion: Motion, start: Array | None = None) -> VolumeSolution:
+    def steady(self, motion: Motion, start: Array | None = None, upwind: bool = False) -> VolumeSolution:
         """Cells whose oil fraction does not change while the journal moves as it does.
 
         Oil is carried upwind: what passes a cavity of one pressure does not depend on the oil fraction in it. Where the
         law draws oil in, the pressure in the cavity follows from that oil: then it is carried with second order, each
         of REPEATED solutions holding the oil fractions of the one before.
 
-        start: (m, k) unknown to begin from, else a full film. Raises FilmUnsolved.
+        start: (m, k) unknown to begin from, else a full film; upwind: whether oil is carried upwind by every law.
+        Raises FilmUnsolved.
         """
         grid, law = self.film.grid, self.film.law
         self._before = np.full(grid.shape, UPWIND)
         storage = Storage(gap_rate(motion.v, grid.centre)[:, None], np.zeros(grid.shape))
         solution = self._solve(motion, self.film.full() if start is None else start, storage)
-        for _ in range(REPEATED if law.keeps_oil and not law.starves else 0):
+        for _ in range(REPEATED if law.keeps_oil and not law.starves and not upwind else 0):
             self._before = before_upstream(solution.state.fraction, motion.omega)
             again = self._solve(motion, solution.w, storage)
             solution = replace(again, iterations=solution.iterations + again.iterations)

@@ -36,11 +36,31 @@ def coefficient_faults(case: Case) -> Iterator[Fault]:
             problem = "couples the two films of a ring: neither has coefficients of its own."
             key = f"{bearing_key(case, index)}.channels"
             yield Fault(key, "coupled", None, problem, 'Write channels = "pressure" here.')
-    problem = "is mass-conserving: eight coefficients per speed do not determine stability."
-    remedy = "Take half-sommerfeld, reynolds or penalty here, and a run-up for this model."
+    if keeps_oil(case):
+        yield from _memory_faults(case)
+
+
+def _memory_faults(case: Case) -> Iterator[Fault]:
+    """Films that keep oil and are not at rest in any frame, or whose oil cannot be linearised."""
+    if is_published(case):
+        problem = "creates oil: no oil settles in it, about which it could be linearised."
+        yield Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".')
     for key, name in dict(cavitation_keys(case)).items():
-        if law_named(name).keeps_oil:
+        law = law_named(name)
+        if law.keeps_oil and law.clips:
+            problem = (
+                "clips the pressures of its forces and keeps oil: forces do not follow from the pressures of cells."
+            )
+            yield Fault(key, name, None, problem, "Take a law that does not clip.")
+        elif law.keeps_oil and any(_opens_in_turning(place) for place in film_places(case)):
+            problem = "is mass-conserving, and has openings that turn: its oil is never at rest."
+            remedy = "Supply it by a circumferential groove or by openings in the shell, or take half-sommerfeld."
             yield Fault(key, name, None, problem, remedy)
+
+
+def _opens_in_turning(place: FilmPlace) -> bool:
+    """Whether a film has openings in a body that turns."""
+    return place.feed_holes is not None or (not is_plain(place.geometry) and place.grid_body != HOUSING)
 
 
 def cycle_heat_faults(case: Case) -> Iterator[Fault]:

@@ -1,0 +1,97 @@
+"""The dynamic stiffness Z(s) of films that keep their oil: -F = Z(s) d for a motion d exp(s t) of the journal.
+
+    Z(s) = push (storage s + flow)^-1 (by_place + s by_rate)
+
+of linearised.py. It is needed at many s, and smooth: a film is projected onto the changes of its oil at a few
+frequencies, from the right and from the left, so that Z and its derivative are exact there (two-sided rational Krylov
+projection: A. C. Antoulas, Approximation of Large-Scale Dynamical Systems, SIAM 2005, section 11.3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.cells.linearised import LinearFilm
+from frbcli.film.grid import Array
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class DynamicStiffness:
+    """Z(s) = place + s rate + sum of left_j (right_place_j + s right_rate_j) / (1 + s delay_j), in N/m.
+
+    place, rate: (2, 2) of what does not depend on the oil's memory; left: (2, r), right_place, right_rate: (r, 2);
+    delays: (r,) s of the oil."""
+
+    place: Array
+    rate: Array
+    left: Complex
+    right_place: Complex
+    right_rate: Complex
+    delays: Complex
+
+    def at(self, s: complex) -> tuple[Complex, Complex]:
+        """Z (2, 2) at s in 1/s and its derivative by s."""
+        share = 1.0 / (1.0 + s * self.delays)
+        moved = self.right_place + s * self.right_rate
+        slope = self.right_rate - (share * self.delays)[:, None] * moved
+        z = self.place + s * self.rate + (self.left * share) @ moved
+        return z, self.rate + (self.left * share) @ slope
+
+
+def without_memory(stiffness: Array, damping: Array) -> DynamicStiffness:
+    """Of a film with eight coefficients, (2, 2) each."""
+    nothing = np.zeros((2, 0), dtype=complex)
+    return DynamicStiffness(stiffness, damping, nothing, nothing.T, nothing.T, np.zeros(0, dtype=complex))
+
+
+def weighted(parts: Sequence[tuple[DynamicStiffness, float]]) -> DynamicStiffness:
+    """The sum of dynamic stiffnesses, each times its weight."""
+    return DynamicStiffness(
+        sum((weight * part.place for part, weight in parts), np.zeros((2, 2))),
+        sum((weight * part.rate for part, weight in parts), np.zeros((2, 2))),
+        np.concatenate([weight * part.left for part, weight in parts], axis=1),
+        np.concatenate([part.right_place for part, _ in parts]),
+        np.concatenate([part.right_rate for part, _ in parts]),
+        np.concatenate([part.delays for part, _ in parts]),
+    )
+
+
+def stiffness_at(film: LinearFilm, s: complex) -> Complex:
+    """Z (2, 2) at one s in 1/s, without a projection."""
+    right, _ = _changes(film, s)
+    return np.asarray(film.push @ right)
+
+
+def dynamic_stiffness(film: LinearFilm, frequencies: Sequence[float]) -> DynamicStiffness:
+    """Z of a film, exact at rest and at the frequencies in rad/s, above 0."""
+    rights: list[Array] = []
+    lefts: list[Array] = []
+    for s in (0.0, *(1j * frequency for frequency in frequencies)):
+        for found, kept in zip(_changes(film, s), (rights, lefts), strict=True):
+            kept += [found.real] if s == 0.0 else [found.real, found.imag]
+    right, left = (np.linalg.qr(np.concatenate(kept, axis=1))[0] for kept in (rights, lefts))
+    flow = left.T @ (film.flow @ right)
+    storage = left.T @ (film.storage[:, None] * right)
+    delays, shapes = np.linalg.eig(np.linalg.solve(flow, storage))
+    moved = np.linalg.solve(flow, left.T @ np.concatenate([film.by_place, film.by_rate], axis=1))
+    amplitudes = np.linalg.solve(shapes, moved.astype(complex))
+    nothing = np.zeros((2, 2))
+    return DynamicStiffness(
+        nothing, nothing, film.push @ right @ shapes, amplitudes[:, :2], amplitudes[:, 2:], delays.astype(complex)
+    )
+
+
+def _changes(film: LinearFilm, s: complex) -> tuple[Complex, Complex]:
+    """(n, 2) changes of the cells for a unit motion of the journal, and what the force takes of their balances."""
+    from scipy.sparse import diags  # takes long to load
+    from scipy.sparse.linalg import splu
+
+    solver = splu((film.flow + s * diags(film.storage)).astype(complex).tocsc())
+    right = solver.solve((film.by_place + s * film.by_rate).astype(complex))
+    return right, solver.solve(film.push.T.astype(complex), "T")

@@ -1,0 +1,98 @@
+"""Stability of films that keep oil: against shooting on the time loop, films without memory, and a count of motions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.linear import stability as stability_room
+from frbcli.linear.damped_modes import FORWARD, damped_modes
+from frbcli.linear.response import response
+from frbcli.linear.stability import stability, stability_points
+from frbcli.linear.stability_point import linear_machine, point_at_rest
+
+HOPF_Hz = (75.70, 75.95)  # of rigid-two-phase at 2 bar by shooting on the time loop, 24 to 64 cells around, 6 along
+FULL = ("bearing.supply.pressure=30 bar", "bearing.ends=oil-bath", "rotor.unbalance=1 g*mm")  # no cavity anywhere
+
+
+def fed(*settings: str) -> Case:
+    return load_case("rigid-two-phase", ["bearing.supply.pressure=2 bar", *settings])
+
+
+def test_the_threshold_is_the_hopf_point_of_shooting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Within the stated error, which is of the cells: 1 % of the coefficients are 1 Hz of this threshold."""
+    monkeypatch.setattr(stability_room, "SPEEDS_WITH_MEMORY", 2)
+    found = stability(fed("speed.from=74 Hz", "speed.to=81 Hz")).threshold
+    assert found is not None
+    assert all(abs(found.speed_Hz - hopf) < found.speed_uncertainty_Hz < 5.0 for hopf in HOPF_Hz)
+    assert found.whirl_ratio == pytest.approx(0.503, abs=0.002)
+
+
+@pytest.mark.parametrize("law", ["elrod", "two-phase"])
+def test_a_full_film_has_no_memory(law: str) -> None:
+    """Elrod's oil is incompressible: the eigenvalue is that of Sommerfeld's film. The oil of the two-phase
+    model is compressed by 1e-3 per bar, that is by up to 3 % here."""
+    cases = [load_case("rigid-two-phase", [*FULL, f"film.cavitation={name}"]) for name in (law, "sommerfeld")]
+    own, other = (stability_points(case, [60.0])[1][0] for case in cases)
+    place, close = (2e-3, 5e-4) if law == "elrod" else (3e-2, 2e-3)
+    assert own.films[0].eccentricity == pytest.approx(other.films[0].eccentricity, rel=place)
+    assert abs(own.critical - other.critical) < close * abs(other.critical)
+
+
+def test_the_response_of_a_full_film_is_that_without_memory() -> None:
+    cases = [load_case("rigid-two-phase", [*FULL, f"film.cavitation={name}"]) for name in ("elrod", "sommerfeld")]
+    own, other = (response(case, [60.0, 90.0]) for case in cases)
+    np.testing.assert_allclose(own.motion, other.motion, atol=2e-3 * np.abs(other.motion).max())
+
+
+@pytest.mark.parametrize("speed_Hz", [60.0, 100.0])
+def test_all_motions_that_grow_are_found(speed_Hz: float) -> None:
+    """By the argument principle: along the imaginary axis the argument of the determinant of n degrees of freedom turns
+    by n pi less 2 pi for each motion that grows, the films of held journals being stable."""
+    machine = StaticMachines(fed(), memory=True).at(2.0 * math.pi * speed_Hz)
+    linear, films = linear_machine(machine), [film.one for film in machine.dynamic]
+    frequencies = machine.omega * np.concatenate([np.linspace(0.0, 3.0, 3000), np.geomspace(3.0, 1e4, 3000)[1:]])
+    values = np.array([np.linalg.det(linear.at(1j * frequency, films)[0]) for frequency in frequencies])
+    turned = 2.0 * np.angle(values[1:] / values[:-1]).sum() / math.pi
+    point = point_at_rest(machine, speed_Hz)
+    growing = int(np.count_nonzero(point.eigenvalues.real > 0.0))
+    assert len(linear.mass) * 2 - turned == pytest.approx(2.0 * growing, abs=0.1)
+    assert growing == (2 if speed_Hz == 100.0 else 0)
+
+
+def test_coefficients_are_those_at_the_frequency_of_the_whirl() -> None:
+    """With them alone the whirl is nearly the same, as it hardly grows."""
+    (point,) = stability_points(fed(), [76.0])[1]
+    machine = StaticMachines(fed(), memory=True).at(2.0 * math.pi * 76.0)
+    linear, (film,) = linear_machine(machine), point.films
+    nu = point.critical.imag
+    journal = linear.journals[0]
+    matrix = linear.at(1j * nu, [machine.dynamic[0].own])[0]
+    alone = linear.stiffness + 1j * nu * linear.damping - nu**2 * linear.mass
+    alone = alone + linear.multiplicity[0] * journal.T @ (film.stiffness + 1j * nu * film.damping) @ journal
+    np.testing.assert_allclose(alone, matrix, rtol=1e-9)
+    assert film.error < 0.05
+
+
+def test_damped_modes_are_those_of_the_points() -> None:
+    (mode, *_) = damped_modes(fed(), 100.0).modes
+    (point,) = stability_points(fed(), [100.0])[1]
+    assert mode.eigenvalue == pytest.approx(point.critical, rel=1e-9)
+    assert mode.direction == FORWARD
+
+
+def test_a_film_whose_coefficients_are_not_known_is_told_so(capsys: pytest.CaptureFixture[str]) -> None:
+    """Fed at p_cav, the front of its oil stands in cells that hardly flow."""
+    (point,) = stability_points(load_case("jeffcott-two-phase"), [100.0])[1]
+    assert not point.rests
+    assert "supply pressure" in point.problem
+    (fed_point,) = stability_points(load_case("jeffcott-two-phase", ["bearing.supply.pressure=2 bar"]), [100.0])[1]
+    assert fed_point.rests
+    assert frb(["stability", "jeffcott-two-phase", "--set", "film.two-phase.form=published", "--no-picture"]) == 2
+    assert "no oil settles" in capsys.readouterr().err
