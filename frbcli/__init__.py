@@ -60,6 +60,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.studies.against import against_measured as against_measured
     from frbcli.studies.compare import compare as compare
     from frbcli.studies.fit import fit as fit
+    from frbcli.studies.kernels.warm_up import warm_up as warm_up
     from frbcli.studies.sweep.sweep import sweep as sweep
 
 
@@ -117,6 +118,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
+    "warm_up": "frbcli.studies.kernels.warm_up",
     "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",
     "waterfall": "frbcli.analysis.spectra.spectrum",

@@ -53,6 +53,7 @@ SHOWN: dict[str, tuple[list[str], str]] = {
                "bearing.clearance=30 um,35 um,40 um,45 um", "-o", "study"], "study/sweep.png"),
     "report": (["report", "run.h5"], ""),
     "export": (["export", "run.h5"], ""),
+    "warm-up": (["warm-up", "jeffcott"], ""),
     "cases": (["cases"], ""),
     "schema": (["schema"], ""),
 }  # fmt: skip

@@ -113,6 +113,11 @@ COMMANDS = {
         "Write the signals of a run as CSV, Parquet or MAT.",
         "frb export run.h5 --format mat",
     ),
+    "warm-up": (
+        "frbcli.cli.casefiles.warm_up",
+        "Compile the kernels of cases, or of all shipped ones, once.",
+        "frb warm-up jeffcott floating-ring-heat",
+    ),
     "cases": ("frbcli.cli.casefiles.cases", "List, show or copy the shipped cases.", "frb cases jeffcott -o my.toml"),
     "schema": (
         "frbcli.cli.casefiles.schema",

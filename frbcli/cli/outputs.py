@@ -16,6 +16,7 @@ from frbcli.cli.common import Terminal
 from frbcli.cli.files import OUTPUT, check_outputs
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import gathered
+from frbcli.cli.progress import drawing
 from frbcli.errors import InputError
 
 if TYPE_CHECKING:
@@ -104,11 +105,11 @@ def draw(terminal: Terminal, picture: Callable[[], Picture], target: Path, what:
 
 def draw_wanted(terminal: Terminal, picture: Callable[[], Picture], target: Path, what: str = "picture") -> Path:
     """Draw the picture that a command is for. Raises InputError if it cannot be written."""
-    from frbcli.plot.look import fit
-    from frbcli.plot.style import save_figure
-
     look = terminal.look
-    with warnings.catch_warnings(record=True) as caught:
+    with drawing(terminal), warnings.catch_warnings(record=True) as caught:
+        from frbcli.plot.look import fit
+        from frbcli.plot.style import save_figure
+
         warnings.filterwarnings("always", message="Glyph")
         figure = fit(picture(), look.size_in, look.x_limits, look.y_limits, look.rpm)
         save_figure(figure, target, look.dpi)

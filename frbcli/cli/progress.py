@@ -9,11 +9,13 @@ import math
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from frbcli.cli.common import WIDTH, Terminal
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from frbcli.case.schema import Case
     from frbcli.runs.march import Progress
 
@@ -21,6 +23,8 @@ REFRESH_Hz = 8
 TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
 # What takes long is announced there as soon as the first numbers tell: after so much time, if so much is left.
 ANNOUNCED_s, LONG_s = 1.0, 5.0
+COMPUTING = "Computing."
+CLOCK_AFTER_s = 1.0  # without a change the time is shown
 LONGEST_LEFT_s = 1e9  # longest time that is shown
 COMPILING_EVERY_s = 10.0  # between two lines of the compilation where there is no terminal
 # A little work of the kind that compiling is, and the CPU time in s that it took where compile_s was measured.
@@ -105,17 +109,36 @@ class NowAndThen:
         return True
 
 
+class _Lines:
+    """Lines, and below them the time since they last changed once that is CLOCK_AFTER_s: redrawn by the clock, they
+    show that work goes on, also where it cannot be counted."""
+
+    def __init__(self, lines: str) -> None:
+        self._lines, self._since = lines, time.monotonic()
+
+    def change(self, lines: str) -> None:
+        """Show other lines."""
+        self._lines, self._since = lines, time.monotonic()
+
+    def __rich__(self) -> Text:
+        from rich.text import Text
+
+        waited = time.monotonic() - self._since
+        clock = f"\n{waited:.0f} s so far" if waited >= CLOCK_AFTER_s else ""
+        return Text(self._lines + clock, no_wrap=True, overflow="ellipsis")
+
+
 @contextmanager
-def display(terminal: Terminal) -> Iterator[Display]:
-    """A display on the terminal, whose lines vanish at the end."""
+def display(terminal: Terminal, lines: str = COMPUTING) -> Iterator[Display]:
+    """A display on the terminal, whose lines vanish at the end; lines: what is shown there first."""
     if not terminal.live:
         yield Display(terminal)
         return
     from rich.live import Live
-    from rich.text import Text
 
-    with Live(console=terminal.live_console(), refresh_per_second=REFRESH_Hz, transient=True) as live:
-        yield Display(terminal, lambda lines: live.update(Text(lines, no_wrap=True, overflow="ellipsis")))
+    shown = _Lines(lines)
+    with Live(shown, console=terminal.live_console(), refresh_per_second=REFRESH_Hz, transient=True):
+        yield Display(terminal, shown.change)
 
 
 @contextmanager
@@ -127,33 +150,33 @@ def computing(terminal: Terminal, case: Case, also: Iterable[Case] = ()) -> Iter
 
 
 @contextmanager
+def drawing(terminal: Terminal) -> Iterator[None]:
+    """A display while a picture or a page is made."""
+    with display(terminal, "Drawing."):
+        yield
+
+
+@contextmanager
 def compilation_shown(shown: Display, case: Case, also: Iterable[Case] = ()) -> Iterator[None]:
     """Within it, a display shows the progress of the compilation; case, also: see `computing`."""
-    from numba.core.event import Listener, install_listener  # heavy: only where kernels are used
-
+    from frbcli.compilation import counted  # heavy: only where kernels are used
     from frbcli.scene.costs.preparation import compile_s
 
-    class Compilations(Listener):
-        """Counts the compiled functions, with those that they call."""
+    begun = told = about_s = 0.0
 
-        def __init__(self) -> None:
-            self._begun, self._told, self._count, self._about_s = 0.0, 0.0, 0, 0.0
+    def observe() -> None:
+        nonlocal begun, told, about_s
+        now = time.monotonic()
+        if begun == 0.0:
+            about_s = compile_s([case, *also]) * slowness()
+            begun = told = now
+            shown.line(f"Compiling the kernels, once: about {about_s:.0f} s of CPU time.")
+        elif compilations.functions and (shown.redraws or now - told > COMPILING_EVERY_s):
+            told = now
+            line = f"Compiling the kernels, once: {compilations.functions} functions in {now - begun:.0f} s"
+            shown.line(f"{line} of about {about_s:.0f}.")
 
-        def on_start(self, _event: Any) -> None:
-            if self._begun == 0.0:
-                self._about_s = compile_s([case, *also]) * slowness()
-                self._begun = self._told = time.monotonic()
-                shown.line(f"Compiling the kernels, once: about {self._about_s:.0f} s of CPU time.")
-
-        def on_end(self, _event: Any) -> None:
-            self._count += 1
-            now = time.monotonic()
-            if shown.redraws or now - self._told > COMPILING_EVERY_s:
-                self._told = now
-                line = f"Compiling the kernels, once: {self._count} functions in {now - self._begun:.0f} s"
-                shown.line(f"{line} of about {self._about_s:.0f}.")
-
-    with install_listener("numba:compile", Compilations()):
+    with counted(observe) as compilations:
         yield
 
 

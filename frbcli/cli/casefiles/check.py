@@ -95,12 +95,18 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
 
 
 def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
-    """Temperatures at the top speed, when everything is warm."""
+    """Temperatures at the top speed, when everything is warm, if that needs no compiler: a check waits for none."""
+    from frbcli.compilation import NotCompiled, forbidden
     from frbcli.equilibrium.warm_machine import warm_machine
     from frbcli.errors import NotConverged
 
     try:
-        warm = warm_machine(case)
+        with forbidden():
+            warm = warm_machine(case)
+    except NotCompiled:
+        problem = "the kernels are not compiled yet; `frb warm-up CASE` compiles them, once."
+        terminal.sentence(f"No temperatures at the top speed: {problem}")
+        return {"problem": problem}
     except NotConverged as error:
         terminal.sentence(f"No steady temperatures at the top speed: {error}")
         return {"problem": str(error)}

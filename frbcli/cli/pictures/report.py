@@ -9,6 +9,7 @@ import click
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
 from frbcli.cli.options import signal_option, speeds_option
+from frbcli.cli.progress import drawing
 
 
 @click.command()
@@ -26,12 +27,14 @@ def command(
 ) -> None:  # fmt: skip
     """Write RUN.h5 as one page: machine, plan, events, waterfall that reads out under the pointer, orbits, spectra,
     errors, balances, cost and how to repeat it."""
-    from frbcli.report.page import write_report
     from frbcli.results.files.kinds import PAGE
     from frbcli.results.store import read_run
 
     target = output or beside(run_file, "-report.html")
     check_outputs((target, PAGE))
-    write_report(read_run(run_file), target, speeds, signal, author, both_units)
+    with drawing(terminal):
+        from frbcli.report.page import write_report
+
+        write_report(read_run(run_file), target, speeds, signal, author, both_units)
     terminal.result(f"report: {target}")
     terminal.emit({"command": "report", "run": run_file, "output": target})

@@ -207,7 +207,8 @@ def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
     from frbcli.cycles.limit_cycles import limit_cycles
 
     try:
-        told = explanations(limit_cycles(case), run.events)
+        with computing(terminal, case):
+            told = explanations(limit_cycles(case), run.events)
     except FrbError as error:
         told = (f"Not explained: {error}",)
     for sentence in told:

@@ -22,6 +22,7 @@ from frbcli.results.files.kinds import TABLES
 from frbcli.results.files.lock import locked
 from frbcli.results.files.write import written
 from frbcli.scene.planning.plan import make_plan
+from frbcli.studies.kernels.short_analyses import COMPILED_FOR, moment_of_run
 from frbcli.studies.sweep.columns import point_columns, reason
 from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid
@@ -33,9 +34,6 @@ __all__ = ["Observer", "Sweep", "SweepPoint", "Workers", "check_table_format", "
 
 LOG, RUNS = "sweep.jsonl", "runs"
 TABLE_FORMATS = ("csv", "parquet")
-# decisions of a plan that choose the kernels
-COMPILED_FOR = ("bearings", "theory", "cavitation", "coupling", "film", "integrator")
-WARM_UP_s = 1e-3
 
 Observer = Callable[[SweepPoint, int, int], None]  # a point, how many are done, how many there are
 
@@ -199,11 +197,9 @@ def _compile(tasks: Sequence[Task]) -> None:
         decisions = make_plan(task.case).decisions
         kinds.setdefault(tuple(made.value for made in decisions if made.choice in COMPILED_FOR), task)
     for task in kinds.values():
-        case = task.case
-        moment = (f"speed.from={case.speed.end!r}", f"speed.duration={max(WARM_UP_s, 2 * case.output.step)!r}")
         with TemporaryDirectory(prefix="frb-sweep-") as folder:
             run = Path(folder) / "moment.h5"
-            solve(Task(0, {}, case.with_settings(*moment), task.method, run))
+            solve(Task(0, {}, moment_of_run(task.case), task.method, run))
 
 
 def _header(case: Case, settings: Sequence[Settings], method: str) -> dict[str, Any]:

@@ -1,0 +1,46 @@
+"""`frb warm-up`: the kernels of cases, compiled once."""
+
+from __future__ import annotations
+
+import click
+
+from frbcli.cli.common import SETTING, Terminal, output_options
+from frbcli.cli.completion import complete_case, complete_key
+from frbcli.cli.progress import display
+
+
+@click.command()
+@click.argument("sources", nargs=-1, metavar="[CASE]...", shell_complete=complete_case)
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
+              help=f"{SETTING} Repeatable.")  # fmt: skip
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processes. [one for each core]")
+@output_options
+def command(sources: tuple[str, ...], settings: tuple[str, ...], jobs: int | None, terminal: Terminal) -> None:
+    """Compile the kernels of CASE, or of all shipped cases, once, on all cores: those of run-ups, stability, bearing
+    sheets and kinematic tests."""
+    if settings and not sources:
+        raise click.UsageError("--set is of a CASE.")
+    with display(terminal) as shown:
+        shown.line("Looking for the kernels; those that are missing are compiled, once.")
+        from frbcli.case.reading.load import load_case
+        from frbcli.studies.kernels.warm_up import warm_up
+
+        cases = [load_case(source, settings) for source in sources]
+        found = warm_up(cases, jobs or -1, lambda what, number, count: shown.line(f"{number} of {count}: {what}"))
+    if found.compiled:
+        terminal.show("compiled", found.table())
+        terminal.result(
+            f"Compiled kernels: {found.functions} functions in {found.wall_s:.0f} s, {found.cpu_s:.0f} s of CPU time."
+        )
+    else:
+        terminal.result("Nothing to compile: all kernels are on the disk.")
+    terminal.emit(
+        {
+            "command": "warm-up",
+            "cases": found.cases,
+            "compiled": found.table().documents(),
+            "functions": found.functions,
+            "cpu_s": found.cpu_s,
+            "wall_s": found.wall_s,
+        }
+    )

@@ -1,0 +1,1 @@
+"""The kernels of cases, compiled before they are needed."""

@@ -1,0 +1,89 @@
+"""Analyses of a case as short as can be: they compile the kernels that the whole ones need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from frbcli.bearing_tests import kinematic
+from frbcli.case.schema import Case
+from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.linear.stability import stability_points
+from frbcli.runs.run import runup
+from frbcli.scene.gate.analysis import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
+from frbcli.scene.gate.gate import faults
+from frbcli.scene.planning.film_choice import needs_cells
+from frbcli.scene.planning.kinematic_plan import kinematic_plan
+from frbcli.scene.planning.plan import make_plan
+
+MOMENT_s = 1e-3  # of a run
+PERIODS = 1e-3  # of a squeeze or a whirl
+# Decisions of a plan that choose the kernels
+COMPILED_FOR = ("bearings", "theory", "cavitation", "coupling", "film", "integrator")
+CELLS, OTHERS = "cells", "others"  # kernels of finite-volume films; all others, which are compiled apart from them
+
+
+@dataclass(frozen=True)
+class ShortAnalysis:
+    """An analysis of a case, as short as can be. kind: what determines its kernels; family: CELLS or OTHERS."""
+
+    case: Case
+    analysis: str
+    kind: tuple[object, ...]
+    family: str
+
+    def compute(self) -> None:
+        """Run the analysis. Raises FrbError as the analysis does."""
+        ANALYSES[self.analysis](self.case)
+
+
+def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
+    """Short forms of all analyses that a case can be asked for, of runs, stability, sheets and kinematic tests. Raises
+    InputError if the machine cannot be modelled."""
+    if case.motion is None or (case.given_rotor is not None and case.given_speed is not None):
+        make_plan(case)  # tells what is wrong with a machine
+    found = [analysis for analysis in ANALYSES if _applies(case, analysis)]
+    for analysis in found:
+        decisions = kinematic_plan(case, test=analysis) if analysis in KINEMATIC else make_plan(case)
+        chosen = tuple(made.value for made in decisions.decisions if made.choice in COMPILED_FOR)
+        kind = (analysis, *chosen, case.heat is not None, case.output.signals, case.film.bearing_model)
+        on_cells = analysis in (BEARING, *KINEMATIC) or needs_cells(case)
+        yield ShortAnalysis(case, analysis, kind, CELLS if on_cells else OTHERS)
+
+
+def moment_of_run(case: Case) -> Case:
+    """A case whose run takes a moment, at its last speed."""
+    duration = max(MOMENT_s, 2 * case.output.step)
+    return case.with_settings(f"speed.from={case.speed.end!r}", f"speed.duration={duration!r}")
+
+
+def _applies(case: Case, analysis: str) -> bool:
+    if analysis in KINEMATIC:
+        wanted = case.motion is not None and (case.motion.frequency is None) == (analysis == ROTATION)
+        return wanted and not faults(case, analysis)
+    return case.given_rotor is not None and case.given_speed is not None and not faults(case, analysis)
+
+
+def _run(case: Case) -> None:
+    with TemporaryDirectory(prefix="frb-warm-up-") as folder:
+        runup(moment_of_run(case), Path(folder) / "moment.h5")
+
+
+def _top_Hz(case: Case) -> float:
+    return max(abs(case.speed.start), abs(case.speed.end))
+
+
+def _kinematic(test: Callable[..., object]) -> Callable[[Case], object]:
+    return lambda case: test(case.with_settings(f"motion.periods={PERIODS!r}"))
+
+
+ANALYSES: dict[str, Callable[[Case], object]] = {
+    RUN: _run,
+    STABILITY: lambda case: stability_points(case, [_top_Hz(case)]),
+    BEARING: lambda case: bearing_sheet(case, [_top_Hz(case)]),
+    "rotation": kinematic.rotation,
+    "squeeze": _kinematic(kinematic.squeeze),
+    "whirl": _kinematic(kinematic.whirl),
+}

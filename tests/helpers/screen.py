@@ -1,0 +1,57 @@
+"""What a person at a terminal sees of a command, with the moments at which it changes."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+CODES = re.compile(rb"\x1b\[[0-9;?]*[A-Za-z]|\r|\n")  # move the cursor, set colours
+ROOM_B = 65536
+# Runs `frb` with the code in the first argument before it.
+FRB = "import sys; exec(sys.argv.pop(1)); from frbcli.cli.process import main; main()"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """code: exit code; silent_s: the longest time in which nothing new was on the screen; text: all that was."""
+
+    code: int
+    silent_s: float
+    text: str
+
+
+def seen(arguments: Sequence[str], before: str = "", environment: Mapping[str, str] | None = None) -> Seen:
+    """Run `frb` on a terminal. before: Python code that runs first; environment: variables to add."""
+    screen, end = pty.openpty()
+    variables = {**os.environ, "TERM": "xterm", "COLUMNS": "100", **(environment or {})}
+    process = subprocess.Popen(
+        [sys.executable, "-c", FRB, before, *arguments], stdin=end, stdout=end, stderr=end, env=variables
+    )
+    os.close(end)
+    last, silent, shown, text = time.monotonic(), 0.0, b"", b""
+    while chunk := _next(screen):
+        new = CODES.sub(b"", chunk)
+        if new.strip() and new != shown:  # what is drawn again as it was tells nothing
+            now = time.monotonic()
+            silent, last, shown = max(silent, now - last), now, new
+        text += chunk
+    code = process.wait()
+    os.close(screen)
+    silent = max(silent, time.monotonic() - last)
+    return Seen(code, silent, CODES.sub(b"\n", text).decode("utf-8", "replace"))
+
+
+def _next(screen: int) -> bytes:
+    """What comes next; nothing at the end, which Linux calls an error."""
+    select.select([screen], [], [])
+    try:
+        return os.read(screen, ROOM_B)
+    except OSError:
+        return b""
