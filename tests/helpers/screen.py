@@ -20,9 +20,11 @@ FRB = "import sys; exec(sys.argv.pop(1)); from frbcli.cli.process import main; m
 
 @dataclass(frozen=True)
 class Seen:
-    """code: exit code; silent_s: the longest time in which nothing new was on the screen; text: all that was."""
+    """code: exit code; first_s: when something was on the screen; silent_s: the longest time from then on in which
+    nothing new was there; text: all that was."""
 
     code: int
+    first_s: float
     silent_s: float
     text: str
 
@@ -35,17 +37,21 @@ def seen(arguments: Sequence[str], before: str = "", environment: Mapping[str, s
         [sys.executable, "-c", FRB, before, *arguments], stdin=end, stdout=end, stderr=end, env=variables
     )
     os.close(end)
-    last, silent, shown, text = time.monotonic(), 0.0, b"", b""
+    began = time.monotonic()
+    last, silent, first, shown, text = began, 0.0, None, b"", b""
     while chunk := _next(screen):
         new = CODES.sub(b"", chunk)
         if new.strip() and new != shown:  # what is drawn again as it was tells nothing
             now = time.monotonic()
+            if first is None:
+                first = last = now
             silent, last, shown = max(silent, now - last), now, new
         text += chunk
     code = process.wait()
     os.close(screen)
     silent = max(silent, time.monotonic() - last)
-    return Seen(code, silent, CODES.sub(b"\n", text).decode("utf-8", "replace"))
+    all_text = CODES.sub(b"\n", text).decode("utf-8", "replace")
+    return Seen(code, (last if first is None else first) - began, silent, all_text)
 
 
 def _next(screen: int) -> bytes:
