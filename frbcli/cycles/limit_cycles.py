@@ -10,7 +10,7 @@ from dataclasses import replace
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
-from frbcli.cycles.faults import check, check_unbalance
+from frbcli.cycles.faults import check
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.parts.machine import make_machine
@@ -19,7 +19,7 @@ from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.scene.gate.static import by_shooting
+from frbcli.scene.gate.cycles import by_shooting
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
@@ -64,9 +64,7 @@ def limit_cycles(
     >>> found = frbcli.limit_cycles(case)  # doctest: +SKIP
     """
     begun = time.process_time()
-    slowest, fastest = check(case, shooting=True)
-    if with_unbalance:
-        check_unbalance(case)
+    slowest, fastest = check(case, True, with_unbalance)
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
         problem = f"lies outside of the range, {hertz(slowest):.4g} to {hertz(fastest):.4g} Hz."

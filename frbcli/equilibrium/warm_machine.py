@@ -10,8 +10,8 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import RestingPosition, resting_position
-from frbcli.errors import Fault, InputError
 from frbcli.film.grid import Array
+from frbcli.scene.gate.analysis import HEAT
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.heat import Heat, heat_of
 from frbcli.scene.machine.system import System, make_system
@@ -89,10 +89,7 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     >>> import frbcli
     >>> found = frbcli.warm_machine(frbcli.load_case("floating-ring-heat"))  # doctest: +SKIP
     """
-    require(case)
-    if case.heat is None:
-        remedy = 'Add the table [thermal] with model = "lumped".'
-        raise InputError(case.name or "case", (Fault("thermal", "", None, "is missing.", remedy),))
+    require(case, HEAT)
     plan = make_plan(case)
     top = max(abs(case.speed.start), abs(case.speed.end)) if speed_Hz is None else speed_Hz
     return WarmMachines(case, plan, make_system(case, plan)).at(2.0 * math.pi * top)

@@ -27,7 +27,7 @@ from frbcli.linear.columns import SHEET
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.films import film_places
-from frbcli.scene.gate.analysis import BEARING
+from frbcli.scene.gate.analysis import BEARING, CHART, LOADED
 from frbcli.scene.gate.gate import require
 from frbcli.scene.remedies import advised
 
@@ -94,11 +94,7 @@ def bearing_sheet(
     >>> len(sheet.points)
     1
     """
-    check_sheet(case)
-    if case.heat is not None and (load is not None or case.given_rotor is None):
-        problem = "needs the load of a [rotor], and takes no other."
-        remedy = 'Leave --load out and add [rotor] and [speed], or write thermal.model = "none".'
-        raise InputError(case.name or "case", (Fault("thermal.model", "lumped", None, problem, remedy),))
+    require(case, BEARING if load is None and case.given_rotor is not None else LOADED)
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
     machines = StaticMachines(case, load, speeds[-1])
     near: MachineAtRest | None = None
@@ -153,11 +149,7 @@ def sommerfeld_chart(
     >>> chart.points[0].eccentricity
     0.5
     """
-    check_sheet(case)
-    if case.heat is not None:
-        remedy = 'Choose --over speed, or write thermal.model = "none": films then have oil.temperature.'
-        problem = "is not modelled over eccentricity: the temperatures belong to the load of the rotor."
-        raise InputError(case.name or "case", (Fault("thermal.model", "lumped", None, problem, remedy),))
+    require(case, CHART)
     speed = max(_speeds(case)) if speed_Hz is None else speed_Hz
     static = static_films(case, 0.0, speed)
     system, volumes, omega = static.system, static.volumes(), 2.0 * math.pi * speed
@@ -192,11 +184,6 @@ def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: fl
     others = [(under_vertical_load(films.system, i, eccentricity, omega)[1], films.share) for films in static.others]
     system = static.system
     return resting_film(system.names[i], force, place / system.clearances[i], coefficient_error(force, others))
-
-
-def check_sheet(case: Case) -> None:
-    """Raises InputError if the bearings of a case have no sheet."""
-    require(case, BEARING)
 
 
 def _speeds(case: Case) -> tuple[float, ...]:

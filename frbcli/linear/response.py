@@ -29,11 +29,13 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.parabola import summit
 from frbcli.html import Tabular
 from frbcli.linear.columns import RESPONSE_POINTS
-from frbcli.linear.stability import default_speeds, stability_points
+from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.scene.gate.analysis import FILMS, RANGE
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_forces
+from frbcli.scene.speeds import default_speeds
 
 Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
@@ -169,7 +171,7 @@ def response(
     >>> len(found.points)
     2
     """
-    require(case)
+    require(case, RANGE if speeds_Hz is None else FILMS)
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
     system, points = stability_points(case, asked, observe, synchronous=True)
     resting = [point for point in points if point.rests]

@@ -23,13 +23,11 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest
 from frbcli.linear.threshold import Threshold, find_threshold
-from frbcli.scene.gate.analysis import STABILITY
+from frbcli.scene.gate.analysis import FILMS, RANGE, STABILITY
 from frbcli.scene.gate.gate import require
-from frbcli.scene.gate.static import keeps_oil
 from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
-
-SPEEDS, SPEEDS_WITH_MEMORY = 60, 20  # of the default sweep: 5 and 15 Hz apart from 0 to 300 Hz
+from frbcli.scene.speeds import default_speeds
 
 
 @dataclass(frozen=True, repr=False)
@@ -85,7 +83,7 @@ def stability(
     >>> found.threshold is not None
     True
     """
-    require(case)
+    require(case, RANGE if speeds_Hz is None else FILMS)
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
@@ -137,16 +135,6 @@ def _sweep(
     return machines, tuple(reversed(points))
 
 
-def default_speeds(case: Case, count: int | None = None) -> tuple[float, ...]:
-    """Speeds in Hz, greater than zero, that sweep the range of the case; fewer where a film keeps oil, whose memory
-    takes longer to compute."""
-    count = count or (SPEEDS_WITH_MEMORY if keeps_oil(case) else SPEEDS)
-    low, high = sorted((case.speed.start, case.speed.end))
-    if low > 0.0:
-        return tuple(np.unique(np.linspace(low, high, count)).tolist())
-    return tuple(np.linspace(0.0, high, count + 1)[1:].tolist()) if high > 0.0 else ()
-
-
 def _point(
     case: Case, machines: StaticMachines, speed: float, near: MachineAtRest | None, synchronous: bool
 ) -> tuple[StabilityPoint, MachineAtRest | None]:
@@ -160,10 +148,9 @@ def _point(
 
 
 def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
-    if not speeds:
-        given, problem = f"{case.speed.end:g} Hz", "leaves no speed above zero."
-        remedy = 'Write e.g. speed.to = "300 Hz", or ask for a speed, "25 Hz".'
-        raise InputError(case.name or "case", (Fault("speed.to", given, None, problem, remedy),))
+    if not len(speeds):
+        missing = Fault("speed", "", None, "is missing.", 'Write e.g. "25 Hz".')
+        raise InputError(case.name or "case", (missing,))
     wrong = [speed for speed in speeds if not (math.isfinite(speed) and speed > 0.0)]
     if wrong:
         faults = [Fault("speed", f"{s:g} Hz", None, "must be greater than 0.", 'Write e.g. "25 Hz".') for s in wrong]

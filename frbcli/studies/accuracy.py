@@ -14,18 +14,19 @@ from tempfile import TemporaryDirectory
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.linear.stability import default_speeds, stability
+from frbcli.linear.stability import stability
 from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
 from frbcli.scene.coupling import COUPLINGS
+from frbcli.scene.gate.analysis import LADDER
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import require_a_film
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.scene.planning.planned import Plan
+from frbcli.scene.speeds import default_speeds
 from frbcli.studies.differences import difference, onset_speed
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
 
@@ -82,15 +83,8 @@ def accuracy(
     >>> found = frbcli.accuracy(case, until=0.1)  # doctest: +SKIP
     >>> found.to_pandas()  # doctest: +SKIP
     """
-    require(case)
+    require(case, LADDER)
     _check_names(case, theories, couplings)
-    require_a_film(case, "the ladder is of films")
-    if case.film.bearing_model:
-        problem = "is a bearing model, which has no theories and meshes to compare."
-        fault = Fault(
-            "film.theory", case.film.theory, None, problem, "`frb runup --verify` measures the error of a run."
-        )
-        raise InputError(case.name or "case", (fault,))
     short = _until(case, until)
     own = planned_rung(make_plan(short))
     fine = replace(own, theory="finite", mesh=_mesh(own, REFERENCE_MESH), tolerance=REFERENCE_TOLERANCE * own.tolerance)

@@ -27,8 +27,8 @@ from frbcli.runs.record.header import POWER
 from frbcli.runs.record.standing import earlier_run, is_interrupted, standing_run
 from frbcli.runs.run import runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.gate.analysis import COMPARISON
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import require_a_film
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
@@ -182,8 +182,7 @@ def compare(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> found = frbcli.compare(case, ["half-sommerfeld", "sommerfeld"])  # doctest: +SKIP
     """
-    require(case)
-    require_a_film(case, "the comparison is of models of films")
+    require(case, COMPARISON)
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings, thermals)
     cases = [_with_models(case, variant) for variant in variants]

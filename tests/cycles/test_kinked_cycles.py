@@ -19,11 +19,18 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.linear.stability_point import critical_eigenvalue, eigenvalues
 
 REYNOLDS = ("film.cavitation=reynolds", "accuracy.mesh=[6,32]")
+POCKET = '{kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'
+SLOTS = '{kind="axial-slots", count=2, opening_angle="10 deg", length="8 mm", pressure="2 bar"}'
+OPENINGS = {
+    "pocket": (f"bearing.supply={POCKET}", True),
+    "slots": (f"bearing.supply={SLOTS}", True),
+    "lobes": ("bearing.lobes={count=3, preload=0.5}", False),
+}
 RANGE_Hz, ASKED_Hz = (212.0, 232.0), 222.0
 
 
 @lru_cache
-def flow() -> PeriodMap:
+def cells() -> PeriodMap:
     return period_map(frbcli.load_case("rigid", REYNOLDS))
 
 
@@ -33,27 +40,45 @@ def diagram() -> LimitCycles:
     return frbcli.limit_cycles(frbcli.load_case("rigid", [*REYNOLDS, *speeds]), [ASKED_Hz])
 
 
-def by_coefficients(speed_Hz: float) -> complex:
+def by_coefficients(speed_Hz: float, flow: PeriodMap | None = None) -> complex:
     """The eigenvalue of the whirl on the derivatives of the force on the same cells."""
-    omega, system = 2.0 * math.pi * speed_Hz, flow().system
+    omega, system = 2.0 * math.pi * speed_Hz, (flow or cells()).system
     films = resting_position(system, omega).films
     k, d = (-np.array([getattr(film, name) for film in films]) for name in ("by_displacement", "by_velocity"))
     return critical_eigenvalue(eigenvalues(system.rotor, omega, k, d))
 
 
 def test_the_state_is_that_of_the_rotor_alone() -> None:
-    assert not flow().held.any()
-    assert flow().places == ()
+    assert not cells().held.any()
+    assert cells().places == ()
 
 
 def test_small_motions_at_rest_have_the_eigenvalues_of_the_coefficients() -> None:
     omega = 2.0 * math.pi * 120.0
-    rest = settled(Shooting(flow(), omega), omega)
+    rest = settled(Shooting(cells(), omega), omega)
     assert rest is not None
-    position = resting_position(flow().system, omega)
-    np.testing.assert_allclose(rest.displacement, position.journals / flow().clearances[0], atol=1e-6)
+    position = resting_position(cells().system, omega)
+    np.testing.assert_allclose(rest.displacement, position.journals / cells().clearances[0], atol=1e-6)
     expected = by_coefficients(120.0)
     assert abs(rest.eigenvalues[rest.whirls[0]] - expected) < 1e-3 * abs(expected)
+
+
+@pytest.mark.parametrize(("opening", "begins"), OPENINGS.values(), ids=OPENINGS)
+def test_pockets_slots_and_lobes_rest_and_begin_to_whirl_as_their_coefficients_do(opening: str, begins: bool) -> None:
+    """The growth of the whirl at two speeds, between which that of pocket and slots changes its sign: a Hopf point.
+    Three lobes hold the journal: no whirl begins."""
+    flow = period_map(frbcli.load_case("rigid", [opening, "film.cavitation=half-sommerfeld", "accuracy.mesh=[6,32]"]))
+    growths = []
+    for speed_Hz in (120.0, 260.0):
+        omega = 2.0 * math.pi * speed_Hz
+        rest = settled(Shooting(flow, omega), omega)
+        assert rest is not None
+        expected, position = by_coefficients(speed_Hz, flow), resting_position(flow.system, omega)
+        np.testing.assert_allclose(rest.displacement, position.journals / flow.clearances[0], atol=1e-5)
+        assert abs(rest.eigenvalues[rest.whirls[0]] - expected) < 1e-3 * abs(expected)
+        growths.append(rest.eigenvalues[rest.whirls[0]].real)
+    assert growths[0] < 0.0
+    assert (growths[1] > 0.0) == begins
 
 
 def test_the_hopf_point_is_the_threshold_of_the_coefficients() -> None:
@@ -72,14 +97,14 @@ def test_the_time_loop_goes_to_the_stable_motions_on_both_sides_of_the_unstable_
     assert (unstable.stable, stable.stable) == (False, True)
     assert unstable.eccentricity_max[0] < stable.eccentricity_max[0]
     omega = 2.0 * math.pi * ASKED_Hz
-    rest = resting_position(flow().system, omega)
-    for eccentricity, expected in ((0.25, float(np.hypot(*rest.journals[0]) / flow().clearances[0])),
+    rest = resting_position(cells().system, omega)
+    for eccentricity, expected in ((0.25, float(np.hypot(*rest.journals[0]) / cells().clearances[0])),
                                    (0.9, float(stable.eccentricity_max[0]))):  # fmt: skip
-        q = np.array([eccentricity * flow().clearances[0], 0.0])
-        start = wet_at(flow(), q, np.zeros(2), omega)
+        q = np.array([eccentricity * cells().clearances[0], 0.0])
+        start = wet_at(cells(), q, np.zeros(2), omega)
         turns = 240  # small motions decay with 5.9 1/s, to a thousandth
-        after = flow().passage(start, turns * 2.0 * math.pi / omega, omega, 100 * turns).end
-        whirl = flow().passage(after, 2.0 / stable.frequency_Hz, omega, 400)
+        after = cells().passage(start, turns * 2.0 * math.pi / omega, omega, 100 * turns).end
+        whirl = cells().passage(after, 2.0 / stable.frequency_Hz, omega, 400)
         assert largest(whirl.displacements)[0] == pytest.approx(expected, abs=5e-3)
 
 

@@ -13,7 +13,17 @@ import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
-from frbcli.scene.gate.analysis import BEARING, ROTATION, RUN, SPEED_CYCLES, SQUEEZE, STABILITY, WHIRL
+from frbcli.scene.gate.analysis import (
+    BEARING,
+    LADDER,
+    ROTATION,
+    RUN,
+    SPEED_CYCLES,
+    SQUEEZE,
+    STABILITY,
+    WHIRL,
+    WHIRLS,
+)
 from frbcli.scene.gate.gate import require
 
 PAGE = DOCS / "matrix.md"
@@ -95,6 +105,8 @@ ANALYSES: dict[str, str] = {
     "bearing": BEARING,
     "stability, response": STABILITY,
     "limit cycles": SPEED_CYCLES,
+    "whirls with unbalance": WHIRLS,
+    "accuracy": LADDER,
 }
 HEAD = """# What goes with what
 

@@ -15,7 +15,9 @@ import pytest
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.cli.main import COMMANDS, command_named, run
+from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
+from frbcli.scene.machine.system import make_system
 
 MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'
 GROOVE = ("jeffcott", ("bearing.supply.axial_position=0.3",), "bearing.supply.axial_position = 0.3: is neither in the")
@@ -124,3 +126,24 @@ def _measured(path: Path) -> None:
     angle = np.pi * speed * t
     table = np.stack([t, speed, 5e-6 * np.cos(angle), 5e-6 * np.sin(angle)], axis=1)
     np.savetxt(path, table, delimiter=",", header="t,n,x,y", comments="")
+
+
+BLOCKED = ["bearing.ring.spin=blocked", "film.cavitation=half-sommerfeld"]
+
+
+def test_a_ring_that_stands_still_under_a_weight_is_refused_where_it_would_have_to_rest() -> None:
+    """Without a weight it rests in the middle."""
+    case = frbcli.load_case("floating-ring", BLOCKED)
+    for name, given in (("stability", ()), ("response", ([100.0],)), ("bearing_sheet", ([100.0],))):
+        with pytest.raises(InputError, match="the ring rests on its shell"):
+            getattr(frbcli, name)(case, *given)
+    weightless = frbcli.load_case("floating-ring", [*BLOCKED, "rotor.gravity=0 m/s^2"])
+    assert np.allclose(resting_position(make_system(weightless, frbcli.make_plan(weightless)), 600.0).journals, 0.0)
+
+
+def test_speeds_that_leave_no_range_are_refused_where_the_range_is_asked_for() -> None:
+    case = frbcli.load_case("jeffcott", ["speed.from=-20 Hz", "speed.to=0 Hz", "film.theory=short"])
+    for name in ("stability", "response", "limit_cycles"):
+        with pytest.raises(InputError, match="above zero"):
+            getattr(frbcli, name)(case)
+    assert frbcli.stability(case, [20.0]).points[0].rests

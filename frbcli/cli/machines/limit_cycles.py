@@ -251,8 +251,8 @@ def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
 
 
 def _left_out(found: LimitCycles) -> list[str]:
-    from frbcli.cycles.faults import has_unbalance
     from frbcli.scene.clearance_steps import step_times
+    from frbcli.scene.gate.cycles import has_unbalance
 
     notes = []
     if has_unbalance(found.case):

@@ -5,9 +5,13 @@ from __future__ import annotations
 FILMS = "films"  # whatever needs the films of a case and has no rules of its own
 RUN = "run"  # run-up, run-down, sweep, fit and compare
 ROTATION, SQUEEZE, WHIRL = KINEMATIC = "rotation", "squeeze", "whirl"
-BEARING = "bearing sheet"
-STABILITY = "stability"  # and response and damped modes
-CYCLES, SPEED_CYCLES = "limit cycles", "limit cycles over the speed"
+COMPARISON, LADDER = "comparison", "accuracy"
+HEAT = "heat"
+SHEETS = BEARING, LOADED, CHART = "bearing sheet", "bearing sheet under a given load", "sheet over the eccentricity"
+STABILITY, RANGE = "stability", "stability over the speed range"  # and response and damped modes
+CYCLES, SPEED_CYCLES, WHIRLS = "limit cycles", "limit cycles over the speed", "whirls with unbalance"
 
-ALL = (FILMS, RUN, *KINEMATIC, BEARING, STABILITY, CYCLES, SPEED_CYCLES)
-EVERY_CYCLE = (CYCLES, SPEED_CYCLES)
+ALL = (
+    FILMS, RUN, *KINEMATIC, COMPARISON, LADDER, HEAT, *SHEETS, STABILITY, RANGE, CYCLES, SPEED_CYCLES, WHIRLS
+)  # fmt: skip
+EVERY_CYCLE = (CYCLES, SPEED_CYCLES, WHIRLS)

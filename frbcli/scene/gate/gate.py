@@ -16,17 +16,25 @@ from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.clearance_steps import clearance_faults
 from frbcli.scene.forms.published import published_faults
-from frbcli.scene.gate import films, kinematic, runs, static
+from frbcli.scene.gate import cycles, films, kinematic, runs, static
 from frbcli.scene.gate.analysis import (
     ALL,
     BEARING,
+    CHART,
+    COMPARISON,
     CYCLES,
     EVERY_CYCLE,
     FILMS,
+    HEAT,
     KINEMATIC,
+    LADDER,
+    LOADED,
+    RANGE,
     RUN,
+    SHEETS,
     SPEED_CYCLES,
     STABILITY,
+    WHIRLS,
 )
 from frbcli.scene.machine.elements import element_faults, speed_dependent, without_film
 
@@ -71,7 +79,9 @@ RULES = (
     Rule(films.supply_faults, ALL),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(_without_film("a kinematic test is of one"), KINEMATIC),
-    Rule(_without_film("the sheet is of films"), (BEARING,)),
+    Rule(_without_film("the sheet is of films"), SHEETS),
+    Rule(_without_film("the comparison is of models of films"), (COMPARISON,)),
+    Rule(_without_film("the ladder is of films"), (LADDER,)),
     Rule(_without_film("a linear machine has no limit cycle"), EVERY_CYCLE),
     *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
@@ -81,13 +91,20 @@ RULES = (
     Rule(_of_films(runs.form_faults), (RUN,)),
     Rule(_of_films(published_faults), (RUN,)),
     Rule(_of_films(runs.signal_faults), (RUN,)),
-    Rule(static.sheet_faults, (BEARING,)),
+    Rule(runs.ladder_faults, (LADDER,)),
+    Rule(static.sheet_faults, SHEETS),
+    Rule(static.loaded_heat_faults, (LOADED,)),
+    Rule(static.chart_heat_faults, (CHART,)),
+    Rule(static.missing_heat_faults, (HEAT,)),
+    Rule(static.still_ring_faults, (BEARING, LOADED, STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),
+    Rule(static.range_faults, (RANGE,)),
     Rule(lambda case: speed_dependent(case, CONSTANT), EVERY_CYCLE),
-    Rule(static.cycle_heat_faults, EVERY_CYCLE),
-    Rule(static.smooth_faults, (CYCLES,)),
-    Rule(static.speed_cycle_faults, (SPEED_CYCLES,)),
-    Rule(static.still_ring_faults, EVERY_CYCLE),
+    Rule(cycles.cycle_heat_faults, EVERY_CYCLE),
+    Rule(cycles.smooth_faults, (CYCLES,)),
+    Rule(cycles.speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
+    Rule(cycles.unbalance_faults, (WHIRLS,)),
+    Rule(cycles.speed_range_faults, EVERY_CYCLE, last=True),
     Rule(runs.number_faults, (RUN,), last=True),
     Rule(lambda case: films.force_faults(case, _run_omega(case)), (RUN,), last=True),
     Rule(lambda case: films.force_faults(case, motion_omega(case)), KINEMATIC, last=True),

@@ -56,6 +56,14 @@ def signal_faults(case: Case) -> Iterator[Fault]:
         yield Fault("output.signals", "oil-flow", None, problem, remedy)
 
 
+def ladder_faults(case: Case) -> Iterator[Fault]:
+    """An own bearing model is one film of one mesh."""
+    if case.film.bearing_model:
+        problem = "is a bearing model, which has no theories and meshes to compare."
+        remedy = "`frb runup --verify` measures the error of a run."
+        yield Fault("film.theory", case.film.theory, None, problem, remedy)
+
+
 def number_faults(case: Case) -> Iterator[Fault]:
     """A symmetric rotor has one bearing with a film for both."""
     if len(case.bearings) > 1 and case.rotor.symmetric:

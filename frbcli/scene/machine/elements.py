@@ -11,7 +11,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.support import shell_of
 from frbcli.elements.support import told as support_told
 from frbcli.elements.table import kind_of
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND
 from frbcli.rotor.linear import Array, LinearRotor
 from frbcli.scene.keys import all_keys, element_keys
@@ -65,12 +65,6 @@ def without_film(case: Case, what: str) -> list[Fault]:
     problem = f"has no film, and {what}."
     key = element_keys(case)[0]
     return [Fault(f"{key}.kind", case.elements[0].kind, None, problem, "Add a bearing with a film.")]
-
-
-def require_a_film(case: Case, what: str) -> None:
-    """Raises InputError for a case in which no bearing has a film, see without_film."""
-    if faults := without_film(case, what):
-        raise InputError(case.name or "case", tuple(faults))
 
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:

@@ -1,0 +1,99 @@
+"""Rules of limit cycles, and of whirls with the unbalance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.channels import coupled
+from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
+from frbcli.scene.forms.published import is_published
+from frbcli.scene.keys import cavitation_keys
+from frbcli.scene.planning.film_choice import all_clipped, needs_cells
+from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.speeds import default_speeds, keeps_oil
+
+
+def cycle_heat_faults(case: Case) -> Iterator[Fault]:
+    """Heat has no steady state along a limit cycle that belongs to the rest that it grows from."""
+    if case.heat is not None:
+        problem = "is not modelled in limit cycles: each of them dissipates something else, and has other viscosities."
+        remedy = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
+        yield Fault("thermal.model", "lumped", None, problem, remedy)
+
+
+def smooth_faults(case: Case) -> Iterator[Fault]:
+    """Films whose force does not follow smoothly from the motion alone."""
+    named = {} if case.film.bearing_model else dict(cavitation_keys(case))
+    keeping = {key: name for key, name in named.items() if law_named(name).keeps_oil}
+    if keeping:
+        problem = "is mass-conserving: the force depends on the oil that the film keeps, not on the motion alone."
+        remedy = "Take half-sommerfeld or penalty here, and a run-up for this model."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in keeping.items())
+    elif needs_cells(case) and not turning_openings(case):
+        problem = "is solved on cells, where the force has no continuous derivative."
+        remedy = "Go over the speed alone, or take half-sommerfeld, with grooves or feed holes that turn only."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in named.items())
+
+
+def speed_cycle_faults(case: Case) -> Iterator[Fault]:
+    """Films whose map over a period is not the same at each start, since their openings turn; and the published form,
+    whose oil is not on cells."""
+    if not by_shooting(case):
+        yield from smooth_faults(case)
+    elif is_published(case):
+        problem, remedy = "is not on cells, whose oil a limit cycle is made of.", 'Write form = "conservative".'
+        yield Fault("film.two-phase.form", "published", None, problem, remedy)
+    elif any(
+        place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
+        for place in film_places(case)
+    ):
+        problem = "has openings that turn: the force follows their angle, and no motion comes back after one period."
+        remedy = "Leave feed holes that turn out, or take a run-up."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case))
+
+
+def speed_range_faults(case: Case) -> Iterator[Fault]:
+    """Cycles are followed over speeds above zero."""
+    speeds = default_speeds(case)
+    if not speeds or not speeds[-1] > speeds[0]:
+        problem, remedy = "leaves no range of speeds above zero.", 'Write e.g. speed.to = "300 Hz".'
+        yield Fault("speed.to", f"{case.speed.end:g} Hz", None, problem, remedy)
+
+
+def unbalance_faults(case: Case) -> Iterator[Fault]:
+    """Whirls with unbalance are found by harmonic balance, of rotors that have an unbalance."""
+    if not has_unbalance(case):
+        problem, remedy = "is zero: no whirl has two frequencies.", 'Write e.g. rotor.unbalance = "3 g*mm".'
+        yield Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy)
+    if by_shooting(case):
+        problem = "keeps its oil, or has a force with kinks: its whirl with unbalance is not computed."
+        remedy = "Take half-sommerfeld without openings but grooves here, and a run-up for this model."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case))
+
+
+def has_unbalance(case: Case) -> bool:
+    """Whether the rotor of a case has one."""
+    return shaft_of(case).eccentricity != 0.0
+
+
+def by_shooting(case: Case) -> bool:
+    """Whether limit cycles are found by shooting on the time loop: films keep their oil, or are on cells, where their
+    force has kinks."""
+    return keeps_oil(case) or (needs_cells(case) and not turning_openings(case))
+
+
+def turning_openings(case: Case) -> bool:
+    """Whether all films on cells solve a linear equation and have no openings but those that turn."""
+    if not all_clipped(case) or any(coupled(bearing) for bearing in rings(case)):
+        return False
+    return all(
+        is_plain(place.geometry) or (place.geometry.lobes is None and place.grid_body != HOUSING)
+        for place in film_places(case)
+    )
+
+
+def _turns(case: Case, place: FilmPlace) -> bool:
+    return place.grid_body != HOUSING or turns_with_oil(case, place)

@@ -1,0 +1,27 @@
+"""The speeds at which machines at rest are computed where none are asked for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.keys import cavitation_keys
+
+SPEEDS, SPEEDS_WITH_MEMORY = 60, 20  # 5 and 15 Hz apart from 0 to 300 Hz
+
+
+def default_speeds(case: Case, count: int | None = None) -> tuple[float, ...]:
+    """Speeds in Hz, greater than zero, that sweep the range of the case; fewer where a film keeps oil, whose memory
+    takes longer to compute."""
+    count = count or (SPEEDS_WITH_MEMORY if keeps_oil(case) else SPEEDS)
+    low, high = sorted((case.speed.start, case.speed.end))
+    if low > 0.0:
+        return tuple(np.unique(np.linspace(low, high, count)).tolist())
+    return tuple(np.linspace(0.0, high, count + 1)[1:].tolist()) if high > 0.0 else ()
+
+
+def keeps_oil(case: Case) -> bool:
+    """Whether a film of the case is mass-conserving."""
+    named = () if case.film.bearing_model else tuple(name for _, name in cavitation_keys(case))
+    return any(law_named(name).keeps_oil for name in named)
