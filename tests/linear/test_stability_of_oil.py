@@ -34,6 +34,16 @@ def test_the_threshold_is_the_hopf_point_of_shooting(monkeypatch: pytest.MonkeyP
     assert found.whirl_ratio == pytest.approx(0.503, abs=0.002)
 
 
+def test_whirls_grow_as_by_shooting() -> None:
+    """Eigenvalues of the map of the time loop over half a revolution, by differences, on 32 x 6 cells that turn with the
+    oil (frbcli/cycles/shooting): their scatter is some 0.07 1/s, and the cells leave a few times that."""
+    by_shooting = {90.0: 4.0685 + 283.6735j, 120.0: 14.6509 + 376.3357j}
+    for point in stability_points(fed(), list(by_shooting))[1]:
+        expected = by_shooting[point.speed_Hz]
+        assert point.growth == pytest.approx(expected.real, abs=0.3)
+        assert point.critical.imag == pytest.approx(expected.imag, rel=1e-3)
+
+
 @pytest.mark.parametrize("law", ["elrod", "two-phase"])
 def test_a_full_film_has_no_memory(law: str) -> None:
     """Elrod's oil is incompressible: the eigenvalue is that of Sommerfeld's film. The oil of the two-phase
