@@ -35,8 +35,8 @@ def test_the_threshold_is_the_hopf_point_of_shooting(monkeypatch: pytest.MonkeyP
 
 
 def test_whirls_grow_as_by_shooting() -> None:
-    """Eigenvalues of the map of the time loop over half a revolution, by differences, on 32 x 6 cells that turn with the
-    oil (frbcli/cycles/shooting): their scatter is some 0.07 1/s, and the cells leave a few times that."""
+    """Eigenvalues of the map of the time loop over half a revolution, by differences, on 32 x 6 cells that turn with
+    the oil (frbcli/cycles/shooting): their scatter is some 0.07 1/s, and the cells leave a few times that."""
     by_shooting = {90.0: 4.0685 + 283.6735j, 120.0: 14.6509 + 376.3357j}
     for point in stability_points(fed(), list(by_shooting))[1]:
         expected = by_shooting[point.speed_Hz]
