@@ -129,7 +129,7 @@ COMMANDS = {
 # The commands in the order of an engineer's work, as `frb --help` shows them
 GROUPS = {
     "Describe a machine": ("cases", "check", "schema"),
-    "Run": ("runup", "rundown"),
+    "Run": ("runup", "rundown", "warm-up"),
     "Look at a run": ("waterfall", "plot", "report"),
     "Study a machine": ("bearing", "stability", "response", "limit-cycles", "sweep", "compare", "accuracy"),
     "Test a bearing": ("rotation", "squeeze", "whirl"),
