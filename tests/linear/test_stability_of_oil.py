@@ -11,11 +11,11 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.linear import stability as stability_room
 from frbcli.linear.damped_modes import FORWARD, damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability, stability_points
 from frbcli.linear.stability_point import linear_machine, point_at_rest
+from frbcli.scene import speeds
 
 HOPF_Hz = (75.70, 75.95)  # of rigid-two-phase at 2 bar by shooting on the time loop, 24 to 64 cells around, 6 along
 FULL = ("bearing.supply.pressure=30 bar", "bearing.ends=oil-bath", "rotor.unbalance=1 g*mm")  # no cavity anywhere
@@ -27,7 +27,7 @@ def fed(*settings: str) -> Case:
 
 def test_the_threshold_is_the_hopf_point_of_shooting(monkeypatch: pytest.MonkeyPatch) -> None:
     """Within the stated error, which is of the cells: 1 % of the coefficients are 1 Hz of this threshold."""
-    monkeypatch.setattr(stability_room, "SPEEDS_WITH_MEMORY", 2)
+    monkeypatch.setattr(speeds, "SPEEDS_WITH_MEMORY", 2)
     found = stability(fed("speed.from=74 Hz", "speed.to=81 Hz")).threshold
     assert found is not None
     assert all(abs(found.speed_Hz - hopf) < found.speed_uncertainty_Hz < 5.0 for hopf in HOPF_Hz)
