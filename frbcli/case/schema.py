@@ -38,6 +38,7 @@ from frbcli.case.quantities import (
 )
 from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
+from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.theories import Theory, adopt_models, check_model
 from frbcli.case.thermal import Thermal
@@ -210,6 +211,9 @@ class Case(Model):
     )
     shaft: tuple[ShaftSection, ...] = Field(default=(), description="sections of the shaft of a turbocharger, in order")
     disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="disks on the shaft of a turbocharger")
+    forces: tuple[AppliedForce, ...] = Field(
+        default=(), alias="force", description="forces on places of the machine beside unbalance and weight"
+    )
     given_bearings: Bearings = Field(
         alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
     )

@@ -7,11 +7,12 @@ cylinder of its mass and inertias. Around the axis clearances are magnified; ang
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from frbcli.case.bearing import FilmBearing, FilmGeometry, SingleFilmBearing
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.places import node_at
 from frbcli.report.element_symbols import HIGH, height, support_symbol, symbol
 from frbcli.report.svg import box, curve, drawing, element, line, text
 from frbcli.scene.films import film_places
@@ -24,6 +25,7 @@ HOUSING = 0.45  # thickness of a shell over the radius of its film
 SPAN, DISK = 5.0, 2.2  # of a rotor without a shaft: distance of its bearings over their width, disk over their journal
 ROUND, SHOWN = 200.0, 0.16  # size of a film around the axis; clearance there over the radius
 AROUND = 181  # points of a circle
+FORCE = 30.0  # length of the arrow of a force, in the drawing's units
 NO_WIDTH, NO_RADIUS = 0.02, 0.0125  # of journals that have no dimensions, m
 DENSITY = 7850.0  # kg/m^3 of steel, for the thickness of a disk without inertias
 
@@ -135,6 +137,10 @@ def _of_sections(case: Case) -> str:
         at = each.position or 0.0
         parts += symbol(each, scale.left + per_m * at, scale.middle, per_m * _radius_at(case, at))
         parts.append(_named(each.name, at, scale, half + 16.0))
+    places = {f"disk_{disk.name or number}": disk.position for number, disk in enumerate(case.disks, start=1)}
+    for given in case.given_bearings:
+        places |= {f"{body}_{given.name}": given.position or 0.0 for body in ("journal", "ring", "support")}
+    parts += _forces(case, scale, lambda node: (places[node],))
     for disk, radius, _ in disks:
         parts.append(_named(f"{disk.name} {1e3 * disk.mass:.3g} g", disk.position, scale, -per_m * radius - 6.0))
     return _finish(parts, scale, half, length)
@@ -159,8 +165,18 @@ def _symmetric(case: Case) -> str:
             place = at + half_width * _place(case, number) * (1.0 if at else -1.0)
             parts += symbol(each, scale.left + per_m * place, scale.middle, per_m * journal)
         parts.append(_named("bearing", at, scale, half + 16.0))
+    parts += _forces(case, scale, lambda node: (0.5 * span,) if node == "disk" else (0.0, span))
     parts.append(_named(f"{shaft_of(case).disk_mass:.4g} kg", 0.5 * span, scale, -per_m * disk - 6.0))
     return _finish(parts, scale, half, None, bool(case.bearings))
+
+
+def _forces(case: Case, scale: _SketchScale, places: Callable[[str], tuple[float, ...]]) -> Iterator[str]:
+    """An arrow with its number for each force of a case at the places of its node, in m; it shows no direction."""
+    for number, force in enumerate(case.forces, start=1):
+        for at in places(node_at(case, force.at)):
+            x = scale.left + scale.per_m * at
+            yield from _arrow([(x, scale.middle - FORCE), (x, scale.middle)])
+            yield text(x + 6.0, scale.middle - 0.6 * FORCE, f"F{number}", anchor="start")
 
 
 def _place(case: Case, number: int) -> float:

@@ -8,7 +8,7 @@ uses the assembled machine changes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
@@ -31,11 +31,23 @@ class Link:
     sees: str = COORDINATES
 
 
+@dataclass(frozen=True)
+class NodeForce:
+    """A constant force (x, y) in N on a node."""
+
+    node: str
+    force: tuple[float, float]
+
+
 def assembled(
-    bodies: Sequence[Body], films: Sequence[Link] = (), parts: Sequence[tuple[Link, LinearPart]] = ()
+    bodies: Sequence[Body],
+    films: Sequence[Link] = (),
+    parts: Sequence[tuple[Link, LinearPart]] = (),
+    forces: Sequence[NodeForce] = (),
 ) -> LinearRotor:
-    """The machine of bodies, whose degrees of freedom follow each other in their order, with films between nodes and
-    linear parts on the relative motion of nodes. Raises KeyError for a node that no body has."""
+    """The machine of bodies, whose degrees of freedom follow each other in their order, with films between nodes,
+    linear parts on the relative motion of nodes, and constant forces on nodes. Raises KeyError for a node that no body
+    has."""
     size = sum(body.size for body in bodies)
     nodes = _nodes(bodies, size)
 
@@ -60,7 +72,9 @@ def assembled(
         multiplicity=np.array([film.count for film in films], dtype=np.float64),
         points=tuple(nodes.items()),
     )
-    return machine.with_parts([part.seen_by(relative(link), link.count) for link, part in parts])
+    machine = machine.with_parts([part.seen_by(relative(link), link.count) for link, part in parts])
+    loads = (nodes[each.node].T @ np.array(each.force) for each in forces)
+    return replace(machine, static_load=sum(loads, machine.static_load))
 
 
 def _nodes(bodies: Sequence[Body], size: int) -> dict[str, Array]:

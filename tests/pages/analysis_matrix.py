@@ -68,6 +68,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "turbocharger on two bearings": ("turbocharger-heavy", ()),
     "coefficients alone": ("seal", ()),
     "bearings on supports": ("jeffcott", (SUPPORT,)),
+    "forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
 }
 
 # Pairs of features that a run may have together.

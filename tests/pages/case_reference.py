@@ -53,6 +53,7 @@ TABLES = {
     '[bearing] kind = "coefficients"': "CoefficientsBearing",
     "over_speed = { ... }": "CoefficientsOverSpeed",
     "[bearing.support]": "Support",
+    "[[force]]": "AppliedForce",
     "[bearing.ring]": "Ring",
     "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",

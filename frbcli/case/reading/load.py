@@ -20,6 +20,7 @@ from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import objections, with_nearest_kinds
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.places import force_breaches
 from frbcli.errors import Fault, InputError
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
@@ -188,6 +189,8 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data, unread = with_rotor_file(data, Path(folder))
     data, unknown = with_coefficient_files(data, Path(folder))
     case, found = _validate(data)
+    if case is not None and not found:
+        found = list(force_breaches(case))
     if unread:  # what the file would have completed is no fault of the case
         found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
     return case, data, [*unknown, *found]

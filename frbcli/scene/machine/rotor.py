@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
-from frbcli.elements import support
+from frbcli.case.surroundings.force import AppliedForce
+from frbcli.case.surroundings.places import node_at
+from frbcli.elements import force, support
 from frbcli.elements.table import kind_of
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import Body, point_mass, spin
@@ -37,7 +39,15 @@ def make_rotor(case: Case) -> LinearRotor:
         parts.append((Link(shaft.journal(element.name), shell, count, kind.sees), kind.linear(element)))
     shells, mounts = _supports(case, count)
     bodies += [*shells, *(spin(bearing.ring_inertia) for bearing in turning_rings(case))]
-    return assembled(bodies, films, [*parts, *mounts])
+    return assembled(bodies, films, [*parts, *mounts], [force.node_force(*each) for each in placed_forces(case)])
+
+
+def placed_forces(case: Case) -> list[tuple[AppliedForce, str, float]]:
+    """Force, node and count of each force of a case: at equal bearings there are as many of it."""
+    bearings = float(shaft_of(case).equal_bearings)
+    nodes = [node_at(case, each.at) for each in case.forces]
+    counts = [1.0 if node.startswith("disk") else bearings for node in nodes]
+    return list(zip(case.forces, nodes, counts, strict=True))
 
 
 def _supports(case: Case, count: float) -> tuple[list[Body], list[tuple[Link, LinearPart]]]:
