@@ -20,9 +20,10 @@ from frbcli.film.cells.loads import CavitationFactor, force, loads
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
+from frbcli.film.compared import FINER
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
-from frbcli.film.kinds.contract import FINER, Compared, Films
+from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.section_faults import is_unfed

@@ -16,13 +16,13 @@ import numpy as np
 
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.state import WET
 
-FINER = 2  # times the elements or cells each way, for the error of a force
 # (i, place, rate, total) -> force of a better film, and of the film, (2,) N each. Raises NotConverged.
 Compared = Callable[[int, Array, Array, float], tuple[Array, Array]]
 
@@ -33,7 +33,7 @@ class Films(ABC):
 
     clearances: tuple[float, ...]
 
-    samples: ClassVar[int] = 48  # states of a run that are kept for the error of its forces
+    samples: ClassVar[int] = SAMPLES  # states of a run that are kept for the error of its forces
     # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films: that is 2
     # to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
     counted: ClassVar[float] = 0.5

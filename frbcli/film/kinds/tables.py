@@ -10,9 +10,10 @@ from typing import Any, Self
 
 import numpy as np
 
+from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array, Mesh
-from frbcli.film.kinds.contract import FINER, Compared, Films, couette_power
+from frbcli.film.kinds.contract import Compared, Films, couette_power
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film

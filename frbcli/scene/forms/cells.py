@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.compared import FINER
 from frbcli.film.grid import Array
-from frbcli.scene.forms.form import FINER, FilmForm, SolveCounts, cells_B
+from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
 from frbcli.scene.planning.cell_choice import USUAL, cells_time, coarser_cells, compared_states
 
 if TYPE_CHECKING:

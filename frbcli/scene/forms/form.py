@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from frbcli.film.cavitation.law import Law
+from frbcli.film.compared import FINER
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Array, Mesh
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.film_choice import FilmChoice
     from frbcli.scene.planning.planned import Plan
 
-SAMPLES = 48  # states of a run at which the force is compared with that on a finer mesh
-FINER = 2  # factor of the elements in each direction for that
 MATRICES = 6  # of the axial elements of the finer mesh, held at a time
 BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held at a time, bytes of a cell
 

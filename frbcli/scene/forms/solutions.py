@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, ClassVar
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, is_plain
-from frbcli.scene.forms.form import BLOCKS, SAMPLES, FilmForm, SolveCounts
+from frbcli.scene.forms.form import BLOCKS, FilmForm, SolveCounts
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan

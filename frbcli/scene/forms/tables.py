@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from frbcli.film.compared import FINER, SAMPLES
 from frbcli.film.grid import CHAIN_MODES
-from frbcli.scene.forms.form import FINER, SAMPLES, FilmForm, SolveCounts, mean_us
+from frbcli.scene.forms.form import FilmForm, SolveCounts, mean_us
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan

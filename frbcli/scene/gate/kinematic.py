@@ -65,7 +65,7 @@ def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
 
 
 def theory_faults(case: Case) -> Iterator[Fault]:
-    """The short bearing has no pressure along the axis of its own to show."""
+    """The short bearing neglects the flow around that the pressure drives."""
     if case.film.theory == "short":
-        problem = "is not for kinematic tests, which solve the whole film."
+        problem = "neglects the flow around that the pressure drives, with which a test computes torque and balance."
         yield Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".')
