@@ -41,6 +41,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
+    from frbcli.linear.thrust.sheet import thrust_sheet as thrust_sheet
     from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
     from frbcli.plot.axes import campbell as draw_campbell  # noqa: F401
     from frbcli.plot.axes import eccentricity as draw_eccentricity  # noqa: F401
@@ -118,6 +119,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
+    "thrust_sheet": "frbcli.linear.thrust.sheet",
     "warm_up": "frbcli.studies.kernels.warm_up",
     "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",

@@ -1,4 +1,4 @@
-"""Elements of a machine that are no films, among its bearings: what they are given by.
+"""Elements of a machine that are no journal films, among its bearings, and thrust bearings: what they are given by.
 
 `frbcli/elements/` holds what they do. A new kind of element has its model here and joins `Element`.
 """
@@ -11,7 +11,17 @@ from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchema
 from pydantic_core import CoreSchema
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import Identifier, Label, Position, Quantity, SignedSpeed
+from frbcli.case.quantities import (
+    Clearance,
+    Count,
+    Identifier,
+    Label,
+    Length,
+    OpeningAngle,
+    Position,
+    Quantity,
+    SignedSpeed,
+)
 from frbcli.case.surroundings.support import Support
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
@@ -95,3 +105,36 @@ class CoefficientsBearing(Model):
 
 Element = CoefficientsBearing
 EMPTY_MATRIX = ((0.0, 0.0), (0.0, 0.0))
+
+
+class ThrustBearing(Model):
+    """A ring of equal fixed pads on one or both sides of a collar, with grooves at ambient pressure between them."""
+
+    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
+    position: Position | None = Field(default=None, description="of the collar along the shaft of a turbocharger")
+    side: Literal["both", "left", "right"] = Field(
+        default="both", description="of the collar on which the pads stand; left is towards smaller positions"
+    )
+    inner_radius: Length = Field(description="of the pads")
+    outer_radius: Length = Field(description="of the pads")
+    pads: Annotated[int, Count(1, 60, 6)] = Field(description="number of pads on each side")
+    pad_angle: OpeningAngle = Field(description="of the sector of a pad, from its leading edge")
+    taper_angle: OpeningAngle = Field(description="from the leading edge to the land; up to that of the pad")
+    taper: Clearance = Field(description="depth at the leading edge below the land")
+    profile: Literal["taper", "step"] = Field(
+        default="taper", description="whether the depth falls to 0 linearly in the angle, or stays up to the land"
+    )
+    end_play: Clearance | None = Field(
+        default=None, description="sum of the gaps over the lands of both sides; must be given with pads on both"
+    )
+
+
+def _numbered(given: object) -> object:
+    """Several tables with their numbers as names, where they have none, for results carry the names."""
+    if isinstance(given, list | tuple) and len(given) > 1:
+        return [{"name": str(number), **part} if isinstance(part, dict) else part
+                for number, part in enumerate(given, start=1)]  # fmt: skip
+    return given
+
+
+ThrustBearings = Annotated[tuple[ThrustBearing, ...], BeforeValidator(_numbered)]

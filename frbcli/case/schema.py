@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field, PrivateAttr, model_validator
 
 from frbcli.case.bearing import Bearings, FilmBearing, FilmGeometry, FloatingRingBearing, RingFilm
-from frbcli.case.elements import Element
+from frbcli.case.elements import Element, ThrustBearings
 from frbcli.case.laws import Cavitation, adopt, attribute
 from frbcli.case.model import Model, altered, with_default
 from frbcli.case.oil import Oil
@@ -215,7 +215,10 @@ class Case(Model):
         default=(), alias="force", description="forces on places of the machine beside unbalance and weight"
     )
     given_bearings: Bearings = Field(
-        alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
+        default=(), alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
+    )
+    thrust_bearings: ThrustBearings = Field(
+        default=(), alias="thrust_bearing", description="pads beside a collar; must be given without a bearing"
     )
     given_oil: Oil | None = Field(
         default=None, alias="oil", description="the lubricant; must be given where a bearing has a film"
@@ -329,6 +332,9 @@ class Case(Model):
     def _without(self, key: str) -> InputError:
         problem = "is missing: the case is for kinematic tests, with [motion]."
         remedy = f"Add the table [{key}], or call `frb rotation`, `frb squeeze` or `frb whirl`."
+        if not self.given_bearings:
+            problem = "is missing: the case is of thrust bearings alone."
+            remedy = "Call `frb thrust`, or add [rotor], [speed] and [bearing]."
         return InputError(self.name or "case", (Fault(key, "", None, problem, remedy),))
 
     @property

@@ -73,6 +73,11 @@ COMMANDS = {
         "Resting position, K, C, loss, flow of every film over speed or eccentricity.",
         "frb bearing jeffcott --speed '50 Hz' --speed '100 Hz' --csv sheet.csv",
     ),
+    "thrust": (
+        "frbcli.cli.bearings.thrust",
+        "Load, loss, flow, K and C of thrust bearings over gap, load or speed.",
+        "frb thrust thrust --gap '12 um' --gap '20 um' --speed '900 Hz'",
+    ),
     "fit": (
         "frbcli.cli.studies.fit",
         "Find numbers of a case from a measured run-up.",
@@ -131,7 +136,9 @@ GROUPS = {
     "Describe a machine": ("cases", "check", "schema"),
     "Run": ("runup", "rundown", "warm-up"),
     "Look at a run": ("waterfall", "plot", "report"),
-    "Study a machine": ("bearing", "stability", "response", "limit-cycles", "sweep", "compare", "accuracy"),
+    "Study a machine": (
+        "bearing", "thrust", "stability", "response", "limit-cycles", "sweep", "compare", "accuracy",
+    ),
     "Test a bearing": ("rotation", "squeeze", "whirl"),
     "Exchange data": ("fit", "export"),
 }

@@ -15,6 +15,7 @@ from frbcli.linear.damped_modes import DampedModes
 from frbcli.linear.modes import Modes
 from frbcli.linear.response import Response
 from frbcli.linear.stability import Stability
+from frbcli.linear.thrust.sheet import ThrustSheet
 from frbcli.plot.machine.bearing import bearing_figure
 from frbcli.plot.machine.campbell import campbell_figure
 from frbcli.plot.machine.critical_map import critical_map_figure
@@ -31,6 +32,7 @@ from frbcli.plot.studies.accuracy import accuracy_figure
 from frbcli.plot.studies.compare import comparison_figure
 from frbcli.plot.studies.sweep import can_draw, sweep_figure
 from frbcli.plot.style import Picture
+from frbcli.plot.thrust import thrust_figure
 from frbcli.results.store import Run
 from frbcli.studies.against import AgainstMeasured
 from frbcli.studies.compare import Comparison
@@ -53,6 +55,7 @@ PICTURES: dict[type, Callable[[Any], Picture]] = {
     AccuracyLadder: accuracy_figure,
     AgainstMeasured: against_figure,
     BearingSheet: bearing_figure,
+    ThrustSheet: thrust_figure,
     Comparison: comparison_figure,
     CriticalMap: critical_map_figure,
     DampedModes: shapes_figure,

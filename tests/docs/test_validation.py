@@ -18,6 +18,7 @@ from frbcli.case.reading.shipped import shipped_names
 from frbcli.runs.run import runup
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.thrust_plan import thrust_plan
 
 PRINTED = {row["id"]: row for row in validate.printed_rows()}
 
@@ -32,8 +33,10 @@ def commands() -> list[str]:
 
 
 def planned(name: str, settings: tuple[str, ...]) -> bool:
-    """Load and plan a case: for a run, or for a kinematic test if it gives a motion."""
+    """Load and plan a case: for a run, for a kinematic test if it gives a motion, or for thrust bearings alone."""
     case = load_case(name, settings)
+    if not case.given_bearings:
+        return bool(thrust_plan(case))
     if case.motion is None:
         return bool(make_plan(case).decisions)
     test = "rotation" if case.motion.frequency is None else "squeeze"

@@ -38,6 +38,10 @@ HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
 OIL = "oil.viscosity={grade='SAE 10W-40'}"
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
 SUPPORT = 'bearing.support={mass="2 kg", stiffness="1e7 N/m"}'
+THRUST = (
+    'thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
+    'taper_angle="50 deg", taper="20 um"}]'
+)
 SPRING = '{kind="coefficients", name="seal", stiffness="1e5 N/m"}'
 
 # Row of the table: a shipped case, and what is set in it.
@@ -69,6 +73,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "coefficients alone": ("seal", ()),
     "bearings on supports": ("jeffcott", (SUPPORT,)),
     "forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
+    "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),
+    "thrust bearings alone": ("thrust", ()),
 }
 
 # Pairs of features that a run may have together.

@@ -51,6 +51,7 @@ TABLES = {
     '[bearing] kind = "single-film"': "SingleFilmBearing",
     '[bearing] kind = "floating-ring"': "FloatingRingBearing",
     '[bearing] kind = "coefficients"': "CoefficientsBearing",
+    "[[thrust_bearing]]": "ThrustBearing",
     "over_speed = { ... }": "CoefficientsOverSpeed",
     "[bearing.support]": "Support",
     "[[force]]": "AppliedForce",

@@ -38,6 +38,7 @@ from frbcli.linear.columns import (
     SHEET,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
+from frbcli.linear.thrust.columns import THRUST
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS
 from frbcli.scene.machine.operating import FILM_OPERATION
@@ -62,6 +63,7 @@ def of_json(columns: Columns) -> Columns:
 
 TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
+    "thrust sheet": THRUST,
     "stability": (*POINT[:2], *FILM, *POINT[2:]),
     "modes": of_json(MODES),
     "damped modes": DAMPED_MODES,

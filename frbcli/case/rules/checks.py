@@ -18,6 +18,7 @@ from frbcli.case.rules.element_checks import element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
 from frbcli.case.rules.plausible import implausible
 from frbcli.case.rules.thermal_checks import thermal_breaches
+from frbcli.case.rules.thrust_checks import thrust_alone, thrust_breaches
 from frbcli.case.schema import DEFAULT_HOLD, OUTPUT_STEP
 from frbcli.units import NUMBER, display
 
@@ -30,6 +31,8 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     """Every broken rule of a case's tables."""
     yield from implausible(data)
     bearings = tables(data, "bearing")
+    if "bearing" not in data and not thrust_alone(data):
+        yield Breach(("bearing",), "is missing.", "Add the table [bearing].")
     if data.get("bearing") == []:
         yield Breach(("bearing",), "is empty.", "Add the table [bearing].")
     yield from _oil(data)
@@ -42,11 +45,13 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
             yield from film_breaches(film_path, film, data)
         yield from _ring(path, bearing)
     yield from _names("bearing", bearings)
+    yield from _names("thrust bearing", tables(data, "thrust_bearing"))
     yield from _names("disk", tables(data, "disk"))
     yield from _rotor(data, bearings)
     yield from _run(data)
     yield from _motion(table(data, "motion"))
-    for key in ("rotor", "speed"):
+    yield from thrust_breaches(data)
+    for key in () if thrust_alone(data) else ("rotor", "speed"):
         if key not in data and "motion" not in data:
             yield Breach((key,), "is missing.", f"Add the table [{key}].")
 
@@ -129,7 +134,7 @@ def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]
     if not lengths or None in lengths:
         return
     total = sum(length for length in lengths if length is not None)
-    for path, part in (*bearings, *tables(data, "disk")):
+    for path, part in (*bearings, *tables(data, "thrust_bearing"), *tables(data, "disk")):
         position = number(part, "position", "m")
         if position is not None and not 0 <= position <= total * (1 + 1e-9):
             problem = f"is {display(position, 'm')}, not on the shaft of {display(total, 'm')}."

@@ -42,14 +42,15 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     from frbcli.scene.planning.profiles import run_up_profile
 
     listed = values(case)
-    found = findings(case)
     terminal.result(f"{case.name}: {case.title}".rstrip(": "))
+    if not case.given_bearings:
+        _check_thrust(case, listed, everything, terminal)
+        return
+    found = findings(case)
     _show_findings(found, terminal)
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
-    bare = [value for value in listed if value.bare]
-    for value in bare:
-        terminal.sentence(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
+    bare = _tell_bare(listed, terminal)
     films = operating_points(case)
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
@@ -83,15 +84,55 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
             "case": case.name,
             "title": case.title,
             "status": "ok",
-            "values": [{"key": value.key, "value": value.value, "unit": value.unit} for value in listed],
+            "values": _value_documents(listed),
             "findings": _told_findings(found),
-            "bare_numbers": [{"key": value.key, "value": value.value, "unit": value.unit} for value in bare],
+            "bare_numbers": _value_documents(bare),
             "films": documents(FILM_OPERATION, films),
-            "plan": [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in decisions],
+            "plan": _plan_documents(decisions),
             "expected": expected,
         }
         | ({} if heat is None else {"thermal": heat})
     )
+
+
+def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
+    """What `frb thrust` models of a case of thrust bearings alone."""
+    from frbcli.linear.thrust.faults import require_sheet
+    from frbcli.scene.planning.thrust_plan import thrust_plan
+
+    if everything:
+        terminal.table("values", ("key", "SI", "reads"), _values(listed))
+    bare = _tell_bare(listed, terminal)
+    require_sheet(case)
+    plan = thrust_plan(case)
+    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
+    terminal.emit(
+        {
+            "command": "check",
+            "case": case.name,
+            "title": case.title,
+            "status": "ok",
+            "values": _value_documents(listed),
+            "bare_numbers": _value_documents(bare),
+            "plan": _plan_documents(plan),
+        }
+    )
+
+
+def _tell_bare(listed: Sequence[ListedValue], terminal: Terminal) -> list[ListedValue]:
+    """The numbers without a unit, and how they were read."""
+    bare = [value for value in listed if value.bare]
+    for value in bare:
+        terminal.sentence(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
+    return bare
+
+
+def _value_documents(values: Sequence[ListedValue]) -> list[dict[str, object]]:
+    return [{"key": value.key, "value": value.value, "unit": value.unit} for value in values]
+
+
+def _plan_documents(decisions: Sequence[Decision]) -> list[dict[str, object]]:
+    return [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in decisions]
 
 
 def _heat(case: Case, terminal: Terminal) -> dict[str, object]:

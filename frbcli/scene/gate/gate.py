@@ -36,7 +36,7 @@ from frbcli.scene.gate.analysis import (
     STABILITY,
     WHIRLS,
 )
-from frbcli.scene.machine.elements import element_faults, speed_dependent, without_film
+from frbcli.scene.machine.elements import element_faults, speed_dependent, without_bearing, without_film
 
 Faults = Iterable[Fault]
 
@@ -114,6 +114,8 @@ RULES = (
 def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
     """Every reason why an analysis of a case is refused. Raises InputError if this process does not have the bearing
     model of the case."""
+    if alone := without_bearing(case):  # no other rule has a subject
+        return alone
     found: list[Fault] = []
     for rule in RULES:
         if analysis in rule.analyses and not (rule.last and found):

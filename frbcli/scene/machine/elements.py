@@ -45,6 +45,13 @@ def element_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
             yield "support", *support_told(bearing.name, bearing.support)
 
 
+def thrust_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
+    """What the plan says of thrust bearings: choice, value, reason."""
+    for bearing in case.thrust_bearings:
+        reason = "left out of the motion, which is lateral: neither their load nor the tilt of the collar; `frb thrust`"
+        yield "thrust bearing", f"{bearing.name}: left out".removeprefix(": "), reason
+
+
 def element_faults(case: Case) -> list[Fault]:
     """Every reason why the elements of a case cannot be modelled."""
     keyed = zip(element_keys(case), case.elements, strict=True)
@@ -58,9 +65,17 @@ def element_springs(case: Case, omega: float) -> Array:
     return np.array([max(0.5 * float(np.trace(each)), 0.0) for each in stiffness])
 
 
+def without_bearing(case: Case) -> list[Fault]:
+    """The fault of a case of thrust bearings alone, which has no lateral motion."""
+    if case.given_bearings:
+        return []
+    problem = "is missing: the case is of thrust bearings alone."
+    return [Fault("bearing", "", None, problem, "Call `frb thrust`, or add [rotor], [speed] and [bearing].")]
+
+
 def without_film(case: Case, what: str) -> list[Fault]:
     """The fault of a case in which no bearing has a film, where `what` is of films alone."""
-    if case.bearings:
+    if case.bearings or not case.given_bearings:
         return []
     problem = f"has no film, and {what}."
     key = element_keys(case)[0]

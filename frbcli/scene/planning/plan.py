@@ -24,7 +24,7 @@ from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import element_decisions
+from frbcli.scene.machine.elements import element_decisions, thrust_decisions
 from frbcli.scene.machine.rotor import placed_forces
 from frbcli.scene.planning.cell_choice import KNEE
 from frbcli.scene.planning.expected_error import expected_error
@@ -197,7 +197,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     """Bearings, films and gap."""
     places = film_places(case)
     decide("bearings", *shaft_of(case).bearings_modelled)
-    for decided in element_decisions(case):
+    for decided in (*element_decisions(case), *thrust_decisions(case)):
         decide(*decided)
     for force, node, count in placed_forces(case):
         decide("force", *force_told(force, node, count))

@@ -1,0 +1,1 @@
+"""Films between a flat runner and the pads of a thrust bearing."""

@@ -1,0 +1,197 @@
+"""The film of a thrust bearing: pressure, load, torque, flows and all derivatives of the forces.
+
+The x- and y-axes lie in the plane of the runner, the first pad's leading edge lies on the x-axis, and the runner turns
+from there towards the y-axis. The runner's coordinates are its axial displacement away from the pads and its tilts
+about x and y, by which the gap changes by
+
+    g = (1, y, -x) = (1, r sin theta, -r cos theta).
+
+Reynolds' equation in polar coordinates, with q = (omega r h / 2 - h^3 / (12 eta r) dp/dtheta, -h^3 / (12 eta) dp/dr),
+
+    div q + dh/dt = 0,
+
+is solved in its weak form with quadratic elements. The forces on the runner are (W, M_x, M_y) = integral of p g dA; all
+pressures are over the ambient one, which is that at the four edges of a pad. Stiffness and damping are solutions with
+the factorisation of the film itself. Flows through the edges are the residuals of the weak form at their nodes, which
+balance to round-off.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, diags_array
+from scipy.sparse.linalg import SuperLU, splu
+
+from frbcli.errors import NotConverged
+from frbcli.film.pads.mesh import Numbers, PadMesh
+
+Floats = NDArray[np.float64]
+
+SOMMERFELD, HALF_SOMMERFELD, REYNOLDS = LAWS = ("sommerfeld", "half-sommerfeld", "reynolds")
+MOST_CHANGES = 100  # of the set of nodes in the cavity
+
+
+@dataclass(frozen=True)
+class RunnerMotion:
+    """displacement: axial in m and two tilts in rad from the given gap; rate: of these; phase: of the pad's leading
+    edge from the x-axis in rad."""
+
+    displacement: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rate: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    phase: float = 0.0
+
+
+AT_REST = RunnerMotion()
+
+
+@dataclass(frozen=True)
+class PadFilm:
+    """The film of a pad, or of all pads of a ring, whose pressure is then that of the first.
+
+    forces: on the runner: load in N, moments about x and y in N m; torque: that resists the rotation, in N m
+    inner_flow, outer_flow, trailing_flow: out of the film, leading_flow: into it, in m^3/s; swept: rate at which the
+    film's volume grows, in m^3/s
+    pressure: over ambient, at the nodes of the mesh, in Pa
+    stiffness, damping: 3 x 3, -dF/dq and -dF/dq' of forces over axial displacement and tilts about x and y
+    """
+
+    forces: Floats
+    torque: float
+    inner_flow: float
+    outer_flow: float
+    leading_flow: float
+    trailing_flow: float
+    swept: float
+    pressure: Floats
+    stiffness: Floats
+    damping: Floats
+
+    @property
+    def largest_pressure(self) -> float:
+        """Largest pressure over ambient in Pa."""
+        return float(self.pressure.max())
+
+
+@dataclass(frozen=True)
+class PadOil:
+    """viscosity: in Pa s; law: of LAWS; cavitation_pressure: over the ambient one in Pa, at most 0."""
+
+    viscosity: float
+    law: str = HALF_SOMMERFELD
+    cavitation_pressure: float = 0.0
+
+
+def pad_film(mesh: PadMesh, land_gap: Floats, oil: PadOil, omega: float, motion: RunnerMotion = AT_REST) -> PadFilm:
+    """The film of one pad.
+
+    land_gap: the gap in m at the points of the mesh without the runner's motion; omega: speed of the runner in rad/s.
+    Raises NotConverged if the boundary of a cavity by Reynolds' condition is not found.
+    """
+    r, weights = mesh.r, mesh.weights
+    angle = mesh.theta + motion.phase
+    modes = np.stack([np.ones_like(r), r * np.sin(angle), -r * np.cos(angle)])
+    gap = land_gap + np.array(motion.displacement) @ modes
+    rate = np.array(motion.rate) @ modes
+    mobility = weights * gap**3 / (12.0 * oil.viscosity)
+    matrix = csc_matrix(
+        mesh.slope_theta.T @ diags_array(mobility / r) @ mesh.slope_theta
+        + mesh.slope_r.T @ diags_array(mobility * r) @ mesh.slope_r
+    )
+    dragged = mesh.slope_theta.T @ (weights * 0.5 * omega * r * gap)
+    source = dragged - mesh.value.T @ (weights * r * rate)
+    pressure, factor, solved = _pressure(mesh, matrix, source, oil)
+
+    # derivatives of the pressure: the residual's by the gap at given pressure, through the same factorisation
+    slope_theta, slope_r = mesh.slope_theta @ pressure, mesh.slope_r @ pressure
+    change = 3.0 * mobility / gap * modes
+    by_gap = mesh.slope_theta.T @ (weights * 0.5 * omega * r * modes - change * slope_theta / r).T
+    by_gap -= mesh.slope_r.T @ (change * r * slope_r).T
+    by_rate = -(mesh.value.T @ (weights * r * modes).T)
+
+    at_points = mesh.value @ pressure
+    full = np.ones(len(r), dtype=bool)
+    if oil.law == HALF_SOMMERFELD:
+        full = at_points > oil.cavitation_pressure
+        at_points = np.maximum(at_points, oil.cavitation_pressure)
+    area = weights * r * modes
+    by_pressure = (mesh.value.T @ (area * full).T)[solved]
+    residual = matrix @ pressure - source  # at an edge: what flows in
+    shear = oil.viscosity * omega * r**3 / gap + 0.5 * gap * r * slope_theta * full
+    clipped = np.maximum(pressure, oil.cavitation_pressure) if oil.law == HALF_SOMMERFELD else pressure
+    damping = -by_pressure.T @ factor.solve(by_rate[solved])
+    return PadFilm(
+        forces=area @ at_points,
+        torque=float(weights @ shear),
+        inner_flow=-float(residual[mesh.inner].sum()),
+        outer_flow=-float(residual[mesh.outer].sum()),
+        leading_flow=float(residual[mesh.leading].sum()),
+        trailing_flow=-float(residual[mesh.trailing].sum()),
+        swept=float(weights @ (r * rate)),
+        pressure=clipped,
+        stiffness=-by_pressure.T @ factor.solve(by_gap[solved]),
+        damping=0.5 * (damping + damping.T) if full.all() else damping,  # symmetric but for round-off
+    )
+
+
+def _pressure(mesh: PadMesh, matrix: csc_matrix, source: Floats, oil: PadOil) -> tuple[Floats, SuperLU, Numbers]:
+    """The pressure at the nodes, the factorisation of the equations, and the nodes that are solved for: all that are
+    free, or by Reynolds' condition those outside of the cavity, p >= p_c, with the complementarity condition."""
+    cavity = np.zeros(len(source), dtype=bool)
+    is_free = np.zeros(len(source), dtype=bool)
+    is_free[mesh.free] = True
+    scale = matrix.diagonal()
+    for _ in range(MOST_CHANGES):
+        solved = np.flatnonzero(is_free & ~cavity)
+        pressure = np.where(cavity, oil.cavitation_pressure, 0.0)
+        factor = splu(csc_matrix(matrix[solved][:, solved]))
+        pressure[solved] = factor.solve((source - matrix @ pressure)[solved])
+        if oil.law != REYNOLDS:
+            return pressure, factor, solved
+        holds = matrix @ pressure - source  # positive in a cavity: it keeps the pressure from falling
+        found = is_free & (holds - scale * (pressure - oil.cavitation_pressure) > 0.0)
+        if np.array_equal(found, cavity):
+            return pressure, factor, solved
+        cavity = found
+    raise NotConverged("The boundary of the cavity in a film of a thrust bearing was not found.")
+
+
+def ring_of_pads(film: PadFilm, pads: int) -> PadFilm:
+    """All of `pads` equal pads around the axis from the film of the first, for a runner without tilt."""
+    turns = _turns(pads)
+    forces = np.sum([turn @ film.forces for turn in turns], axis=0)
+    if pads > 2:
+        forces[1:] = 0.0
+    return PadFilm(
+        forces=forces,
+        torque=pads * film.torque,
+        inner_flow=pads * film.inner_flow,
+        outer_flow=pads * film.outer_flow,
+        leading_flow=pads * film.leading_flow,
+        trailing_flow=pads * film.trailing_flow,
+        swept=pads * film.swept,
+        pressure=film.pressure,
+        stiffness=_around(film.stiffness, turns),
+        damping=_around(film.damping, turns),
+    )
+
+
+def _turns(pads: int) -> list[Floats]:
+    """Rotations of (W, M_x, M_y) from the first pad to each of them."""
+    turns = []
+    for angle in 2.0 * math.pi * np.arange(pads) / pads:
+        cosine, sine = math.cos(angle), math.sin(angle)
+        turns.append(np.array([[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]]))
+    return turns
+
+
+def _around(one: Floats, turns: list[Floats]) -> Floats:
+    """The sum of coefficients over all pads. Three pads and more have no coupling of axial motion and tilt, and in
+    tilt only the part of the matrix that rotations leave alone: exactly, not up to round-off."""
+    if len(turns) <= 2:
+        return np.asarray(np.sum([turn @ one @ turn.T for turn in turns], axis=0))
+    direct, cross = 0.5 * (one[1, 1] + one[2, 2]), 0.5 * (one[2, 1] - one[1, 2])
+    return len(turns) * np.array([[one[0, 0], 0.0, 0.0], [0.0, direct, -cross], [0.0, cross, direct]])

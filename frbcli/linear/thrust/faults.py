@@ -1,0 +1,48 @@
+"""What a sheet of thrust bearings does not take, each with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault, InputError
+from frbcli.film.pads.film import LAWS
+from frbcli.units import display
+
+
+def require_sheet(case: Case, gaps: Sequence[float] = ()) -> None:
+    """Raises InputError with every reason why thrust bearings of a case have no sheet at some gaps in m."""
+    if found := [*_faults(case), *_beyond_play(case, gaps)]:
+        raise InputError(case.name or "case", tuple(found))
+
+
+def _faults(case: Case) -> Iterator[Fault]:
+    if not case.thrust_bearings:
+        yield Fault("thrust_bearing", "", None, "is missing.", "Add a table [[thrust_bearing]]; see docs/thrust.md.")
+    if case.heat is not None:
+        problem = "is not modelled in thrust bearings: their films have one temperature, that of [oil]."
+        yield Fault("thermal.model", "lumped", None, problem, 'Write thermal.model = "none" and oil.temperature.')
+    if case.film.cavitation not in LAWS:
+        problem = "is not modelled in thrust bearings, whose pressure is found without oil fractions and history."
+        remedy = f"Write film.cavitation = {' or '.join(LAWS)}; in converging pads they agree."
+        yield Fault("film.cavitation", case.film.cavitation, None, problem, remedy)
+
+
+def _beyond_play(case: Case, gaps: Sequence[float]) -> Iterator[Fault]:
+    for bearing in case.thrust_bearings:
+        play = bearing.end_play
+        for gap in gaps if bearing.side == "both" and play is not None else ():
+            if play is not None and gap >= play:
+                problem = f"leaves no gap on the other side: the end play is {display(play, 'm')}."
+                yield Fault("--gap", display(gap, "m"), None, problem, "Give a gap below it, up to half for a load.")
+
+
+def no_gap(case: Case, load: float, least: tuple[float, float], most: tuple[float, float]) -> InputError:
+    """The error of a load in N that no gap carries; least, most: gaps in m that were searched, with their loads."""
+    (thin, high), (wide, low) = least, most
+    problem = (
+        f"is carried at no gap from {display(thin, 'm')} to {display(wide, 'm')}: the film carries "
+        f"{high:.4g} N there at most and {low:.4g} N at least."
+    )
+    remedy = "Give a load between the two, or change the pads, the oil or the speed."
+    return InputError(case.name or "case", (Fault("--load", f"{load:.6g} N", None, problem, remedy),))

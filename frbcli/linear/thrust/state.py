@@ -1,0 +1,138 @@
+"""The state of a thrust bearing at one gap and speed, with its error from a coarser mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.elements import ThrustBearing
+from frbcli.case.schema import Case
+from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
+from frbcli.film.pads.geometry import Pad
+from frbcli.film.pads.mesh import COARSE, MESH, PadMesh, pad_mesh
+
+Floats = NDArray[np.float64]
+
+BOTH = "both"
+COEFFICIENTS = "stiffness", "damping"
+
+
+@dataclass(frozen=True, repr=False)
+class ThrustState:
+    """The films of a thrust bearing. gap: over the lands in m, on the loaded side; load in N; torque in N m; flows in
+    m^3/s; p_max: absolute in Pa; stiffness, damping: axial; tilt_stiffness, tilt_damping: 2 x 2 over x and y, in N m
+    and N m s per rad; pressure: absolute at the nodes of a pad of the loaded side in Pa; errors: relative."""
+
+    bearing: str
+    speed_Hz: float
+    gap: float
+    load: float
+    torque: float
+    power: float
+    flow_inner: float
+    flow_outer: float
+    flow_leading: float
+    p_max: float
+    stiffness: float
+    damping: float
+    tilt_stiffness: Floats
+    tilt_damping: Floats
+    viscosity: float
+    temperature: float | None
+    load_error: float
+    coefficient_error: float
+    pressure: Floats
+
+
+@dataclass(frozen=True)
+class ThrustFilms:
+    """What computes the films of a thrust bearing over gap and speed: its pad, planned and coarse mesh, and oil."""
+
+    bearing: ThrustBearing
+    pad: Pad
+    mesh: PadMesh
+    coarse: PadMesh
+    oil: PadOil
+    ambient_pressure: float
+    temperature: float | None
+
+    def load(self, gap: float, omega: float) -> float:
+        """The load in N that the film carries at a gap in m and a speed in rad/s."""
+        return _sum(self._sides(self.mesh, gap, omega), lambda film: float(film.forces[0]), opposed=True)
+
+    def state(self, gap: float, omega: float) -> ThrustState:
+        """The state at a gap in m and a speed in rad/s. Raises NotConverged as `pad_film`."""
+        films = self._sides(self.mesh, gap, omega)
+        torque = _sum(films, lambda film: film.torque)
+        stiffness, damping = (np.sum([getattr(film, name) for film in films], axis=0) for name in COEFFICIENTS)
+        load_error, coefficient_error = _errors(films, self._sides(self.coarse, gap, omega))
+        return ThrustState(
+            bearing=self.bearing.name,
+            speed_Hz=omega / (2.0 * np.pi),
+            gap=gap,
+            load=_sum(films, lambda film: float(film.forces[0]), opposed=True),
+            torque=torque,
+            power=torque * omega,
+            flow_inner=_sum(films, lambda film: film.inner_flow),
+            flow_outer=_sum(films, lambda film: film.outer_flow),
+            flow_leading=_sum(films, lambda film: film.leading_flow),
+            p_max=self.ambient_pressure + max(film.largest_pressure for film in films),
+            stiffness=float(stiffness[0, 0]),
+            damping=float(damping[0, 0]),
+            tilt_stiffness=stiffness[1:, 1:],
+            tilt_damping=damping[1:, 1:],
+            viscosity=self.oil.viscosity,
+            temperature=self.temperature,
+            load_error=load_error,
+            coefficient_error=coefficient_error,
+            pressure=self.ambient_pressure + films[0].pressure,
+        )
+
+    def _sides(self, mesh: PadMesh, gap: float, omega: float) -> tuple[PadFilm, ...]:
+        """The film of the loaded side, and that of the other one where pads stand there, too. A tilt changes the gaps
+        of both by opposite amounts, and their forces are opposed, so that stiffness and damping add up."""
+        bearing, gaps = self.bearing, [gap]
+        if bearing.side == BOTH and bearing.end_play is not None:
+            gaps.append(bearing.end_play - gap)
+        depth = self.pad.depth(mesh.theta)
+        return tuple(ring_of_pads(pad_film(mesh, each + depth, self.oil, omega), bearing.pads) for each in gaps)
+
+
+def thrust_films(case: Case, bearing: ThrustBearing) -> ThrustFilms:
+    """What computes the films of a thrust bearing of a case."""
+    oil, pad = case.oil, pad_of(bearing)
+    pressure = oil.cavitation_pressure - oil.ambient_pressure
+    film_oil = PadOil(case.oil_viscosity, case.film.cavitation, pressure)
+    meshes = pad_mesh(pad, *MESH), pad_mesh(pad, *COARSE)
+    return ThrustFilms(bearing, pad, *meshes, film_oil, oil.ambient_pressure, oil.temperature)
+
+
+def pad_of(bearing: ThrustBearing) -> Pad:
+    """One pad of a thrust bearing."""
+    return Pad(bearing.inner_radius, bearing.outer_radius, bearing.pad_angle,
+               min(bearing.taper_angle, bearing.pad_angle), bearing.taper, bearing.profile)  # fmt: skip
+
+
+def _sum(films: tuple[PadFilm, ...], read: Callable[[PadFilm], float], opposed: bool = False) -> float:
+    """The sum over both sides, or their difference."""
+    first, *others = map(read, films)
+    return first - sum(others) if opposed else first + sum(others)
+
+
+def _errors(films: tuple[PadFilm, ...], coarse: tuple[PadFilm, ...]) -> tuple[float, float]:
+    """Relative errors of load and coefficients: the change from the coarse to the planned mesh, which is above the
+    error that is left where the order is at least one."""
+    load, coefficients = 0.0, 0.0
+    for fine, other in zip(films, coarse, strict=True):
+        load = max(load, _change(fine.forces[:1], other.forces[:1]))
+        for a, b in ((fine.stiffness, other.stiffness), (fine.damping, other.damping)):
+            coefficients = max(coefficients, _change(a[:1, :1], b[:1, :1]), _change(a[1:, 1:], b[1:, 1:]))
+    return load, coefficients
+
+
+def _change(fine: Floats, coarse: Floats) -> float:
+    largest = float(np.abs(fine).max())
+    return float(np.abs(fine - coarse).max()) / largest if largest else 0.0

@@ -1,0 +1,160 @@
+"""Sheets of thrust bearings: cases, faults, loads, both sides, and what other analyses say."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.cli.main import run
+from frbcli.errors import InputError
+from frbcli.scene.gate.analysis import ALL
+from frbcli.scene.gate.gate import faults
+
+SPEED = [2000.0]
+
+
+def faults_of(*settings: str) -> str:
+    with pytest.raises(InputError) as error:
+        frbcli.load_case("thrust", settings)
+    return str(error.value)
+
+
+@pytest.mark.parametrize(("setting", "words"), [
+    ("pads=5", "5 of 75 deg are 375 deg. With 5 pads write at most pad_angle = \"72 deg\""),
+    ("taper_angle=80 deg", "is 80 deg, longer than the pad of 75 deg"),
+    ("inner_radius=12 mm", "not below the outer radius of 11 mm"),
+    ("taper=-1 um", "must be greater than 0"),
+    ("side=both", "is missing; the gaps of pads on both sides follow from it"),
+    ("profile=bump", "is not known here"),
+])  # fmt: skip
+def test_faults_name_key_value_and_remedy(setting: str, words: str) -> None:
+    told = faults_of(f"thrust_bearing.0.{setting}")
+    assert "thrust_bearing" in told
+    assert words in told
+
+
+def test_remedies_of_faults_work() -> None:
+    frbcli.load_case("thrust", ["thrust_bearing.0.pads=5", "thrust_bearing.0.pad_angle=72 deg"])
+    frbcli.load_case("thrust", ["thrust_bearing.0.side=both", "thrust_bearing.0.end_play=100 um"])
+
+
+def test_a_collar_is_on_the_shaft() -> None:
+    bearing = ('thrust_bearing=[{{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, '
+               'pad_angle="75 deg", taper_angle="50 deg", taper="20 um"{}}}]')  # fmt: skip
+    frbcli.load_case("turbocharger-car", [bearing.format(', position="20 mm"')])
+    for position, words in ((', position="5 m"', "not on the shaft of"), ("", "position: is missing")):
+        with pytest.raises(InputError, match=words):
+            frbcli.load_case("turbocharger-car", [bearing.format(position)])
+
+
+def test_a_load_is_that_of_the_gap_found_for_it() -> None:
+    case = frbcli.load_case("thrust")
+    (state,) = frbcli.thrust_sheet(case, speeds_Hz=SPEED, loads=[40.0]).points
+    (again,) = frbcli.thrust_sheet(case, [state.gap], SPEED).points
+    assert state.load == again.load == pytest.approx(40.0, rel=1e-9)
+    assert state.power == pytest.approx(state.torque * 2.0 * np.pi * 2000.0)
+
+
+@pytest.mark.parametrize("load", [1e9, 1e-9])
+def test_a_load_no_film_can_carry_is_refused(load: float) -> None:
+    with pytest.raises(InputError, match=r"is carried at no gap from 0\.1 um to 2 mm"):
+        frbcli.thrust_sheet(frbcli.load_case("thrust"), speeds_Hz=SPEED, loads=[load])
+
+
+def test_pads_on_both_sides_are_the_difference_of_loads_and_the_sum_of_all_else() -> None:
+    one = frbcli.load_case("thrust")
+    both = one.with_settings("thrust_bearing.0.side=both", "thrust_bearing.0.end_play=50 um")
+    (near,), (far,) = (frbcli.thrust_sheet(one, [gap], SPEED).points for gap in (15e-6, 35e-6))
+    (state,) = frbcli.thrust_sheet(both, [15e-6], SPEED).points
+    assert state.load == pytest.approx(near.load - far.load, rel=1e-12)
+    for name in ("torque", "power", "flow_inner", "flow_outer", "stiffness", "damping"):
+        assert getattr(state, name) == pytest.approx(getattr(near, name) + getattr(far, name), rel=1e-12)
+    np.testing.assert_allclose(state.tilt_stiffness, near.tilt_stiffness + far.tilt_stiffness, rtol=1e-12)
+    (middle,) = frbcli.thrust_sheet(both, [25e-6], SPEED).points
+    assert abs(middle.load) < 1e-9 * near.load
+    with pytest.raises(InputError, match="leaves no gap on the other side"):
+        frbcli.thrust_sheet(both, [50e-6], SPEED)
+
+
+def test_left_and_right_are_mirror_images() -> None:
+    case = frbcli.load_case("thrust")
+    (right,), (left,) = (
+        frbcli.thrust_sheet(case.with_settings(f"thrust_bearing.0.side={side}"), [15e-6], SPEED).points
+        for side in ("right", "left")
+    )
+    assert left.load == right.load
+
+
+@pytest.mark.parametrize(("settings", "words"), [
+    (["film.cavitation=elrod"], "without oil fractions and history"),
+    (['thermal={model="lumped", supply_temperature="70 degC"}', "oil.viscosity={grade='SAE 10W-40'}"],
+     "their films have one temperature"),
+])  # fmt: skip
+def test_models_that_pads_do_not_have_are_refused(settings: list[str], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        frbcli.thrust_sheet(frbcli.load_case("thrust", settings), [15e-6], SPEED)
+
+
+@pytest.mark.parametrize("analysis", ALL)
+def test_a_case_of_thrust_bearings_alone_has_no_lateral_motion(analysis: str) -> None:
+    found = faults(frbcli.load_case("thrust"), analysis)
+    assert any("thrust bearings alone" in fault.problem for fault in found)
+
+
+@pytest.mark.parametrize("words", [
+    ["runup", "thrust", "-o", "x.h5"], ["stability", "thrust"], ["response", "thrust"], ["bearing", "thrust"],
+    ["limit-cycles", "thrust"], ["rotation", "thrust"], ["compare", "thrust", "--cavitation", "sommerfeld,reynolds"],
+    ["accuracy", "thrust"], ["rundown", "thrust", "-o", "x.h5"], ["squeeze", "thrust"],
+    ["sweep", "thrust", "--set", "oil.viscosity=8 mPa*s,9 mPa*s"],
+])  # fmt: skip
+def test_commands_refuse_a_case_of_thrust_bearings_alone(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(words) == 2
+    assert "frb thrust" in " ".join(capsys.readouterr().err.split())
+
+
+def test_the_plan_of_a_rotor_says_that_its_thrust_bearing_is_left_out() -> None:
+    thrust = ('thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
+              'taper_angle="50 deg", taper="20 um"}]')  # fmt: skip
+    plan = frbcli.make_plan(frbcli.load_case("jeffcott", [thrust]))
+    (told,) = [decision for decision in plan.decisions if decision.choice == "thrust bearing"]
+    assert told.value == "left out"
+    assert "neither their load nor the tilt" in told.reason
+
+
+KEYS = ("speed_Hz", "gap_m", "load_N", "torque_N_m", "power_W", "flow_inner_m3_s", "flow_outer_m3_s", "p_max_Pa",
+        "stiffness_N_m", "damping_N_s_m", "tilt_stiffness_N_m", "tilt_damping_N_m_s", "temperature_K")  # fmt: skip
+
+
+def test_the_document_has_the_keys_of_the_sheet(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ["thrust", "thrust", "--gap", "12 um", "--gap", "9 um", "--speed", "900 Hz", "--load", "40 N"]
+    assert run([*words, "--json", "--csv", "sheet.csv"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["command"] == "thrust"
+    points = document["points"]
+    assert [round(1e6 * point["gap_m"]) for point in points[:2]] == [9, 12]
+    assert all(set(KEYS) <= point.keys() for point in points)
+    assert points[2]["load_N"] == pytest.approx(40.0)
+    assert np.shape(points[0]["tilt_stiffness_N_m"]) == (2, 2)
+    assert points[0]["temperature_K"] is None
+    assert (tmp_path / "thrust-thrust.png").stat().st_size > 10_000
+    assert len((tmp_path / "sheet.csv").read_text().splitlines()) == 4
+
+
+def test_several_bearings_have_their_names() -> None:
+    case = frbcli.load_case("thrust")
+    (bearing,) = case.thrust_bearings
+    table = {"side": "left", **{name: getattr(bearing, name) for name in
+             ("inner_radius", "outer_radius", "pads", "pad_angle", "taper_angle", "taper")}}  # fmt: skip
+    two = frbcli.case_from_dict({"oil": {"viscosity": 8e-3}, "thrust_bearing": [table, {**table, "name": "rear"}]})
+    assert [state.bearing for state in frbcli.thrust_sheet(two, [15e-6], SPEED).points] == ["1", "rear"]
+    assert frbcli.load_case_text(two.source_text).thrust_bearings == two.thrust_bearings
