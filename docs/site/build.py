@@ -44,6 +44,7 @@ SHOWN: dict[str, tuple[list[str], str]] = {
     "plot": (["plot", "run.h5", "--what", "orbit"], "run-orbit.png"),
     "compare": (["compare", "jeffcott", "--cavitation", "half-sommerfeld,sommerfeld", *SHORT], "jeffcott-compare.png"),
     "bearing": (["bearing", "jeffcott"], "jeffcott-bearing.png"),
+    "thrust": (["thrust", "thrust", "--speed", "900 Hz"], "thrust-thrust.png"),
     "fit": (["fit", "jeffcott", *SHORT, "--set", "bearing.clearance=37 um", *FIT], "jeffcott-fit.png"),
     "stability": (["stability", "jeffcott"], "jeffcott-campbell.png"),
     "limit-cycles": (["limit-cycles", "jeffcott"], "jeffcott-limit-cycles.png"),

@@ -23,7 +23,7 @@ def thrust_figure(sheet: ThrustSheet) -> Figure:
         left, middle, right = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.2))
         for panel, (label, quantity) in zip((left, middle), PANELS, strict=True):
             _curves(panel, sheet, quantity)
-            panel.set(xlabel="gap in µm", ylabel=label, xscale="log", yscale="log")
+            panel.set(xlabel="gap in µm", ylabel=label, yscale="log")
         legend_below(figure, left)
         _pads(figure, right, sheet, min(sheet.points, key=lambda point: point.gap))
     return figure
@@ -44,7 +44,9 @@ def _curves(axes: Axes, sheet: ThrustSheet, quantity: str) -> None:
 def _pads(figure: Figure, axes: Axes, sheet: ThrustSheet, state: ThrustState) -> None:
     bearing = next(each for each in sheet.case.thrust_bearings if each.name == state.bearing)
     mesh = pad_mesh(pad_of(bearing), *MESH)
-    levels = np.linspace(1e-5 * state.pressure.min(), max(1e-5 * state.pressure.max(), 1e-9), LEVELS)
+    low, high = 1e-5 * state.pressure.min(), 1e-5 * state.pressure.max()
+    room = 1e-6 * max(high - low, high)  # so that round-off at the edges stays within the levels
+    levels = np.linspace(low - room, high + room, LEVELS)
     filled = None
     for phase in 2.0 * np.pi * np.arange(bearing.pads) / bearing.pads:
         angle, radius = mesh.nodes[0] + phase, 1e3 * mesh.nodes[1]
@@ -53,4 +55,4 @@ def _pads(figure: Figure, axes: Axes, sheet: ThrustSheet, state: ThrustState) ->
     axes.set(aspect="equal", xlabel="mm", ylabel="mm", title=f"gap {1e6 * state.gap:.3g} µm, {state.speed_Hz:.4g} Hz")
     axes.grid(visible=False)
     if filled is not None:
-        figure.colorbar(filled, ax=axes, label="pressure in bar", shrink=0.8)
+        figure.colorbar(filled, ax=axes, label="pressure in bar", shrink=0.8, format="%.3g")

@@ -94,8 +94,9 @@ def _at_points(basis: Basis, fields: list[Floats]) -> csr_matrix:
 
 def _triangles(nodes: Floats) -> Numbers:
     """Two triangles in each rectangle of neighbouring nodes."""
-    order = np.lexsort((nodes[1], nodes[0]))
-    columns = len(np.unique(np.round(nodes[0], 12)))
+    angles = np.round(nodes[0], 12)  # equal ones differ by round-off
+    order = np.lexsort((nodes[1], angles))
+    columns = len(np.unique(angles))
     grid = order.reshape(columns, -1)
     a, b, c, d = (part.ravel() for part in (grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]))
     return np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
