@@ -72,7 +72,8 @@ TEXTS = {"cases"}  # copies texts, computes nothing
 def public_functions() -> list[str]:
     """The public functions that take a case."""
     found = {name: getattr(frbcli, name) for name in frbcli.__all__}
-    return [name for name, each in found.items() if inspect.isfunction(each) and name not in THRUST and _takes_a_case(each)]
+    functions = {name: each for name, each in found.items() if inspect.isfunction(each) and name not in THRUST}
+    return [name for name, each in functions.items() if _takes_a_case(each)]
 
 
 def _takes_a_case(function: Callable[..., Any]) -> bool:
