@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
-from frbcli.film.pads.mesh import MESH, pad_mesh
+from frbcli.film.pads.geometry import MESH
+from frbcli.film.pads.mesh import pad_mesh
 from frbcli.linear.thrust.sheet import ThrustSheet
 from frbcli.linear.thrust.state import ThrustState, pad_of
 from frbcli.plot.style import COLOURS, LEVEL_MAP, legend_below, new_figure, styled

@@ -27,11 +27,11 @@ from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from frbcli.errors import NotConverged
+from frbcli.film.pads.geometry import HALF_SOMMERFELD, REYNOLDS
 from frbcli.film.pads.mesh import Numbers, PadMesh
 
 Floats = NDArray[np.float64]
 
-SOMMERFELD, HALF_SOMMERFELD, REYNOLDS = LAWS = ("sommerfeld", "half-sommerfeld", "reynolds")
 MOST_CHANGES = 100  # of the set of nodes in the cavity
 
 

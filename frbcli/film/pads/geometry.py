@@ -1,4 +1,5 @@
-"""A pad of a thrust bearing: a sector of a ring whose gap narrows from its leading edge to a land."""
+"""A pad of a thrust bearing: a sector of a ring whose gap narrows from its leading edge to a land; and what plans say
+of its film."""
 
 from __future__ import annotations
 
@@ -7,6 +8,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+MESH, COARSE = (16, 32), (8, 16)  # elements in the radius and in the angle: planned, and for its error
+SOMMERFELD, HALF_SOMMERFELD, REYNOLDS = LAWS = ("sommerfeld", "half-sommerfeld", "reynolds")  # of cavitation
 
 Profile = Literal["taper", "step"]
 

@@ -14,7 +14,6 @@ from frbcli.film.pads.geometry import Pad
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-MESH, COARSE = (16, 32), (8, 16)  # elements in the radius and in the angle: planned, and for its error
 ORDER = 6  # of the polynomials that are integrated exactly
 
 

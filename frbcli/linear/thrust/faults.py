@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
-from frbcli.film.pads.film import LAWS
+from frbcli.film.pads.geometry import LAWS
 from frbcli.units import display
 
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from frbcli.case.elements import ThrustBearing
 from frbcli.case.schema import Case
 from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
-from frbcli.film.pads.geometry import Pad
-from frbcli.film.pads.mesh import COARSE, MESH, PadMesh, pad_mesh
+from frbcli.film.pads.geometry import COARSE, MESH, Pad
+from frbcli.film.pads.mesh import PadMesh, pad_mesh
 
 Floats = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frbcli.case.schema import Case
-from frbcli.film.pads.mesh import COARSE, MESH
+from frbcli.film.pads.geometry import COARSE, MESH
 from frbcli.scene.planning.planned import Decision
 from frbcli.units import display
 
