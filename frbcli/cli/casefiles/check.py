@@ -136,18 +136,15 @@ def _plan_documents(decisions: Sequence[Decision]) -> list[dict[str, object]]:
 
 
 def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
-    """Temperatures at the top speed, when everything is warm, if that needs no compiler: a check waits for none."""
-    from frbcli.compilation import NotCompiled, forbidden
+    """Temperatures at the top speed, when everything is warm. They are solutions of the films, whose kernels may have
+    to be compiled; all else that a check says needs none."""
+    from frbcli.cli.progress import computing
     from frbcli.equilibrium.warm_machine import warm_machine
     from frbcli.errors import NotConverged
 
     try:
-        with forbidden():
+        with computing(terminal, case):
             warm = warm_machine(case)
-    except NotCompiled:
-        problem = "the kernels are not compiled yet; `frb warm-up CASE` compiles them, once."
-        terminal.sentence(f"No temperatures at the top speed: {problem}")
-        return {"problem": problem}
     except NotConverged as error:
         terminal.sentence(f"No steady temperatures at the top speed: {error}")
         return {"problem": str(error)}

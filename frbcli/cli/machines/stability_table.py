@@ -99,5 +99,5 @@ def tell_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]
         error, speed = max(known)
         terminal.sentence(
             "Expected error of the films' stiffness and damping, from other meshes: up to "
-            f"{100.0 * error:.1g} % of their largest entry, at {speed:.4g} Hz."
+            f"{float(f'{100.0 * error:.1g}'):g} % of their largest entry, at {speed:.4g} Hz."
         )

@@ -45,7 +45,7 @@ class Barotropic(Law):
     label = "Bayada-Chupin"
     equation = "(Bayada, Chupin)"
     meaning = "Bayada and Chupin's model: density by the speed of sound in liquid, mixture and vapour."
-    cell_words = "density of liquid, mixture and vapour by the speed of sound"
+    cell_words = "density of liquid, mixture and vapour from the speed of sound"
     keys = (
         Key("liquid_sound_speed", 1400.0, "c_l, in the oil", "1400 m/s", unit="m/s", above=0.0),
         Key("vapour_sound_speed", 350.0, "c_v, in its vapour or gas", "350 m/s", unit="m/s", above=0.0),

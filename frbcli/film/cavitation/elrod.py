@@ -23,7 +23,7 @@ class Elrod(Law):
     label = "Elrod"
     equation = "(3.34) to (3.37)"
     meaning = "Elrod's model."
-    cell_words = "full above `p_cav`, or `p_cav` and less oil"
+    cell_words = "the cell is full and above `p_cav`, or it is at `p_cav` and holds less oil"
     keys = (
         Key("bulk_modulus", None, "of the full film; incompressible if not given", "210 GPa", unit="Pa", above=0.0),
     )

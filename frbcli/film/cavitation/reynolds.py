@@ -19,7 +19,7 @@ class Reynolds(Law):
     name = "reynolds"
     label = "Reynolds"
     equation = "(3.30)"
-    cell_words = "pressure above `p_cav`, or a source that keeps it there"
+    cell_words = "the pressure is above `p_cav`, or a source keeps it there"
     conserves = False
     keeps_oil = False
     holds_cavity = True

@@ -37,6 +37,6 @@ class HalfSommerfeld(Sommerfeld):
     name = "half-sommerfeld"
     label = "half-Sommerfeld"
     equation = "(3.29)"
-    cell_words = "the same; the loads take `p_cav` where the pressure is below it"
+    cell_words = "as `sommerfeld`; the loads are computed with `p_cav` where the pressure is below it"
     cavitates = True
     clips = True

@@ -92,7 +92,7 @@ def test_documents_have_a_row_for_every_law() -> None:
     for law in SHIPPED:
         file = law.__module__.replace(".", "/") + ".py"
         name = f"`{law.name}` {law.equation}".rstrip()
-        words = law.cell_words.replace("`p_cav`", r"$p_\mathrm{cav}$")
+        words = law.cell_words.replace("`p_cav`", r"$p_\mathrm{cav}$").replace("`theta(p)`", r"$\theta(p)$")
         assert f"| {name} | {words} | {'yes' if law.keeps_oil else 'no'} | `{file}` |" in theory
         assert law.label in cavitation
 
