@@ -38,8 +38,9 @@ def told(bearing: str, support: Support) -> tuple[str, str]:
     """Its line of the plan."""
     springs = _directions(support.stiffness, "N/m")
     damping = f", {_directions(support.damping, 'N*s/m')}" if any(support.damping) else ", undamped"
-    value = f"{bearing}: {display(support.mass, 'kg')} on {springs}{damping}".removeprefix(": ")
-    return value, "the shell is a body with its weight; what acts in the bearing acts between shaft and shell"
+    value = f"{bearing}: {display(support.mass, 'kg')} on springs".removeprefix(": ")
+    why = "the shell is a body with its weight; what acts in the bearing acts between shaft and shell"
+    return value, f"{springs}{damping}; {why}"
 
 
 def _directions(both: tuple[float, float], unit: str) -> str:

@@ -216,7 +216,8 @@ def test_one_quantity_is_that_of_both_directions_and_the_text_gives_the_case_aga
 def test_the_plan_and_the_sketch_show_supports() -> None:
     told = [each for each in make_plan(on_support(RIGID)).decisions if each.choice == "support"]
     assert len(told) == 1
-    assert told[0].value == "1.5 kg on 4000 N/mm in x and 7000 N/mm in y, 200 N*s/m in x and 90 N*s/m in y"
+    assert told[0].value == "1.5 kg on springs"
+    assert told[0].reason.startswith("4000 N/mm in x and 7000 N/mm in y, 200 N*s/m in x and 90 N*s/m in y; the shell")
     case = short_film()
     fixed, moved = (rotor_sketch(each)[0] for each in (case, case.with_settings({"bearing.support": support()})))
     assert fixed.count('class="ground"') == 0
