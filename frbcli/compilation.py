@@ -1,4 +1,4 @@
-"""What the compiler of the kernels does while other code runs: counted, or forbidden."""
+"""What the compiler of the kernels does while other code runs: counted."""
 
 from __future__ import annotations
 
@@ -8,12 +8,6 @@ from contextlib import contextmanager
 from typing import Any
 
 from numba.core.event import Listener, install_listener
-
-from frbcli.errors import FrbError
-
-
-class NotCompiled(FrbError):
-    """A kernel is not compiled yet, where nothing may be compiled."""
 
 
 class Compilations(Listener):
@@ -51,18 +45,3 @@ def counted(observe: Callable[[], None] | None = None) -> Iterator[Compilations]
     compilations = Compilations(observe)
     with install_listener("numba:compile", compilations):
         yield compilations
-
-
-class _Refusal(Listener):
-    def on_start(self, _event: Any) -> None:
-        raise NotCompiled("The kernels are not compiled yet. `frb warm-up` compiles them, once.")
-
-    def on_end(self, _event: Any) -> None:
-        pass
-
-
-@contextmanager
-def forbidden() -> Iterator[None]:
-    """Within it what would compile a kernel raises NotCompiled; kernels that are compiled are taken from the disk."""
-    with install_listener("numba:compile", _Refusal()):
-        yield

@@ -47,6 +47,8 @@ SLOW = [
     Command(("check", "jeffcott"), "out"),
     Command(("stability", "jeffcott", "--speed", "30 Hz", "--set", "film.theory=short", "--no-picture"), "out"),
     Command(("bearing", "jeffcott", "--speed", "30 Hz", "--no-picture"), "out"),
+    Command(("thrust", "thrust", "--gap", "12 um", "--speed", "900 Hz", "--no-picture"), "out"),
+    Command(("warm-up", "nothing"), "err", 2),
     Command(("response", "jeffcott", "--speed", "30 Hz", "--set", "film.theory=short", "--no-picture"), "out"),
     Command(("limit-cycles", "jeffcott", "--set", "film.theory=short", "--no-picture"), "out"),
     Command(("rotation", "bearing-axial-groove", *COARSE), "out"),

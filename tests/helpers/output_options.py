@@ -55,6 +55,7 @@ CALLS: dict[str, list[str]] = {
     "plot": ["plot", RUN],
     "compare": ["compare", CASE, *SHORT, "--cavitation", "half-sommerfeld,sommerfeld"],
     "bearing": ["bearing", CASE, "--speed", "50 Hz", "--set", "accuracy.mesh=[4, 16]"],
+    "thrust": ["thrust", "thrust", "--gap", "12 um", "--speed", "900 Hz"],
     "fit": ["fit", CASE, *SHORT, "--measured", RUN, "--vary", "rotor.unbalance"],
     "stability": ["stability", CASE, *SHORT, "--speed", "30 Hz"],
     "response": ["response", CASE, *SHORT, "--speed", "30 Hz", "--run", RUN],

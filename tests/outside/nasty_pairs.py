@@ -76,6 +76,8 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("accuracy", "CASE", "--until", "20 ms", "-o", "OUT.png"),
     ("sweep", "CASE", "--set", "rotor.unbalance=1 g*mm,2 g*mm", "--stability", "--jobs", "1", "-o", "OUT-sweep"),
     ("plot", "CASE", "--what", "law", "-o", "OUT.png"),
+    ("thrust", "CASE", "--gap", "12 um", "--speed", "900 Hz", "-o", "OUT.png", "--csv", "OUT.csv"),
+    ("warm-up", "CASE", "--jobs", "1"),
 )  # fmt: skip
 # What a command needs of a base beyond the others: the whole film, or windows of 16 revolutions
 NEEDS = {"fit": ("film.theory=short", "speed.duration=2 s")} | dict.fromkeys(

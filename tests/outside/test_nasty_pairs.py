@@ -15,7 +15,7 @@ from paths import ROOT
 
 from frbcli.cli.main import COMMANDS
 
-BATCH, BATCHES = 44, 8
+BATCH, BATCHES = 48, 8
 BATCH_s = 1800.0
 MEMORY = 4 * 1024**3
 

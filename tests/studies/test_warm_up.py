@@ -14,17 +14,17 @@ import pytest
 import frbcli
 from frbcli.case.reading.shipped import shipped_names
 from frbcli.cli.main import run
-from frbcli.compilation import NotCompiled, counted, forbidden
+from frbcli.compilation import counted
 from frbcli.studies.kernels.short_analyses import CELLS, OTHERS, ShortAnalysis, short_analyses
 from frbcli.studies.kernels.warm_up import _compile
 
-HEAT = [name for name in shipped_names() if name.endswith("-heat")]
-# Runs a run-up in which nothing may be compiled.
+# A run-up in which nothing may be compiled
 RUN = """
 import sys, frbcli
-from frbcli.compilation import forbidden
-with forbidden():
+from frbcli.compilation import counted
+with counted() as compilations:
     frbcli.runup(frbcli.load_case("seal", ["speed.duration=0.01 s"]), sys.argv[1])
+assert compilations.functions == 0, compilations.functions
 """
 
 
@@ -50,32 +50,22 @@ def test_kernels_are_compiled_once(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", RUN, str(tmp_path / "run.h5")], env=environment, check=True)
 
 
-@pytest.mark.parametrize("case", HEAT)
-def test_a_check_compiles_nothing(case: str, tmp_path: Path) -> None:
-    """Of the cases with heat, whose temperatures need kernels: with an empty cache it says what gives them."""
-    thermal = cold(["check", case], tmp_path)["thermal"]
-    assert "frb warm-up CASE" in thermal["problem"]
-    assert not list(tmp_path.rglob("*.nb?"))
-
-
-def test_a_fresh_kernel_is_counted_or_refused() -> None:
+def test_a_fresh_kernel_is_counted() -> None:
     from numba import njit
 
     kernel = njit(lambda x: x + 2.0)
-    with forbidden(), pytest.raises(NotCompiled, match="frb warm-up"):
-        kernel(1.0)
     with counted() as compilations:
         assert kernel(1.0) == 3.0
     assert compilations.functions == 1
     assert compilations.cpu_s > 0.0
-    with forbidden(), counted() as later:
+    with counted() as later:
         assert kernel(1.0) == 3.0
     assert later.functions == 0
 
 
 def test_every_shipped_case_has_moments_of_what_it_can_be_asked_for() -> None:
     found = {name: list(short_analyses(frbcli.load_case(name))) for name in shipped_names()}
-    assert all(found.values())
+    assert [name for name, each in found.items() if not each] == ["thrust"]  # has no compiled kernels
     analyses = {name: [short.analysis for short in each] for name, each in found.items()}
     assert analyses["jeffcott"] == ["run", "stability", "bearing sheet"]
     assert analyses["seal"] == ["run", "stability"]
