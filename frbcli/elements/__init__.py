@@ -1,1 +1,1 @@
-"""Elements between the shaft and the ground that are no films: one file and one row of `table.py` for each kind."""
+"""What acts on a machine beside its films: given coefficients (a row of `table.py`), supports of bearings, forces."""

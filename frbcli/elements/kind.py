@@ -15,9 +15,9 @@ class ElementKind:
     """One kind of element.
 
     model: its table in a case file, of frbcli/case/elements.py; sees: those of the COORDINATES of a node of the shaft
-    that it acts on; linear: its linear part on these, which joins the matrices of the
-    rotor; faults: what is wrong with one beyond the rules of its keys, by the key of its table; told: value and reason
-    of its line in the plan; symbol: how the sketch of a report draws it.
+    that it acts on; linear: its linear part on these, which joins the matrices of the rotor; faults: what is wrong with
+    one beyond the rules of its keys, by the key of its table; told: value and reason of its line in the plan; symbol:
+    how the sketch of a report draws it.
     """
 
     model: type[Any]
