@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_COLUMNS = 6  # of a table, in a line of text
-MOST_ROWS = 60  # of a table; the rest is told by their number
+MOST_ROWS = 60  # of a table; of the rest the number is stated
 
 
 class Tabular:

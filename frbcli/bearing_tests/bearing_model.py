@@ -1,4 +1,4 @@
-"""Kinematic tests of a bearing model: it tells the force, and neither pressures nor oil."""
+"""Kinematic tests of a bearing model: it has a force, but neither pressures nor oil."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What kinematic tests tell: the columns of a result and of the moments of a squeeze or a whirl."""
+"""Columns of the result of a kinematic test, and of the moments of a squeeze or a whirl."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 
 Array = NDArray[np.float64]
 
-PROBE = math.pi  # phi of the probe and of the gap that is told: the bottom of the bearing
+PROBE = math.pi  # phi of the probe and of the stated gap: the bottom of the bearing
 PROBE_WIDTH = 0.25  # of the bearing's width from the end z = 0
 
 
@@ -66,7 +66,7 @@ class MovedFilm:
 
     @property
     def size(self) -> float:
-        """Of the force, N."""
+        """Amount of the force, N."""
         return math.hypot(*self.loads.force)
 
 
@@ -135,8 +135,8 @@ def _moments(
 def _error_of_course(
     case: Case, plan: KinematicPlan, path: Path, times: Array, moments: list[_Moment]
 ) -> tuple[float, int]:
-    """Of the largest force of every period, the worst one over the largest of all, from the same course on half the
-    cells each way in half the steps, NaN if that does not converge; and the iterations that it took."""
+    """The largest error of the periods' largest forces over the largest of all, from the same course on half the cells
+    each way in half the steps, NaN if that does not converge; and the iterations that it took."""
     coarser = _coarser(plan)
     film = _film(case, coarser, path, times)
     try:
@@ -148,7 +148,7 @@ def _error_of_course(
 
 
 def peak_error(case: Case, times: Array, moments: Sequence[MovedFilm], coarse: Sequence[MovedFilm]) -> float:
-    """Of the largest forces of the periods, the worst over the largest of all, from a course of half the resolution:
+    """The largest error of the periods' largest forces over the largest of all, from a course of half the resolution:
     of first order, since the steps keep the oil as Euler's do."""
     fine_peaks, coarse_peaks = _peaks(case, times, moments), _peaks(case, times, coarse)
     largest = max(fine_peaks.values())
@@ -157,7 +157,7 @@ def peak_error(case: Case, times: Array, moments: Sequence[MovedFilm], coarse: S
 
 
 def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, worst: _Moment) -> tuple[float, int]:
-    """Of the largest force of a film without a state: from a mesh twice as coarse, or twice as fine if it is modal."""
+    """Error of the largest force of a film without a state: from a mesh twice as coarse, or twice as fine if it is modal."""
     force = worst.loads.force
     if plan.modal:
         finer = modal_force(plan, worst.motion)

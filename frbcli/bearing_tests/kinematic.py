@@ -67,7 +67,7 @@ class KinematicResult:
 
     @property
     def name(self) -> str:
-        """Of the cavitation model or bearing model."""
+        """Name of the cavitation model or bearing model."""
         return self.cavitation or self.theory
 
 
@@ -216,7 +216,7 @@ def _telling(observe: Observer, done: int, plans: Sequence[KinematicPlan], case:
 
 
 def _moment_count(case: Case, plan: KinematicPlan) -> int:
-    """Of one model."""
+    """Results of one model."""
     assert case.motion is not None
     return 1 if plan.test == "rotation" else max(round(case.motion.periods * plan.steps), FEWEST_TIMES)
 

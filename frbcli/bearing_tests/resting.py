@@ -27,7 +27,7 @@ ForceOf = Callable[[Case, KinematicPlan, tuple[int, int], Motion, FilmForce | No
 
 BAR = 1e5
 COARSE_CELLS = (80, 20)
-TABLE_MESH = Mesh(4, 64)  # of the film that tells where to begin
+TABLE_MESH = Mesh(4, 64)  # of the film from which the search begins
 STARTS = (0.6, 0.85, 0.3, 0.95)
 ATTITUDE = math.radians(20.0)
 SETTLED = 1e-5  # force left over, relative to the load

@@ -1,4 +1,4 @@
-"""What kinematic tests ask of a film, whatever computes it: where it rests, one moment, a course."""
+"""The contract of a film in kinematic tests, however it is computed: where it rests, one moment, a course."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ def machine_fault(key: str, option: str) -> Fault | None:
     table = key.partition(".")[0].strip()
     if key == CONTACT_STIFFNESS or (table in TABLES and not OTHERS.fullmatch(_NUMBERED.sub(".0", key.strip()))):
         return None
-    problem = "is no number of the machine: it tells how a run is made or computed."
+    problem = "is no number of the machine: it is a setting of the run or of its computation."
     tables = ", ".join(f"[{name}]" for name in TABLES[:-1])
     remedy = f"Vary a key of {tables} or [{TABLES[-1]}], e.g. bearing.clearance; frb sweep takes any key."
     return Fault(option, key, None, problem, remedy)

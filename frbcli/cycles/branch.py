@@ -101,7 +101,7 @@ class Follower:
         self.asked = tuple(speed / machine.pace for speed in asked)
 
     def cycle(self, place: Place, kind: str = "", near: Cycle | None = None) -> Cycle:
-        """A point of the branch with all that is told of it. near: one close by."""
+        """A point of the branch with its results. near: one close by."""
         found = self.multipliers(place, None if near is None else near.multipliers.relaxed)
         halved = True  # whether finer intervals have been tried
         while found.defect > TRIVIAL:

@@ -60,7 +60,7 @@ class Walk:
 
 
 def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], float]) -> LimitCycles:
-    """The branches of all Hopf points of a walk. observe: see limit_cycles; cpu: tells the CPU time so far in s."""
+    """The branches of all Hopf points of a walk. observe: see limit_cycles; cpu: gives the CPU time so far in s."""
     resting, cycles = walk.resting, 0
 
     def tell(cycle: Cycle) -> None:

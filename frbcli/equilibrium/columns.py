@@ -1,4 +1,4 @@
-"""What a warm machine tells: the columns of its films, its rings and its balance of heat."""
+"""Columns of a warm machine: its films, its rings and its balance of heat."""
 
 from __future__ import annotations
 

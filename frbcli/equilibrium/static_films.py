@@ -78,7 +78,7 @@ class StaticFilms:
         return bool(self.system.films.volumes)
 
     def warm(self, viscosities: Array, clearances: Array) -> StaticFilms:
-        """The same with viscosities in Pa s and clearances in m, (films,) each."""
+        """These films with viscosities in Pa s and clearances in m, (films,) each."""
 
         def warmed(films: MeshFilms) -> MeshFilms:
             return replace(films, system=warm_system(self.case, films.plan, films.system, viscosities, clearances))

@@ -67,7 +67,7 @@ class DampedMode:
 class DampedModes(Tabular):
     """The oscillating modes at a rotor speed, those that grow first, then the least damped ones.
 
-    points: the names of the p points; positions: (s,) along the shaft in m, or over its length where a case tells no
+    points: the names of the p points; positions: (s,) along the shaft in m, or over its length where a case has no
     length (`to_scale` is False); marks: names and positions of bearings and disks; coefficient_error: expected one of
     the films' stiffness and damping, over the largest entry.
     """

@@ -47,7 +47,7 @@ ROUND_OFF = 1e-9  # relative: what stands out by less, as where a stiff rotor tu
 # mm, the amplitudes of journals have errors of at most 4 % up to a tenth of that gap, 15 % up to this share, 26 % up to
 # half of it, and a factor of 2 beyond, where the response jumps. tests/linear/test_response.py holds it.
 DOUBTFUL = 0.3
-ORBIT_PLACES = 360  # at which the eccentricity along an orbit is told
+ORBIT_PLACES = 360  # at which the eccentricity along an orbit is evaluated
 SOUND, DOUBTFUL_MOTION, BEYOND_GAP = "linear", "doubtful", "beyond-gap"
 
 

@@ -1,6 +1,6 @@
 """Sketches of a machine as SVG: the rotor in its bearings along the axis, and every film around it.
 
-Along the axis everything that the case tells is to scale. A disk has no dimensions in a case: it is drawn as the solid
+Along the axis every dimension of the case is to scale. A disk has no dimensions in a case: it is drawn as the solid
 cylinder of its mass and inertias. Around the axis clearances are magnified; angles are to scale.
 """
 

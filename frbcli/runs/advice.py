@@ -152,7 +152,7 @@ def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
     """Sentences on a run whose equations had no solution with the smallest step size, or without films had no bound."""
     if not case.bearings:
         grown = f"The motion grew beyond {UNBOUNDED:.0e} times the length of the plan at {end.speed_Hz:.4g} Hz"
-        return (f"{grown}: given coefficients do not bound it. `frb stability` tells from which speed on one grows.",)
+        return (f"{grown}: given coefficients do not bound it. `frb stability` shows the speed from which one grows.",)
     step = f"{SMALLEST_STEP:.0e} s" if end.step_s is None or end.step_s < SMALLEST_STEP else f"{end.step_s:.1e} s"
     touching = end.eccentricity >= case.contact.eccentricity
     place = "in contact with the shell" if touching else "not in contact"

@@ -284,7 +284,7 @@ class March:
         return {**known, **self._heat.balance()}
 
     def again(self, plan: Plan) -> March:
-        """The same run from its beginning, by another plan. Raises NotConverged if it does not begin."""
+        """This run from its beginning, by another plan. Raises NotConverged if it does not begin."""
         return March(self._case, plan, make_segments(self._case, plan), self._profile)
 
     def error(self, until: float, fewer: FewerCells | None = None) -> dict[str, float | None]:

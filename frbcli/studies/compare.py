@@ -1,4 +1,4 @@
-"""The same run-up with several models of the films: events, deviation from the first, and cost of each."""
+"""One run-up with several models of the films: events, deviation from the first, and cost of each."""
 
 from __future__ import annotations
 

@@ -156,7 +156,7 @@ def _number(given: object, name: str, row: int) -> float:
 
 
 def _checked(columns: Columns) -> Columns:
-    """The same, with masses complete or left out."""
+    """The coefficients, with masses complete or left out."""
     missing = [name for name in (SPEED, *REQUIRED) if name not in columns]
     some = [name for name in MASSES if name in columns]
     if some:

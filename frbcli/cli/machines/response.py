@@ -144,7 +144,7 @@ def _doubts(found: Response) -> list[str]:
     if beyond:
         sentences.append(
             f"!: not possible at {_among(beyond, speeds)}. The orbit of a journal leaves its gap, up to an "
-            f"eccentricity of {found.eccentricity_max.max():.3g}; a run-up with this unbalance tells the motion."
+            f"eccentricity of {found.eccentricity_max.max():.3g}; a run-up with this unbalance computes the motion."
         )
     return sentences
 

@@ -37,7 +37,7 @@ from frbcli.html import Tabular
 Array = NDArray[np.float64]
 
 BAUTIN, CUSP = "bautin", "cusp"
-ACROSS = 200  # values of the first number at which the growth at rest is told
+ACROSS = 200  # values of the first number at which the growth at rest is evaluated
 KNOWN = 4e-3  # distance in the plane, over its size, and of the frequency: a point lies on a curve that is known
 SMALL = 0.04  # amplitude over the clearance below which a curve of folds has come to that of Hopf points
 MET = "It meets the curve of Hopf points."

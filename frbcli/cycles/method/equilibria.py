@@ -78,7 +78,7 @@ class OverSpeed:
     only: Machine
 
     def machine(self, _value: float) -> Machine:
-        """The same at each speed."""
+        """The one machine, at every speed."""
         return self.only
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:

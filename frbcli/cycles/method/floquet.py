@@ -3,7 +3,7 @@
 The equations linearised about the cycle are integrated over a period by Radau's collocation with three nodes (order 5,
 L-stable), with all states of the rotor and the rings. Between the films the rotor is linear and the same in every
 interval: what its states and the loads at the nodes do is computed once. Of the films, c loads at each node are left.
-One multiplier is 1, of a shift in time; how far it is off tells the error of the integration and of the harmonics.
+One multiplier is 1, of a shift in time; its deviation shows the error of the integration and of the harmonics.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ TRIVIAL = 1e-6  # error of the trivial multiplier from which on intervals are ha
 HELPS, ALIKE = 0.5, 2.0  # shares of an error: below which finer ones have helped, up to which it is that of nearby
 FAR = 5.0  # times the error aimed at, from which on that of nearby is taken for it without another try
 NEUTRAL = 1e-7  # beyond 1: a multiplier that grows
-DOUBLE = 0.01  # distance of a second multiplier from 1 below which both are told apart by the motion
+DOUBLE = 0.01  # distance of a second multiplier from 1 below which the motion decides which of them is trivial
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ from frbcli.cycles.shooting.shots import Rest, Shooting, Shot
 from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
-HELD = 0.05  # error of the trivial multiplier from which on it is told
+HELD = 0.05  # error of the trivial multiplier from which on it is stated
 FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
 
 

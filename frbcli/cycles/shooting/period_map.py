@@ -50,7 +50,7 @@ TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differenc
 FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
-SAMPLES = 256  # moments at which displacements are told
+SAMPLES = 256  # moments at which displacements are evaluated
 MOST_STEPS = 10**6
 
 
@@ -94,7 +94,7 @@ class PeriodMap:
 
     @property
     def scale(self) -> float:
-        """Clearance in m over which displacements of the state are told."""
+        """Clearance in m, the unit of displacements in the state."""
         return float(self.clearances[0])
 
     @property
@@ -103,7 +103,7 @@ class PeriodMap:
         return PLACES if self.turned.any() else ()
 
     def packed(self, wet: Wet, omega: float) -> Array:
-        """The state of a machine, of the order of 1; omega: speed in rad/s over which velocities are told."""
+        """The state of a machine, of the order of 1; omega: speed in rad/s, the unit of velocities."""
         kept = self._kept
         oil = wet.theta[self.held] / math.sqrt(np.count_nonzero(self.held))
         return np.concatenate([wet.q[kept] / self.scale, self._slow(wet.v, omega), oil])

@@ -41,7 +41,7 @@ BLURRED = 5e-3
 SLOWEST = 0.05  # frequency over the speed above which a slow motion at rest is a whirl
 REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
 AT_REST_DIFFERENCE = 2e-2  # by which states with oil are disturbed at rest: the kinks blur less, and the gap is wide
-DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are told apart by their sum
+DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are separated by their sum
 WIDE = 0.2  # smallest gap from which on disturbances have their full size
 
 

@@ -225,7 +225,7 @@ class _Linearised:
 
 
 class _ByMean:
-    """The same with the films' derivatives replaced by their mean over b: harmonics of different k are parted."""
+    """The same with the films' derivatives replaced by their mean over b: harmonics of different k are decoupled."""
 
     def __init__(self, balance: _Linearised) -> None:
         from scipy.linalg import lu_factor

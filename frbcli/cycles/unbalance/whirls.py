@@ -25,7 +25,7 @@ Observer = Callable[[int, float, float], None]
 APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
 PHASES = (256, 128)  # at which eccentricities are taken
-LINES, FAINT = 8, 1e-4  # how many are told beside those of whirl and unbalance, and the smallest over the clearance
+LINES, FAINT = 8, 1e-4  # number of lines stated beside those of whirl and unbalance, and the smallest over the clearance
 
 
 def whirls_with_unbalance(found: LimitCycles, machine: Machine, observe: Observer | None = None) -> LimitCycles:
@@ -131,7 +131,7 @@ def motion_of(machine: Machine, point: CyclePoint) -> Complex:
 
 
 def _free_whirl(machine: Machine, torus: Torus) -> UnbalancedWhirl:
-    """What is told of a motion of two frequencies."""
+    """Results of a motion of two frequencies."""
     films = 2 * machine.film_count
     displacements = samples(torus.orders, torus.motion[:, :films], PHASES)
     lines = [
@@ -151,7 +151,7 @@ def _free_whirl(machine: Machine, torus: Torus) -> UnbalancedWhirl:
 
 
 def _locked_whirl(machine: Machine, cycle: Cycle) -> UnbalancedWhirl:
-    """What is told of a motion of two periods of the rotor."""
+    """Results of a motion of two periods of the rotor."""
     films = 2 * machine.film_count
     motion, omega = unpacked(cycle.y[:-2], machine.size), float(cycle.y[-1] * machine.pace)
     displacements, _ = motion_along(motion[:, :films], max(MOMENTS, 4 * len(motion)))

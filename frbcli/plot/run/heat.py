@@ -37,7 +37,7 @@ def heat_figure(
             for name in _told(runs[0], quantity, end)
         ]  # fmt: skip
         draw_curves(axes, runs, curves, over, (from_time, to_time))
-        if len(runs) == 1:  # several are told apart by their lines
+        if len(runs) == 1:  # several are distinguished by their lines
             _part(axes)
         axes.set_ylabel(words)
 

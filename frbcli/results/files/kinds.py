@@ -34,7 +34,7 @@ NEW = kind("", rb"(?!)")  # of a case, which takes the place of nothing
 PAGE = kind("a page of frb", rb"\s*<!doctype html>")
 ROSS = kind("a bearing of frb for ROSS", rb'\["BearingElement_')
 SWEEP_LOG = kind("the log of a sweep", rb"\{\"")
-# What the first line of a table says, by which those of frb are told from others
+# What the first line of a table says, which distinguishes those of frb from others
 COLUMNS = (
     rb"film,|speed_Hz,point,|([^\n]*,)?branch,speed_Hz,|[^\n]*,unit,curve,kind,|point,[^\n]*status,|time_s,speed_Hz"
 )

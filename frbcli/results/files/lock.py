@@ -67,7 +67,7 @@ def _taken(path: Path, lock: Path) -> int:
             if _is_at(descriptor, lock):  # else its holder has just removed it
                 if _text(descriptor):
                     _remove_parts(path)
-                with suppress(OSError):  # a full disk is told where the run is written
+                with suppress(OSError):  # a full disk is reported where the run is written
                     os.ftruncate(descriptor, 0)
                     os.write(descriptor, f"{MARK}{os.getpid()} {platform.node()}\n".encode())
                 return descriptor

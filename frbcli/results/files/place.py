@@ -41,7 +41,7 @@ NOT_ALLOWED = ("there is no permission to write it.", "Choose another place with
 
 
 def _wrong_file(path: Path, kind: Kind, exists: bool) -> Wrong | None:
-    """The same for a regular file, or one that does not exist. Raises OSError."""
+    """The check of a place for a regular file, or one that does not exist. Raises OSError."""
     if not path.parent.is_dir():
         return f"the directory {path.parent} does not exist.", "Create it, or choose another with -o."
     _status(part_of(path, "x" * TOKEN))  # its name may be too long, too

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 COMMENT = "#"
 DELIMITERS = ("\t", ";", ",", " ")  # a comma after the others, for it may be a decimal one; any number of blanks
 MOST_COLUMNS = 1000
-LOOKED_AT = 1000  # lines from which delimiter and decimal mark are told
-UNITS = {  # that are told from names where they have a line of their own
+LOOKED_AT = 1000  # lines from which delimiter and decimal mark are found
+UNITS = {  # that distinguish a line of units from a line of names
     "", "-", "1", "%", "s", "sec", "second", "seconds", "ms", "us", "µs", "min",
     "m", "mm", "cm", "um", "µm", "nm", "mil", "mils", "in", "inch", "m/s", "mm/s", "m/s^2", "g",
     "hz", "khz", "rpm", "1/min", "min^-1", "u/min", "rad/s", "deg", "°", "v", "mv", "volt", "volts", "a", "ma",

@@ -33,7 +33,7 @@ class FewerCells:
     least: float = 0.0
 
     def at(self, there: NDArray[np.bool_]) -> FewerCells:
-        """The same at some of the times only, (m,) whether at each time of the run."""
+        """These errors at some of the times only, (m,) whether at each time of the run."""
         return replace(self, samples=self.samples[there[: len(self.samples)].nonzero()])
 
     def error(self, samples: Array, system: System) -> CellErrors | None:

@@ -121,7 +121,7 @@ class FilmForm:
         return plan.mesh.axial, plan.mesh.circumferential
 
     def mesh_told(self, plan: Plan) -> str:
-        """The same in words."""
+        """The mesh of a plan in words."""
         return f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
 
 

@@ -33,7 +33,7 @@ DIFFUSIONS = {
 
 STATE_s = 3.0  # to settle
 COMPARED = 6  # states of a run
-COUNT, POWER = 288, 1.4  # elements that the time of a solve is told for, and its power of them
+COUNT, POWER = 288, 1.4  # elements of the measured time of a solve, and the power of their number that it grows with
 
 
 @dataclass(frozen=True)

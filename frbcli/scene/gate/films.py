@@ -38,7 +38,7 @@ def heat_faults(case: Case) -> Iterator[Fault]:
     if case.heat is None:
         return
     if case.film.bearing_model:
-        problem = "tells neither torque nor flow, of which the balance of [thermal] is made."
+        problem = "has neither torque nor flow, which the balance of [thermal] needs."
         yield Fault("film.theory", case.film.theory, None, problem, "Write finite, short or auto.")
     if is_published(case):
         problem = "creates oil, which would carry away heat that nobody has put in: no balance of [thermal]."

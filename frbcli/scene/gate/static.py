@@ -18,7 +18,7 @@ from frbcli.scene.speeds import default_speeds, keeps_oil
 def sheet_faults(case: Case) -> Iterator[Fault]:
     """Films whose pressures, flows and loads are not known."""
     if case.film.bearing_model:
-        problem = "is a bearing model: it tells the force, and neither pressures nor oil."
+        problem = "is a bearing model: it has a force, but neither pressures nor oil."
         yield Fault("film.theory", case.film.theory, None, problem, "Write finite or auto.")
     if is_published(case):
         problem = "creates oil: the flows and losses of a sheet would hang on how much."

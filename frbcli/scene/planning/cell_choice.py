@@ -16,7 +16,7 @@ from frbcli.film.section_faults import no_inflow
 from frbcli.scene.films import FilmPlace, film_places, is_plain
 from frbcli.scene.section import film_section
 
-USUAL = (48, 6)  # cells around and along that the errors are told for
+USUAL = (48, 6)  # cells around and along for which the errors are tabulated
 FEWEST = (12, 3)
 AROUND = (32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 144, 160, 192)
 # Lengths of columns that have a fast elimination (film/cells/elimination/ring_solver.py), but that of too few cells.

@@ -45,7 +45,7 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
     if not case.given_bearings:
         return  # thrust bearings alone need no kernels
     if case.motion is None or (case.given_rotor is not None and case.given_speed is not None):
-        make_plan(case)  # tells what is wrong with a machine
+        make_plan(case)  # raises the faults of a machine
     found = [analysis for analysis in ANALYSES if _applies(case, analysis)]
     for analysis in found:
         decisions = kinematic_plan(case, test=analysis) if analysis in KINEMATIC else make_plan(case)
