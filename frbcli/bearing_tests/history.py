@@ -157,7 +157,7 @@ def peak_error(case: Case, times: Array, moments: Sequence[MovedFilm], coarse: S
 
 
 def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, worst: _Moment) -> tuple[float, int]:
-    """Error of the largest force of a film without a state: from a mesh twice as coarse, or twice as fine if it is modal."""
+    """Error of the largest force of a film without a state: from a mesh twice as coarse or, if modal, twice as fine."""
     force = worst.loads.force
     if plan.modal:
         finer = modal_force(plan, worst.motion)

@@ -45,8 +45,8 @@ Columns:
 - **stated error**: error that the run or the test reports, of the eccentricity or the force.
 
 Cells are those of the plan where a case does not set its mesh. Targets hold for run-ups from rest: rings that begin at
-200 Hz without turning (`light-ring`, `light-spin`, `little-supply-rings`, `clearance-step-rings`) have errors of four to six
-times the target of `floating-ring`, 4.5e-3, and so much is stated.
+200 Hz without turning (`light-ring`, `light-spin`, `little-supply-rings`, `clearance-step-rings`) have errors of
+four to six times the target of `floating-ring`, 4.5e-3, and so much is stated.
 
 There is no reference for cases that whirl from the start or end early, for `pressed-into-the-shell`, and for squeeze
 and whirl.

@@ -25,7 +25,7 @@ Observer = Callable[[int, float, float], None]
 APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
 PHASES = (256, 128)  # at which eccentricities are taken
-LINES, FAINT = 8, 1e-4  # number of lines stated beside those of whirl and unbalance, and the smallest over the clearance
+LINES, FAINT = 8, 1e-4  # beside those of whirl and unbalance: how many lines, and the smallest over the clearance
 
 
 def whirls_with_unbalance(found: LimitCycles, machine: Machine, observe: Observer | None = None) -> LimitCycles:

@@ -24,7 +24,7 @@ LARGEST_FILE = 1024**3  # bytes
 class Columns:
     """Columns (n,) of a file by their names.
 
-    rate: samples per second where the file states it, as WAV does; numbers: single numbers beside the columns, such as a
+    rate: samples per second where the file has it, as WAV does; numbers: single numbers beside the columns, such as a
     sampling rate; units: of columns that have one in the file; lines: of a text, the number of the line of each row;
     doubtful: what is wrong with columns that cannot be used; shapes: of variables as they stand in the file, where
     that has shapes.
