@@ -14,6 +14,7 @@ from frbcli.bearing_tests.march import FilmAt, Moment, march
 from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
+from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure, supplied, supply_share
 from frbcli.film.cells.loads import FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion, path_seen_from, turned
@@ -130,6 +131,28 @@ def _moments(
             raise
         return moments, f"stopped at {moments[-1].time:.4g} s: {failure}"
     return moments, ""
+
+
+def mean_heat(case: Case, plan: KinematicPlan, path: Path, times: Array) -> tuple[float, float]:
+    """What a film dissipates, W, and what leaves through its open ends, m^3/s, on the average of the last period.
+
+    As film_course. The power is -M_J omega - F . v of the journal in the lab. Raises NotConverged.
+    """
+    assert case.motion is not None
+    assert case.motion.frequency is not None
+    period = 1.0 / case.motion.frequency
+    begin = times[-1] - period * (1.0 + 1e-9)
+    seen = path_seen_from(path, plan.turning)
+    film = _film(case, plan, seen, times)
+    passed = times if plan.remembers else times[times >= begin]
+    powers, flows = [], []
+    for moment in march(film, seen, passed, film_at=_film_at(case, plan, film)):
+        if moment.time > begin:
+            found, motion = _moment(case, plan, film, moment).loads, path(moment.time)
+            push = plan.section.clearance * float(np.dot(found.force, motion.v))
+            powers.append(-found.torque.journal * motion.omega - push)
+            flows.append(outflow(film, moment.motion.d, film.pressure(moment.solution.state)))
+    return float(np.mean(powers)), float(np.mean(flows))
 
 
 def _error_of_course(

@@ -14,7 +14,7 @@ from frbcli.bearing_tests.history import History
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
 from frbcli.bearing_tests.steady_film import FilmField
 from frbcli.bearing_tests.tested_film import tested_film
-from frbcli.bearing_tests.warm import warm_film
+from frbcli.bearing_tests.warm import warm_moved_film, warm_resting_film
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import NotConverged
@@ -41,8 +41,8 @@ class KinematicResult:
     there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error:
     estimated, relative to the force, NaN if not known; history: None for a rotation. Of a squeeze or a whirl,
     displacement, loads and field are those of the moment of the largest force, and so is the error; with a law that
-    keeps oil it is the worst of the largest forces of the periods. heat: of a rotation with heat; all else is that of
-    its viscosity and clearance, as in `plan`.
+    keeps oil it is the worst of the largest forces of the periods. heat: of a case with heat, in a squeeze or whirl of
+    the mean over the last period; all else is that of its viscosity and clearance, as in `plan`.
     """
 
     cavitation: str
@@ -228,7 +228,7 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
     try:
         with advised(with_model(case, plan.cavitation)):
             if case.heat is not None:
-                warm = warm_film(case, plan, omega, lambda alike, its_plan: _lasting(alike, its_plan)[0])
+                warm = warm_resting_film(case, plan, omega, lambda alike, its_plan: _lasting(alike, its_plan)[0])
                 case, plan = warm.case, warm.plan
         lasting, start = _lasting(case, plan)
         displacement = lasting.d
@@ -273,7 +273,7 @@ def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]
 
 def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
     assert case.motion is not None
-    motion, begun = case.motion, time.process_time()
+    motion, begun, warm = case.motion, time.process_time(), None
     assert motion.eccentricity is not None
     assert motion.frequency is not None
     omega = 2.0 * math.pi * (motion.speed or 0.0)
@@ -283,6 +283,9 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
     times = np.linspace(0.0, motion.periods / motion.frequency, count + 1)
     try:
         with advised(with_model(case, plan.cavitation)):
+            if case.heat is not None:
+                warm = warm_moved_film(case, plan, omega, path, times)
+                case, plan = warm.case, warm.plan
             course = tested_film(case, plan).course(path, times, tell)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
@@ -302,6 +305,7 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
         newton_iterations=course.iterations,
         plan=plan,
         problem=f"{course.problem}. {film_advice(with_model(case, plan.cavitation))}" if course.problem else "",
+        heat=None if warm is None else warm.steady,
     )
 
 

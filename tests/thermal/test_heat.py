@@ -12,7 +12,7 @@ import pytest
 from films import rectangular
 from paths import DATA
 
-from frbcli.bearing_tests.kinematic import rotation, squeeze
+from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
@@ -246,7 +246,7 @@ def test_rotation_has_the_film_whose_heat_balances(cavitation: str) -> None:
 
 
 def test_rotation_under_a_load_with_heat_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    """More load makes the film thinner and its oil hotter; a squeeze has no steady heat."""
+    """More load makes the film thinner and its oil hotter."""
     found = []
     for load in (100, 400):
         motion = f"motion={{load='{load} N', speed='50 Hz'}}"
@@ -260,8 +260,6 @@ def test_rotation_under_a_load_with_heat_is_told(capsys: pytest.CaptureFixture[s
     assert found[1][1] > found[0][1]  # an eccentric film loses more oil
     assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture"]) == 0
     assert "the film when it is warm" in capsys.readouterr().out
-    with pytest.raises(InputError, match="no steady temperature"):
-        squeeze(load_case("squeeze", WARM_ROTATION[1:3] + WARM_ROTATION[4:]))
 
 
 def test_a_bearing_may_have_walls_and_supply_of_its_own() -> None:

@@ -34,6 +34,9 @@ def motion_faults(case: Case, test: str) -> Iterator[Fault]:
     if not motion.frequency:
         problem = f"is missing; a {test} needs one above zero."
         yield Fault("motion.frequency", "", None, problem, 'Add e.g. frequency = "10 Hz" to [motion].')
+    if case.heat is not None and motion.periods < 1.0:
+        problem = "is less than one period, over which the heat of the film balances."
+        yield Fault("motion.periods", f"{motion.periods:g}", None, problem, "Write 1 or more.")
 
 
 def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
@@ -42,11 +45,6 @@ def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
         problem = "are too many: a kinematic test is of one bearing."
         yield Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")
     if len(case.bearings) != 1:
-        return
-    if case.heat is not None and test != ROTATION:
-        problem = f"is not modelled for a {test}: a film has no steady temperature there."
-        remedy = 'Write thermal.model = "none": the film then has oil.temperature, or that of the supply.'
-        yield Fault("thermal.model", "lumped", None, problem, remedy)
         return
     bearing = case.bearings[0]
     if not isinstance(bearing, SingleFilmBearing):
