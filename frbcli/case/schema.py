@@ -291,6 +291,12 @@ class Case(Model):
         return altered(self, _UNCOMPUTED) == altered(other, _UNCOMPUTED)
 
     @property
+    def bearing_keys(self) -> tuple[str, ...]:
+        """The keys of all bearings, with or without a film: "bearing", or "bearing.0" and on for several."""
+        count = len(self.given_bearings)
+        return ("bearing",) if count == 1 else tuple(f"bearing.{place}" for place in range(count))
+
+    @property
     def bearings(self) -> tuple[FilmBearing, ...]:
         """The bearings that have a film, or two around a ring."""
         return tuple(bearing for bearing in self.given_bearings if not isinstance(bearing, Element))

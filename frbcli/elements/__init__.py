@@ -1,1 +1,1 @@
-"""What acts on a machine beside its films: given coefficients (a row of `table.py`), supports of bearings, forces."""
+"""What acts on a machine beside its films: a file and a row of `table.py` for each kind of element."""

@@ -6,41 +6,54 @@ one body stands for both, with twice their mass, stiffness and damping.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Self
+
 import numpy as np
 
+from frbcli.case.schema import Case
 from frbcli.case.surroundings.support import Support
-from frbcli.rotor.assembly import GROUND, Link
-from frbcli.rotor.body import Body, point_mass
+from frbcli.elements.element import Line, MachineElement, Parts, Site
+from frbcli.rotor.assembly import Link
+from frbcli.rotor.body import point_mass
 from frbcli.rotor.over_speed import LinearPart
 from frbcli.units import display
 
-NODE = "support"  # and behind it the name of its bearing
 
+@dataclass(frozen=True)
+class SupportElement(MachineElement):
+    """The shell of a bearing as a body. bearing: its name."""
 
-def shell_of(bearing: str, support: Support | None) -> str:
-    """The node of the shell of the bearing with a name: that of its support, or the ground."""
-    return GROUND if support is None else f"{NODE}_{bearing}".rstrip("_")
+    bearing: str
+    given: Support
 
+    @classmethod
+    def of(cls, case: Case) -> Iterator[Self]:
+        """See MachineElement."""
+        for key, bearing in zip(case.bearing_keys, case.given_bearings, strict=True):
+            if bearing.support is not None:
+                yield cls(f"{key}.support", bearing.name, bearing.support)
 
-def body(bearing: str, support: Support, count: float, gravity: float) -> Body:
-    """The bodies of `count` equal supports as one; gravity in m/s^2."""
-    return point_mass(shell_of(bearing, support), count * support.mass, gravity)
+    @property
+    def node(self) -> str:
+        """Of the shell."""
+        return f"support_{self.bearing}".rstrip("_")
 
+    def parts(self, site: Site) -> Parts:
+        """See MachineElement."""
+        stiffness, damping = (np.diag(each)[None] for each in (self.given.stiffness, self.given.damping))
+        mount = LinearPart(np.zeros(1), stiffness, damping, np.zeros((1, 2, 2)))
+        link = Link(self.node, site.ground(self.bearing), site.count)
+        return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((link, mount),))
 
-def mount(bearing: str, support: Support, count: float) -> tuple[Link, LinearPart]:
-    """Springs and dampers of `count` equal supports to the ground."""
-    stiffness, damping = (np.diag(each)[None] for each in (support.stiffness, support.damping))
-    link = Link(shell_of(bearing, support), count=count)
-    return link, LinearPart(np.zeros(1), stiffness, damping, np.zeros((1, 2, 2)))
-
-
-def told(bearing: str, support: Support) -> tuple[str, str]:
-    """Its line of the plan."""
-    springs = _directions(support.stiffness, "N/m")
-    damping = f", {_directions(support.damping, 'N*s/m')}" if any(support.damping) else ", undamped"
-    value = f"{bearing}: {display(support.mass, 'kg')} on springs".removeprefix(": ")
-    why = "the shell is a body with its weight; what acts in the bearing acts between shaft and shell"
-    return value, f"{springs}{damping}; {why}"
+    def told(self, site: Site) -> Line:
+        """See MachineElement."""
+        springs = _directions(self.given.stiffness, "N/m")
+        damping = f", {_directions(self.given.damping, 'N*s/m')}" if any(self.given.damping) else ", undamped"
+        value = f"{self.bearing}: {display(self.given.mass, 'kg')} on springs".removeprefix(": ")
+        why = "the shell is a body with its weight; what acts in the bearing acts between shaft and shell"
+        return "support", value, f"{springs}{damping}; {why}"
 
 
 def _directions(both: tuple[float, float], unit: str) -> str:

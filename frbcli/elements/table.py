@@ -1,17 +1,19 @@
-"""All kinds of elements that are no films: what the rest of the program asks, it asks here."""
+"""All kinds of elements that are no journal films: what the rest of the program asks, it asks here."""
 
 from __future__ import annotations
 
-from frbcli.case.elements import Element
-from frbcli.elements import coefficients
-from frbcli.elements.kind import ElementKind
+from collections.abc import Iterator
 
-KINDS: tuple[ElementKind, ...] = (coefficients.KIND,)
+from frbcli.case.schema import Case
+from frbcli.elements.coefficients import GivenCoefficients
+from frbcli.elements.element import MachineElement
+from frbcli.elements.force import ForceElement
+from frbcli.elements.support import SupportElement
+from frbcli.elements.thrust import ThrustElement
+
+ELEMENTS: tuple[type[MachineElement], ...] = (GivenCoefficients, SupportElement, ThrustElement, ForceElement)
 
 
-def kind_of(element: Element) -> ElementKind:
-    """The row of an element. Raises KeyError for a table that none has."""
-    for kind in KINDS:
-        if isinstance(element, kind.model):
-            return kind
-    raise KeyError(type(element).__name__)
+def elements_of(case: Case) -> Iterator[MachineElement]:
+    """All elements of a case, by kind."""
+    return (element for kind in ELEMENTS for element in kind.of(case))

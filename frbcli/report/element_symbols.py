@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from frbcli.case.elements import Element
-from frbcli.elements.table import kind_of
+from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.report.svg import box, curve, line
 
 WIDE, TURNS, END = 7.0, 4, 4.0  # half the width of a spring, its turns, and its straight ends, in the drawing's units
@@ -29,7 +29,7 @@ def support_symbol(x: float, middle: float, radius: float) -> Iterator[str]:
 def symbol(element: Element, x: float, middle: float, radius: float) -> Iterator[str]:
     """An element at x, above and below the axis at `middle`, from the surface of the shaft outwards; radius: of the
     shaft there in the drawing."""
-    draw = SYMBOLS[kind_of(element).symbol]
+    draw = SYMBOLS[GivenCoefficients.symbol]
     for sign in (-1.0, 1.0):
         yield from draw(x, middle + sign * radius, sign)
         end = middle + sign * (radius + HIGH)

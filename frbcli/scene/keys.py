@@ -9,21 +9,8 @@ from frbcli.case.schema import Case
 
 def bearing_key(case: Case, index: int) -> str:
     """The key of a bearing with a film: "bearing", or "bearing.0" where there are several, with or without one."""
-    return _key(case, [i for i, bearing in enumerate(case.given_bearings) if not isinstance(bearing, Element)][index])
-
-
-def all_keys(case: Case) -> tuple[str, ...]:
-    """The keys of all bearings, with or without a film, in the order of the case file."""
-    return tuple(_key(case, i) for i in range(len(case.given_bearings)))
-
-
-def element_keys(case: Case) -> tuple[str, ...]:
-    """The keys of the bearings without a film, in their order."""
-    return tuple(_key(case, i) for i, bearing in enumerate(case.given_bearings) if isinstance(bearing, Element))
-
-
-def _key(case: Case, place: int) -> str:
-    return "bearing" if len(case.given_bearings) == 1 else f"bearing.{place}"
+    keyed = zip(case.bearing_keys, case.given_bearings, strict=True)
+    return [key for key, bearing in keyed if not isinstance(bearing, Element)][index]
 
 
 def film_keys(case: Case) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.reduction import DENSE, MOST
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.films import film_places, rings, turning_rings
+from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.film_choice import all_clipped, needs_cells
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.shafts.table import shaft_of
@@ -88,10 +89,9 @@ def signal_count(case: Case) -> int:
 
 
 def rotor_size(case: Case) -> int:
-    """Degrees of freedom of the rotor with its rings and supports, as reduced."""
-    rings = len(film_places(case)) - len(case.bearings)
-    supports = sum(bearing.support is not None for bearing in case.given_bearings)
-    return shaft_of(case).freedoms + 2 * (rings + supports) + len(turning_rings(case))
+    """Degrees of freedom of the rotor with its rings and elements, as reduced."""
+    elements = sum(body.size for body in element_parts(case).bodies)
+    return shaft_of(case).freedoms + 2 * len(rings(case)) + elements + len(turning_rings(case))
 
 
 def _reduction_s(case: Case) -> float:

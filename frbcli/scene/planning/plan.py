@@ -12,7 +12,6 @@ from dataclasses import replace
 from frbcli.case.bearing import FilmGeometry, FloatingRingBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.elements.force import told as force_told
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
@@ -24,8 +23,7 @@ from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import element_decisions, thrust_decisions
-from frbcli.scene.machine.rotor import placed_forces
+from frbcli.scene.machine.elements import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
 from frbcli.scene.planning.expected_error import expected_error
 from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films
@@ -197,10 +195,8 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     """Bearings, films and gap."""
     places = film_places(case)
     decide("bearings", *shaft_of(case).bearings_modelled)
-    for decided in (*element_decisions(case), *thrust_decisions(case)):
+    for decided in element_decisions(case):
         decide(*decided)
-    for force, node, count in placed_forces(case):
-        decide("force", *force_told(force, node, count))
     if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
         decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
     for bearing in rings(case):

@@ -1,0 +1,64 @@
+"""The contract of an element of a machine that is no journal film: a class for each kind, a row of `table.py`."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.rotor.assembly import Link, NodeForce
+from frbcli.rotor.body import Body
+from frbcli.rotor.over_speed import LinearPart
+
+Line = tuple[str, str, str]  # of a plan: choice, value, reason
+
+
+@dataclass(frozen=True)
+class Site:
+    """The machine around an element. journal, shell: nodes of the shaft and of the shell in a bearing, by its name;
+    ground: the node that this shell, or its support, stands on; count: equal bearings of a symmetric rotor, which move
+    as one with the elements of all of them; gravity in m/s^2."""
+
+    journal: Callable[[str], str]
+    shell: Callable[[str], str]
+    ground: Callable[[str], str]
+    count: float
+    gravity: float
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What elements add to a machine: bodies with nodes, linear parts between nodes, forces on nodes."""
+
+    bodies: tuple[Body, ...] = ()
+    links: tuple[tuple[Link, LinearPart], ...] = ()
+    forces: tuple[NodeForce, ...] = ()
+
+
+@dataclass(frozen=True)
+class MachineElement(ABC):
+    """An element of a case. key: of its table in the case file."""
+
+    key: str
+
+    symbol: ClassVar[str] = ""  # how the sketch of a report draws it, a row of report/element_symbols.py
+
+    @classmethod
+    @abstractmethod
+    def of(cls, case: Case) -> Iterator[Self]:
+        """The elements of this kind in a case."""
+
+    @abstractmethod
+    def told(self, site: Site) -> Line:
+        """Its line of the plan."""
+
+    def parts(self, site: Site) -> Parts:
+        """What it adds to the machine."""
+        return Parts()
+
+    def faults(self) -> list[Fault]:
+        """What is wrong with it beyond the rules of its keys."""
+        return []
