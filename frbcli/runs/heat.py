@@ -63,6 +63,22 @@ class RunHeat:
                 raise NotConverged(closed_gap(name, "at the temperatures that the run begins with"))
         self.start = warm_system(case, plan, system, viscosities_at(model, start), clearances)
 
+    def take_up(self, case: Case, system: System) -> None:
+        """Go on with another machine, whose clearances have changed: all temperatures and the books stay the same."""
+        if self._loop is None:
+            return
+        state, self._heat = self._loop.state, heat_of(case)
+        self._loop, self.films = _lumped(case, system, self._heat)._replace(state=state), system.films.changeable()
+
+    def warm(self, case: Case, plan: Plan, system: System) -> System:
+        """The machine that was taken up, at the temperatures of now; the same without heat."""
+        if self._heat is None or self._loop is None:
+            return system
+        state, model = self._loop.state, self._heat.model
+        temperatures, speeds = state[-len(model.capacity) :], state[BOOKS : -len(model.capacity)]
+        clearances = np.maximum(clearances_at(model, temperatures, speeds), NARROWEST * model.reference)
+        return warm_system(case, plan, system, viscosities_at(model, temperatures), clearances)
+
     @property
     def kind(self) -> LumpedHeat | NoHeat:
         """The data for the time loop."""

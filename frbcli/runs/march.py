@@ -88,7 +88,7 @@ class March:
         self._profile = profile.with_stops(segment.start for segment in self._segments)
         self._take_up(0)
         system = self._system
-        self._heat = RunHeat(case, plan, system)
+        self._heat = RunHeat(self._segments[0].case, plan, system)
         self._control = control_of(case, plan)
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
@@ -124,11 +124,13 @@ class March:
 
     def _change(self) -> int:
         """At the end of a segment: the machine and the state of the next one. Returns the status of the run."""
-        before = self._system
+        before = self._warm
         self._take_up(self._current + 1)
-        if largest_eccentricity(self._system, self._state) >= self._control.contact_eccentricity:
+        self._heat.take_up(self._segments[self._current].case, self._system)
+        after = self._warm
+        if largest_eccentricity(after, self._state) >= self._control.contact_eccentricity:
             return CONTACT  # the new clearance is below the displacement
-        self._state = with_clearances(before, self._system, self._profile, self._state, self._apart)
+        self._state = with_clearances(before, after, self._profile, self._state, self._apart)
         self._noted[:] = np.nan
         return RUNNING
 
@@ -152,6 +154,11 @@ class March:
         """The current machine with the clearances that heat has brought about."""
         films = replace(self._system.films, clearances=tuple(self._rotor.clearances.tolist()))
         return replace(self._system, films=films)
+
+    @property
+    def _warm(self) -> System:
+        """The current machine at the temperatures of now."""
+        return self._heat.warm(self._segments[self._current].case, self._plan, self._system)
 
     @property
     def samples(self) -> Array:
@@ -247,11 +254,12 @@ class March:
         rows = math.ceil(state.numbers[OUTPUTS] / self._sample_every)
         samples = array(checkpoint, "film_samples", (rows, self._samples.shape[1]))
         clock = array(checkpoint, "clock", (2,))
-        self._heat.restore(checkpoint)
         if self._watches and "noted" in checkpoint:
             self._noted = array(checkpoint, "noted", self._noted.shape)
         self._state, self._samples = state, samples
         self._take_up(sum(segment.start <= self.time for segment in self._segments[1:]))
+        self._heat.take_up(self._segments[self._current].case, self._system)
+        self._heat.restore(checkpoint)
         self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def check_samples(self, run: Run) -> None:

@@ -47,9 +47,10 @@ def _film(path: Path, film: Mapping[str, Any]) -> Iterator[Breach]:
     if "temperature" in film:
         problem = "has no effect: [thermal] finds the film's temperature."
         yield Breach((*path, "temperature"), problem, 'Remove it, or write thermal.model = "none".')
-    if "clearance_steps" in film:
-        problem = "is not modelled together with [thermal], by which the clearance follows the temperatures."
-        yield Breach((*path, "clearance_steps"), problem, 'Remove it, or write thermal.model = "none".')
+    if "clearance_steps" in film and isinstance(film.get("clearance"), dict):
+        problem = "gives clearances of no temperature, and the clearance before them is a cold one."
+        remedy = "Give that at thermal.reference_temperature as a length, as the steps do."
+        yield Breach((*path, "clearance_steps"), problem, remedy)
 
 
 def _temperatures(data: Mapping[str, Any], thermal: Mapping[str, Any]) -> Iterator[tuple[Path, float | None]]:
