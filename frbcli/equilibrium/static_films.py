@@ -28,7 +28,7 @@ from frbcli.scene.forms.cells import CELLS as ON_CELLS
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.machine.warm import warm_case, warm_system
-from frbcli.scene.planning.film_choice import DEFAULT_MESH, all_clipped, choose_films, needs_cells
+from frbcli.scene.planning.film_choice import DEFAULT_MESH, choose_films, form_of
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 
@@ -106,7 +106,7 @@ def static_films(case: Case, load: float | None = None, top_Hz: float | None = N
 
 def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     """Plans of other meshes, with their shares; none for a bearing model, whose error is not known."""
-    if not plan.form.error_known:
+    if not plan.form.solved:
         return ()
     if plan.form.by_cells:
         return tuple((replace(plan, cells=cells), 1.0 / ((CELLS[0] / cells[0]) ** FRONTS - 1.0)) for cells in COARSER)
@@ -123,7 +123,7 @@ def _plan(case: Case) -> Plan:
     """The plan of a run, or of the films alone where there is no rotor, with the cells of static results."""
     if case.given_rotor is not None and case.given_speed is not None:
         plan = make_plan(case)
-    elif needs_cells(case) or not all_clipped(case):
+    elif form_of(case).fine_when_static:
         plan = _films_alone(case, "finite", ON_CELLS, DEFAULT_MESH, ())
     else:
         films = choose_films(case, case.accuracy.target)

@@ -12,9 +12,7 @@ from typing import TypeVar
 from frbcli.case.bearing import FilmBearing, FilmGeometry, FloatingRingBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.errors import Fault
 from frbcli.scene.films import film_places
-from frbcli.scene.forms.published import is_published
 
 Film = TypeVar("Film", bound=FilmGeometry)
 
@@ -37,15 +35,6 @@ def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
             told = [f"{1e6 * step.clearance:.4g} um from {step.time:g} s" for step in steps]
             value = ", ".join([f"{1e6 * place.geometry.clearance:.4g} um", *told])
             yield f"clearance {place.name}".rstrip(), value, "set in the case; rotor and oil keep their state"
-
-
-def clearance_faults(case: Case) -> list[Fault]:
-    """The faults of a case with clearances that change."""
-    if not step_times(case) or not is_published(case):
-        return []
-    problem = "would change the oil, which the published two-phase form does not balance."
-    remedy = 'Write film.two-phase.form = "conservative".'
-    return [Fault("bearing.clearance_steps", "", None, problem, remedy)]
 
 
 def _films(case: Case) -> Iterator[FilmGeometry]:

@@ -12,10 +12,9 @@ from contextlib import contextmanager
 
 from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved, NotConverged
-from frbcli.scene.forms.published import is_published
+from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.supply import unfed_films
 
-GENTLE = 0.9  # x_1 of a step that is not steep
 NONE_KNOWN = "No setting is known to help: with another mesh or tolerance it is a matter of chance."
 
 
@@ -30,17 +29,7 @@ def advised(case: Case) -> Iterator[None]:
 
 def film_remedies(case: Case) -> tuple[str, ...]:
     """Settings with which the films of a case are easier to solve, best first, that the case does not have yet."""
-    models, film = set(case.cavitations), case.film
-    if film.bearing_model:
-        return (f"a force of film.theory = {film.bearing_model} without jumps, or with derivatives of its own",)
-    found = []
-    if "two-phase" in models and is_published(case):
-        found.append('film.two-phase.form = "conservative"')
-        if film.two_phase.diffusion != "consistent":
-            found.append('film.two-phase.diffusion = "consistent"')
-        if film.two_phase.steepness > GENTLE:
-            found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {film.two_phase.steepness:g}")
-    return tuple(found)
+    return form_of(case).remedies(case)
 
 
 def film_advice(case: Case) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.keys import cavitation_keys
+from frbcli.scene.planning.film_choice import form_of
 
 SPEEDS, SPEEDS_WITH_MEMORY = 60, 20  # 5 and 15 Hz apart from 0 to 300 Hz
 
@@ -23,5 +23,4 @@ def default_speeds(case: Case, count: int | None = None) -> tuple[float, ...]:
 
 def keeps_oil(case: Case) -> bool:
     """Whether a film of the case is mass-conserving."""
-    named = () if case.film.bearing_model else tuple(name for _, name in cavitation_keys(case))
-    return any(law_named(name).keeps_oil for name in named)
+    return form_of(case).solved and any(law_named(name).keeps_oil for name in case.cavitations)

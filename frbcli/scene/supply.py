@@ -16,8 +16,8 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import is_unfed
 from frbcli.scene.films import film_places
-from frbcli.scene.forms.published import is_published
 from frbcli.scene.keys import film_keys
+from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.section import film_section
 from frbcli.units import display
 
@@ -51,13 +51,14 @@ class UnfedFilm:
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
     """The films of a case without a pressurised supply; none for a bearing model, whose oil is not known."""
     found: list[UnfedFilm] = []
-    if case.film.bearing_model:
+    form = form_of(case)
+    if not form.solved:
         return ()
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film, cavitation = place.geometry, case.cavitation(place.geometry)
         section = film_section(case, film, place.feed_holes)
         if is_unfed(section, law_named(cavitation)):
-            keeps = law_named(cavitation).keeps_oil and not is_published(case)
+            keeps = law_named(cavitation).keeps_oil and not form.creates_oil
             cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)
             found.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
     return tuple(found)

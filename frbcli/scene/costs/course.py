@@ -24,6 +24,7 @@ from frbcli.film.section_faults import no_inflow
 from frbcli.rotor.speed_profile import Array, SpeedProfile
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
+from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.section import film_section
 from frbcli.scene.shafts.table import shaft_of
@@ -98,7 +99,7 @@ def whirl_speed(case: Case) -> float:
     if not places:
         return math.inf
     free = rings(case) or runs_nearly_dry(case) or rotor.gravity == 0.0
-    if not case.film.bearing_model:
+    if form_of(case).solved:
         free = free or any(not law_named(name).cavitates for name in case.cavitations)
     if free:
         return 0.0
@@ -113,7 +114,7 @@ def runs_nearly_dry(case: Case) -> bool:
 
 def _dry_laws(case: Case) -> tuple[type[Law], ...]:
     """The laws of the films that run nearly dry."""
-    if case.film.bearing_model:
+    if not form_of(case).solved:
         return ()
     found = ((law_named(case.cavitation(place.geometry)), place) for place in film_places(case))
     return tuple(

@@ -15,14 +15,11 @@ from frbcli.rotor.reduction import DENSE, MOST
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.films import film_places, rings, turning_rings
 from frbcli.scene.machine.elements import element_parts
-from frbcli.scene.planning.film_choice import all_clipped, needs_cells
+from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.shafts.table import shaft_of
 
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
-# To compile, at the first start: CPU time in s and memory in bytes, for finite-volume films, for tables of solutions on
-# cells, and for other films.
-COMPILE_CELLS, COMPILE_SOLUTIONS, COMPILE_TABLES = (62.0, 5e8), (42.0, 4.2e8), (26.0, 3.6e8)
 PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernels
 MATRICES = 6  # of a rotor, of the modes of a shaft
 SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
@@ -43,9 +40,7 @@ def compile_B(case: Case) -> float:
 
 def _compilation(case: Case) -> tuple[float, float]:
     """CPU time in s and memory in bytes."""
-    if needs_cells(case):
-        return COMPILE_CELLS
-    return COMPILE_TABLES if case.film.bearing_model or all_clipped(case) else COMPILE_SOLUTIONS
+    return form_of(case).compiling
 
 
 def before_s(case: Case, plan: Plan) -> float:

@@ -1,4 +1,5 @@
-"""The contract of a form of films: what plans, costs, errors and static results ask of it.
+"""The contract of a form of films: what gate, plans, costs, errors and static results ask of it. A form is one file:
+what it is, what it costs, and in `rules` what it is not made for, with the reason.
 
 Times are CPU seconds of the reference machine of scene/costs/cost.py, measured on the shipped cases.
 """
@@ -15,6 +16,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.compared import FINER
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Array, Mesh
+from frbcli.scene.gate.rule import Rule
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -48,12 +50,18 @@ class FilmForm:
     chosen_by_target: ClassVar[bool] = False  # whether a plan takes as many of them as the target needs
     fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
     told_by_eccentricity: ClassVar[bool] = False  # whether its error is that of eccentricities, not of forces
-    error_known: ClassVar[bool] = True  # whether it has a mesh, and so an error
+    solved: ClassVar[bool] = (
+        True  # whether its pressure is solved, on a mesh whose error is known
+    )
     solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
     turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
+    any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
+    same_in_tests: ClassVar[bool] = False  # whether kinematic tests have the same films
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"
     creates_oil: ClassVar[bool] = False  # whether oil is part of the state, and some is created
+    compiling: ClassVar[tuple[float, float]] = 26.0, 3.6e8  # at the first start: CPU time in s, memory in bytes
+    rules: ClassVar[tuple[Rule, ...]] = ()  # what it is not made for, and why
 
     def __str__(self) -> str:
         """Its name."""
@@ -115,6 +123,16 @@ class FilmForm:
         if not law.cavitates:
             return "the film has no state and does not cavitate"
         return "the film has no state, and oil is not balanced"
+
+    def remedies(self, case: Case) -> tuple[str, ...]:
+        """Settings that the case does not have yet with which its films are easier to solve, best first."""
+        return ()
+
+    def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
+        """How the film of a kinematic test is computed: value and reason of a decision."""
+        if law.keeps_oil:
+            return "finite volumes", f"{law.name}: conserves oil and keeps it from moment to moment"
+        return "finite volumes", f"{law.name}: has no state, each moment is a steady film of its own"
 
     def mesh_of(self, plan: Plan) -> tuple[int, int]:
         """Elements or cells (along, around) of a plan, as accuracy.mesh has them."""

@@ -1,28 +1,25 @@
-"""Bearing models in a case: the chosen model, the faults of such a case, and the record of the model in a run."""
+"""Bearing models in a case: the chosen model, and what it is not made for."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.bearing_model.table import model_named
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.form import FilmForm, SolveCounts
+from frbcli.scene.gate.analysis import ALL, KINEMATIC, LADDER, RUN, SHEETS
+from frbcli.scene.gate.rule import Rule, motion_omega, oil_flow_signal, refusal, run_omega
+from frbcli.scene.keys import film_keys
 
 WHY = "set in the case; added from Python"
 TOLD = "the whole bearing by one function of displacement, velocity and speed; derivatives by {}"
-
-
-@dataclass(frozen=True)
-class ModelForm(FilmForm):
-    """The force of a bearing model, which has no mesh."""
-
-    error_known: ClassVar[bool] = False
-
-
-GIVEN: FilmForm = ModelForm("force of a bearing model", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 1.0)
 
 
 def chosen_model(case: Case) -> BearingModel | None:
@@ -46,3 +43,108 @@ def model_decisions(model: BearingModel) -> tuple[tuple[str, str, str], ...]:
         ("cavitation", "in the model", "film.cavitation and bearing.ends have no effect"),
         ("film", str(GIVEN), TOLD.format(by)),
     )
+
+
+def _theory(case: Case) -> str:
+    return case.film.theory
+
+
+def _with_heat(case: Case) -> str | None:
+    return None if case.heat is None else case.film.theory
+
+
+def _turning_ring(case: Case) -> str | None:
+    return "free" if turning_rings(case) else None
+
+
+def _key_faults(case: Case) -> Iterator[Fault]:
+    """Keys that are set and have no effect on a bearing model."""
+    film = case.film
+    cavitation = next((law for law in case.cavitations if not law_named(law).closed), "")
+    asked = {
+        "solution": ("" if film.solution == "auto" else film.solution, "Write auto."),
+        "grid": (film.grid if film.grid == "half-speed" else "", "Write auto."),
+        "cavitation": (cavitation, "Leave it out, or write half-sommerfeld."),
+        "coupling": (film.coupling if film.coupling == "monolithic" else "", "Write dynamic-static or auto."),
+    }
+    problem = f"has no effect with film.theory = {film.theory}, a bearing model, which gives the whole force."
+    for key, (value, remedy) in asked.items():
+        if value:
+            yield Fault(f"film.{key}", value, None, problem, remedy)
+
+
+def _geometry_faults(case: Case) -> Iterator[Fault]:
+    """Parts of bearings that a model cannot represent."""
+    for key, place in zip(film_keys(case), film_places(case), strict=True):
+        yield from _parts_faults(key, place.geometry)
+
+
+def _parts_faults(key: str, film: FilmGeometry) -> Iterator[Fault]:
+    supply, remedy = film.supply, "Leave it out: the model stands for the whole bearing."
+    if not supply.plain:
+        problem = "is a supply that a bearing model cannot represent."
+        yield Fault(f"{key}.supply.kind", supply.kind, None, problem, remedy)
+    elif supply.rise_time > 0.0:
+        problem = "is a ramp of the pressure, which a bearing model cannot represent."
+        yield Fault(f"{key}.supply.ramp", f"{supply.rise_time:g} s", None, problem, "Write 0 s.")
+    if film.lobes is not None:
+        value = f"{film.lobes.count} lobes"
+        yield Fault(f"{key}.lobes", value, None, "are a shape that a bearing model cannot represent.", remedy)
+
+
+def _force_faults(case: Case, omega: float) -> Iterator[Fault]:
+    """A function that gives forces that cannot be used; omega: highest rotor speed in rad/s. Raises InputError if this
+    process does not have the model."""
+    model = chosen_model(case)
+    if model is None:
+        return
+    from frbcli.scene.machine.bearing_model_films import force_problems  # numba takes longer to import than a plan
+
+    remedy = "Correct the function of the model, and add it again."
+    for problem in force_problems(case, model, omega):
+        yield Fault("film.theory", model.name, None, f"{problem}.", remedy)
+
+
+RULES = (
+    refusal(
+        ALL, "film.theory", _with_heat,
+        "has neither torque nor flow, which the balance of [thermal] needs", "Write finite, short or auto.",
+    ),
+    Rule(_key_faults, (RUN, *KINEMATIC)),
+    refusal(
+        (RUN, *KINEMATIC), "bearing.ring.spin", _turning_ring,
+        "needs the torques of the films, which a bearing model does not give", 'Write spin = "blocked".',
+    ),
+    Rule(_geometry_faults, (RUN, *KINEMATIC)),
+    refusal(
+        (RUN,), "output.signals", oil_flow_signal,
+        "is not told by a bearing model", "Write finite, short or auto for film.theory.",
+    ),
+    refusal(
+        (LADDER,), "film.theory", _theory,
+        "is a bearing model, which has no theories and meshes to compare",
+        "`frb runup --verify` measures the error of a run.",
+    ),
+    refusal(
+        SHEETS, "film.theory", _theory,
+        "is a bearing model: it has a force, but neither pressures nor oil", "Write finite or auto.",
+    ),
+    Rule(lambda case: _force_faults(case, run_omega(case)), (RUN,), last=True),
+    Rule(lambda case: _force_faults(case, motion_omega(case)), KINEMATIC, last=True),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ModelForm(FilmForm):
+    """The force of a bearing model, which has no mesh."""
+
+    solved: ClassVar[bool] = False
+    same_in_tests: ClassVar[bool] = True
+    rules: ClassVar[tuple[Rule, ...]] = RULES
+
+    def remedies(self, case: Case) -> tuple[str, ...]:
+        """See FilmForm."""
+        return (f"a force of film.theory = {case.film.theory} without jumps, or with derivatives of its own",)
+
+
+GIVEN: FilmForm = ModelForm("force of a bearing model", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 1.0)

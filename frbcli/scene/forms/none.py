@@ -12,7 +12,7 @@ from frbcli.scene.forms.form import FilmForm, SolveCounts
 class NoForm(FilmForm):
     """No film: nothing is tabulated, and nothing has an error."""
 
-    error_known: ClassVar[bool] = False
+    solved: ClassVar[bool] = False
 
 
 NO_FILM: FilmForm = NoForm("no film", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 0.35)

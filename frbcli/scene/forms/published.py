@@ -1,19 +1,21 @@
-"""Films on quadratic elements with the two-phase model in its published form (4.31): its cost, and which cases can
-have it in run-ups."""
+"""Films on quadratic elements with the two-phase model in its published form (4.31): its cost, and what it is not made
+for."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
-from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
-from frbcli.scene.forms.cells import cells_of
+from frbcli.scene.films import film_places, rings
+from frbcli.scene.forms.cells import COMPILING, cells_of
 from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
+from frbcli.scene.gate.analysis import ALL, KINEMATIC, RUN, SHEETS, SPEED_CYCLES, STABILITY, WHIRLS
+from frbcli.scene.gate.rule import Rule, refusal
 from frbcli.scene.planning.cell_choice import given_cells
 
 if TYPE_CHECKING:
@@ -29,11 +31,90 @@ DIFFUSIONS = {
     "streamline": "artificial (4.42), around only",
     "none": "no artificial diffusion: a steep step may prevent convergence",
 }
-
-
+FORM_KEY, FORM = "film.two-phase.form", "published"
+GENTLE = 0.9  # x_1 of a step that is not steep
 STATE_s = 3.0  # to settle
 COMPARED = 6  # states of a run
 COUNT, POWER = 288, 1.4  # elements of the measured time of a solve, and the power of their number that it grows with
+
+
+def _always(_: Case) -> str:
+    return FORM
+
+
+def _with_heat(case: Case) -> str | None:
+    return None if case.heat is None else FORM
+
+
+def _ramp(case: Case) -> str | None:
+    ramps = (place.geometry.supply.rise_time for place in film_places(case))
+    return next((f"{ramp:g} s" for ramp in ramps if ramp > 0.0), None)
+
+
+def _steps(case: Case) -> str | None:
+    return "" if step_times(case) else None
+
+
+def _of_several_bearings(case: Case) -> str | None:
+    return None if case.rotor.symmetric else case.rotor.kind
+
+
+def _on_rings(case: Case) -> str | None:
+    return "floating-ring" if case.rotor.symmetric and rings(case) else None
+
+
+def _turning_grid(case: Case) -> str | None:
+    return case.film.grid if case.film.grid == "half-speed" else None
+
+
+def _whirl_steepness(case: Case) -> str | None:
+    steepness = case.film.two_phase.whirl_steepness
+    return None if steepness is None else f"{steepness:g}"
+
+
+def _apart(case: Case) -> str | None:
+    coupling = chosen_coupling(case.film.coupling, TwoPhase.name)
+    return None if coupling == MONOLITHIC else coupling
+
+
+RULES = (
+    refusal(
+        ALL, FORM_KEY, _with_heat,
+        "creates oil, which would carry away heat that nobody has put in: no balance of [thermal]", REMEDY,
+    ),
+    refusal(SHEETS, FORM_KEY, _always, "creates oil: the flows and losses of a sheet would hang on how much", REMEDY),
+    refusal(
+        (STABILITY,), FORM_KEY, _always,
+        "creates oil: no oil settles in it, about which it could be linearised", REMEDY,
+    ),
+    refusal(
+        (SPEED_CYCLES, WHIRLS), FORM_KEY, _always, "is not on cells, whose oil a limit cycle is made of", REMEDY
+    ),
+    refusal(
+        KINEMATIC, "bearing.supply.ramp", _ramp,
+        "is a ramp of the pressure, which the elements of the published form do not follow", "Write 0 s.",
+    ),
+    refusal(
+        (RUN,), "bearing.clearance_steps", _steps,
+        "would change the oil, which the published two-phase form does not balance",
+        'Write film.two-phase.form = "conservative".',
+    ),
+    refusal(
+        (RUN,), "rotor.kind", _of_several_bearings, "has two bearings; the published form is for one film", REMEDY
+    ),
+    refusal((RUN,), "bearing.kind", _on_rings, "has two films; the published form is for one", REMEDY),
+    refusal(
+        (RUN,), "film.grid", _turning_grid, "is for cells; the published form has elements", 'Write "auto".'
+    ),
+    refusal(
+        (RUN,), "film.two-phase.whirl_steepness", _whirl_steepness, "is for the conservative form", REMEDY
+    ),
+    refusal(
+        (RUN,), "film.coupling", _apart,
+        "solves the film apart from the rotor, whose elements settle only with it in one step",
+        f"Choose {MONOLITHIC} or auto.",
+    ),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -42,7 +123,10 @@ class PublishedForm(FilmForm):
 
     by_cells: ClassVar[bool] = True
     fine_when_static: ClassVar[bool] = True
+    same_in_tests: ClassVar[bool] = True
     creates_oil: ClassVar[bool] = True
+    compiling: ClassVar[tuple[float, float]] = COMPILING
+    rules: ClassVar[tuple[Rule, ...]] = RULES
 
     def solve_us(self, plan: Plan) -> float:
         """See FilmForm."""
@@ -76,6 +160,19 @@ class PublishedForm(FilmForm):
             diffusion_decision(case),
         )
 
+    def remedies(self, case: Case) -> tuple[str, ...]:
+        """See FilmForm."""
+        two_phase, found = case.film.two_phase, ['film.two-phase.form = "conservative"']
+        if two_phase.diffusion != "consistent":
+            found.append('film.two-phase.diffusion = "consistent"')
+        if two_phase.steepness > GENTLE:
+            found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {two_phase.steepness:g}")
+        return tuple(found)
+
+    def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
+        """See FilmForm."""
+        return "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
+
     def mesh_of(self, plan: Plan) -> tuple[int, int]:
         """See FilmForm."""
         around, along = cells_of(plan)
@@ -89,32 +186,6 @@ class PublishedForm(FilmForm):
 PUBLISHED = PublishedForm(
     "quadratic elements, two-phase model as published", SolveCounts(1.5, 4.0, 4.0, (1.0, 1.0)), 1300.0
 )
-
-
-def is_published(case: Case) -> bool:
-    """Whether the films of a case are in the published form."""
-    return TwoPhase.name in case.cavitations and case.film.two_phase.form == "published"
-
-
-def published_faults(case: Case) -> list[Fault]:
-    """The faults of a case in the published form; none for other forms."""
-    if not is_published(case):
-        return []
-    found: list[tuple[str, str, str, str]] = []
-    if not case.rotor.symmetric:
-        found.append(("rotor.kind", case.rotor.kind, "has two bearings; the published form is for one film", REMEDY))
-    elif any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
-        found.append(("bearing.kind", "floating-ring", "has two films; the published form is for one", REMEDY))
-    if case.film.grid == "half-speed":
-        found.append(("film.grid", case.film.grid, "is for cells; the published form has elements", 'Write "auto".'))
-    if case.film.two_phase.whirl_steepness is not None:
-        value = f"{case.film.two_phase.whirl_steepness:g}"
-        found.append(("film.two-phase.whirl_steepness", value, "is for the conservative form", REMEDY))
-    coupling = chosen_coupling(case.film.coupling, TwoPhase.name)
-    if coupling != MONOLITHIC:
-        problem = "solves the film apart from the rotor, whose elements settle only with it in one step"
-        found.append(("film.coupling", coupling, problem, f"Choose {MONOLITHIC} or auto."))
-    return [Fault(key, value, None, f"{problem}.", remedy) for key, value, problem, remedy in found]
 
 
 def diffusion_decision(case: Case) -> tuple[str, str, str]:

@@ -13,6 +13,8 @@ from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.form import BLOCKS, FilmForm, SolveCounts
+from frbcli.scene.gate.analysis import RUN
+from frbcli.scene.gate.rule import Rule, oil_flow_signal, refusal
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan
@@ -31,10 +33,15 @@ class SolutionForm(FilmForm):
     """Tables of solutions on cells."""
 
     fine_when_static: ClassVar[bool] = True
-    why: ClassVar[str] = (
-        "rectangular gap, no state: the force depends on the motion alone; solved on cells before"
-    )
+    why: ClassVar[str] = "rectangular gap, no state: the force depends on the motion alone; solved on cells before"
     elements: ClassVar[str] = "cells"
+    compiling: ClassVar[tuple[float, float]] = 42.0, 4.2e8
+    rules: ClassVar[tuple[Rule, ...]] = (
+        refusal(
+            (RUN,), "output.signals", oil_flow_signal,
+            "is not told by the tables of the penalty model", 'Write film.solution = "cells".',
+        ),
+    )  # fmt: skip
 
     def table_s(self, plan: Plan) -> float:
         """See FilmForm."""

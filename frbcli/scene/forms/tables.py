@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from frbcli.film.cavitation.law import Law
 from frbcli.film.compared import FINER, SAMPLES
 from frbcli.film.grid import CHAIN_MODES
 from frbcli.scene.forms.form import FilmForm, SolveCounts, mean_us
@@ -24,6 +25,8 @@ class TableForm(FilmForm):
     """lines: modes that cost as much as the evaluation of the table at its lines."""
 
     lines: int = 0
+
+    any_theory: ClassVar[bool] = True
 
     def table_s(self, plan: Plan) -> float:
         """See FilmForm."""
@@ -46,6 +49,15 @@ class FieldsForm(TableForm):
     def solve_us(self, plan: Plan) -> float:
         """See FilmForm: beside films that are cheap."""
         return mean_us(plan.films, self, self.us / FIELD_ELEMENTS)
+
+
+@dataclass(frozen=True)
+class ModalForm(FilmForm):
+    """Modal films, of kinematic tests alone."""
+
+    def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
+        """See FilmForm."""
+        return self.name, f"{law.name} in a rectangular gap; it has no state"
 
 
 @dataclass(frozen=True)
@@ -78,5 +90,5 @@ CLIPPED = TableForm("clipped exactly along z, 96 points around", SolveCounts(1.0
 TABLE = TableForm("table over eccentricity and direction", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35, TABLE_MODES)
 FIELDS = FieldsForm("tabulated fields, clipped at every call", SolveCounts(1.0, 1.0, 2.2, (1.2, 2.5)), 10.5)
 CHAINS = ChainForm("solved between the grooves at every call", SolveCounts(1.0, 1.0, 1.7, (3.3, 2.4)), 17.5)
-MODAL = FilmForm("modal, quadratic elements", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 1e3)  # of kinematic tests alone
+MODAL = ModalForm("modal, quadratic elements", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 1e3)
 MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)

@@ -9,9 +9,8 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
-from frbcli.scene.forms.published import is_published
 from frbcli.scene.keys import cavitation_keys
-from frbcli.scene.planning.film_choice import all_clipped, needs_cells
+from frbcli.scene.planning.film_choice import all_clipped, form_of
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
@@ -26,27 +25,23 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
 
 def smooth_faults(case: Case) -> Iterator[Fault]:
     """Films whose force does not follow smoothly from the motion alone."""
-    named = {} if case.film.bearing_model else dict(cavitation_keys(case))
+    named = dict(cavitation_keys(case)) if form_of(case).solved else {}
     keeping = {key: name for key, name in named.items() if law_named(name).keeps_oil}
     if keeping:
         problem = "is mass-conserving: the force depends on the oil that the film keeps, not on the motion alone."
         remedy = "Take half-sommerfeld or penalty here, and a run-up for this model."
         yield from (Fault(key, name, None, problem, remedy) for key, name in keeping.items())
-    elif needs_cells(case) and not turning_openings(case):
+    elif form_of(case).by_cells and not turning_openings(case):
         problem = "is solved on cells, where the force has no continuous derivative."
         remedy = "Go over the speed alone, or take half-sommerfeld, with grooves or feed holes that turn only."
         yield from (Fault(key, name, None, problem, remedy) for key, name in named.items())
 
 
 def speed_cycle_faults(case: Case) -> Iterator[Fault]:
-    """Films whose map over a period is not the same at each start, since their openings turn; and the published form,
-    whose oil is not on cells."""
+    """Films whose map over a period is not the same at each start, since their openings turn."""
     if not by_shooting(case):
         yield from smooth_faults(case)
-    elif is_published(case):
-        problem, remedy = "is not on cells, whose oil a limit cycle is made of.", 'Write form = "conservative".'
-        yield Fault("film.two-phase.form", "published", None, problem, remedy)
-    elif any(
+    elif form_of(case).turns_cells and any(
         place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
         for place in film_places(case)
     ):
@@ -82,7 +77,7 @@ def has_unbalance(case: Case) -> bool:
 def by_shooting(case: Case) -> bool:
     """Whether limit cycles are found by shooting on the time loop: films keep their oil, or are on cells, where their
     force has kinks."""
-    return keeps_oil(case) or (needs_cells(case) and not turning_openings(case))
+    return keeps_oil(case) or (form_of(case).by_cells and not turning_openings(case))
 
 
 def turning_openings(case: Case) -> bool:

@@ -1,21 +1,17 @@
 """The gate: one table of rules, each with the analyses that it holds for. Every analysis asks it before a film is made.
 
-A rule is a function of a case that yields the faults: key, value, problem, remedy. `docs/matrix.md` is made by asking
-this gate.
+A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films is not made
+for stands in its own row, see `rules` in scene/forms/form.py. `docs/matrix.md` is made by asking this gate.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable
 from functools import partial
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
-from frbcli.scene.clearance_steps import clearance_faults
-from frbcli.scene.forms.published import published_faults
 from frbcli.scene.gate import cycles, films, kinematic, runs, static
 from frbcli.scene.gate.analysis import (
     ALL,
@@ -36,19 +32,9 @@ from frbcli.scene.gate.analysis import (
     STABILITY,
     WHIRLS,
 )
+from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.machine.elements import element_faults, speed_dependent, without_bearing, without_film
-
-Faults = Iterable[Fault]
-
-
-@dataclass(frozen=True)
-class Rule:
-    """A rule. of: the faults of a case; analyses: that it holds for; last: whether it is asked only of a case that has
-    passed all rules before, since it needs their subjects to be whole."""
-
-    of: Callable[[Case], Faults]
-    analyses: tuple[str, ...]
-    last: bool = False
+from frbcli.scene.planning.film_choice import form_of
 
 
 def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:
@@ -58,16 +44,6 @@ def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:
 
 def _without_film(what: str) -> Callable[[Case], Faults]:
     return lambda case: without_film(case, what)
-
-
-def _run_omega(case: Case) -> float:
-    return 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
-
-
-def motion_omega(case: Case) -> float:
-    """Speed in rad/s that a kinematic test refers to: of the journal, else of its motion."""
-    motion = case.motion
-    return 2.0 * math.pi * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
 
 
 CONSTANT = "limit cycles follow it with a rotor of constant coefficients"
@@ -85,13 +61,9 @@ RULES = (
     Rule(_without_film("a linear machine has no limit cycle"), EVERY_CYCLE),
     *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
-    Rule(_of_films(films.model_faults), (RUN, *KINEMATIC)),
     Rule(_of_films(runs.theory_faults), (RUN,)),
-    Rule(_of_films(clearance_faults), (RUN,)),
     Rule(_of_films(runs.form_faults), (RUN,)),
-    Rule(_of_films(published_faults), (RUN,)),
     Rule(_of_films(runs.signal_faults), (RUN,)),
-    Rule(runs.ladder_faults, (LADDER,)),
     Rule(static.sheet_faults, SHEETS),
     Rule(static.loaded_heat_faults, (LOADED,)),
     Rule(static.chart_heat_faults, (CHART,)),
@@ -106,8 +78,7 @@ RULES = (
     Rule(cycles.unbalance_faults, (WHIRLS,)),
     Rule(cycles.speed_range_faults, EVERY_CYCLE, last=True),
     Rule(runs.number_faults, (RUN,), last=True),
-    Rule(lambda case: films.force_faults(case, _run_omega(case)), (RUN,), last=True),
-    Rule(lambda case: films.force_faults(case, motion_omega(case)), KINEMATIC, last=True),
+    Rule(runs.speed_faults, (RUN,), last=True),
 )
 
 
@@ -117,7 +88,7 @@ def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
     if alone := without_bearing(case):  # no other rule has a subject
         return alone
     found: list[Fault] = []
-    for rule in RULES:
+    for rule in sorted((*RULES, *form_of(case).rules), key=lambda rule: rule.last):
         if analysis in rule.analyses and not (rule.last and found):
             found += rule.of(case)
     return found

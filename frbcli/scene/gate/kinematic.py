@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.scene.forms.published import is_published
 from frbcli.scene.gate.analysis import ROTATION
 
 
@@ -56,10 +55,6 @@ def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
     if bearing.supply.surface == "journal" and turns:
         problem = "turn with the journal: no film is steady in which the journal keeps its place."
         yield Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".')
-    if bearing.supply.rise_time > 0.0 and is_published(case):
-        problem = "is a ramp of the pressure, which the elements of the published form do not follow."
-        value = f"{bearing.supply.rise_time:g} s"
-        yield Fault("bearing.supply.ramp", value, None, problem, "Write 0 s.")
 
 
 def theory_faults(case: Case) -> Iterator[Fault]:

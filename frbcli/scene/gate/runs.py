@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.coupling import APART, chosen_coupling, coupling_fault
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.solutions import solution_fault
+from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.machine.elements import changes_with_speed
-from frbcli.scene.planning.film_choice import all_clipped, needs_cells
+from frbcli.scene.planning.film_choice import all_clipped, form_of
 
 
 def theory_faults(case: Case) -> Iterator[Fault]:
     """The short bearing is for half-Sommerfeld films on rectangles."""
     if case.film.theory != "short":
         return
-    if needs_cells(case) or not all_clipped(case):
+    if not form_of(case).any_theory:
         remedy = "finite or auto for this cavitation model and supply; short is for half-sommerfeld on rectangles"
         yield _missing("film.theory", "short", remedy)
     elif any(place.geometry.supply.divides for place in film_places(case)):
@@ -26,9 +27,10 @@ def theory_faults(case: Case) -> Iterator[Fault]:
 
 def form_faults(case: Case) -> Iterator[Fault]:
     """Coupling, solution and grid of films of the program."""
-    if case.film.bearing_model:
+    form = form_of(case)
+    if not form.solved:
         return
-    cells = needs_cells(case)
+    cells = form.by_cells
     chained = any(place.geometry.supply.divides for place in film_places(case))
     found = coupling_fault(case, cells), solution_fault(case, all_clipped(case), not (chained or cells))
     yield from filter(None, found)
@@ -41,27 +43,17 @@ def form_faults(case: Case) -> Iterator[Fault]:
 
 
 def signal_faults(case: Case) -> Iterator[Fault]:
-    """Signals of the films that a run of the case cannot record."""
+    """Signals of the films that a co-simulation cannot record."""
     signals = case.output.signals
     if _coupling(case) == APART and any(kind != "film-thickness" for kind in signals):
         problem = "are not known in a co-simulation, but for film-thickness."
         yield Fault("output.signals", ", ".join(signals), None, problem, "Choose another film.coupling.")
-    if "oil-flow" not in signals:
-        return
-    if case.film.bearing_model:
-        problem, remedy = "is not told by a bearing model.", "Write finite, short or auto for film.theory."
-        yield Fault("output.signals", "oil-flow", None, problem, remedy)
-    elif not (needs_cells(case) or all_clipped(case)):
-        problem, remedy = "is not told by the tables of the penalty model.", 'Write film.solution = "cells".'
-        yield Fault("output.signals", "oil-flow", None, problem, remedy)
 
 
-def ladder_faults(case: Case) -> Iterator[Fault]:
-    """An own bearing model is one film of one mesh."""
-    if case.film.bearing_model:
-        problem = "is a bearing model, which has no theories and meshes to compare."
-        remedy = "`frb runup --verify` measures the error of a run."
-        yield Fault("film.theory", case.film.theory, None, problem, remedy)
+def speed_faults(case: Case) -> Iterable[Fault]:
+    """A run has speeds. Raises InputError for a case of kinematic tests, which has none."""
+    run_omega(case)
+    return ()
 
 
 def number_faults(case: Case) -> Iterator[Fault]:

@@ -4,27 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain
-from frbcli.scene.forms.published import is_published
 from frbcli.scene.keys import bearing_key, cavitation_keys
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
 
 def sheet_faults(case: Case) -> Iterator[Fault]:
-    """Films whose pressures, flows and loads are not known."""
-    if case.film.bearing_model:
-        problem = "is a bearing model: it has a force, but neither pressures nor oil."
-        yield Fault("film.theory", case.film.theory, None, problem, "Write finite or auto.")
-    if is_published(case):
-        problem = "creates oil: the flows and losses of a sheet would hang on how much."
-        yield Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".')
-    alone = len(case.bearings) == 1 and isinstance(case.bearings[0], SingleFilmBearing)
-    if case.given_rotor is None and not alone:
+    """Films whose loads are not known."""
+    if case.given_rotor is None and len(film_places(case)) != 1:
         problem = "has more than one film: their loads follow from a rotor, which is missing."
         yield Fault("bearing", f"{len(film_places(case))} films", None, problem, "Add [rotor] and [speed].")
 
@@ -42,9 +34,6 @@ def coefficient_faults(case: Case) -> Iterator[Fault]:
 
 def _memory_faults(case: Case) -> Iterator[Fault]:
     """Films that keep oil and are not at rest in any frame, or whose oil cannot be linearised."""
-    if is_published(case):
-        problem = "creates oil: no oil settles in it, about which it could be linearised."
-        yield Fault("film.two-phase.form", "published", None, problem, 'Write form = "conservative".')
     for key, name in dict(cavitation_keys(case)).items():
         law = law_named(name)
         if law.keeps_oil and law.clips:

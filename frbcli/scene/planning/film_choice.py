@@ -11,13 +11,14 @@ from dataclasses import dataclass
 from frbcli.case.bearing import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import GIVEN, WHY
 from frbcli.scene.forms.none import NO_FILM
-from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, is_published, published_elements
+from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, published_elements
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
 from frbcli.scene.planning.cell_choice import FEWEST, cell_error, fewest_cells, given_cells
@@ -57,34 +58,61 @@ class FilmChoice:
     films: tuple[tuple[FilmForm, Mesh], ...] = ()
 
 
+def form_of(case: Case) -> FilmForm:
+    """The form of the films of a case; TABLE for all gaps made of rectangles, whose forms follow from the target."""
+    if not case.bearings:
+        return NO_FILM
+    if case.film.bearing_model:
+        return GIVEN
+    if TwoPhase.name in case.cavitations and case.film.two_phase.form == "published":
+        return PUBLISHED
+    if _on_volumes(case):
+        return CELLS
+    return TABLE if all_clipped(case) else SOLUTIONS
+
+
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
+    choices = {NO_FILM: _no_film, GIVEN: _given, PUBLISHED: _published, CELLS: _volumes, SOLUTIONS: _solutions}
+    return choices.get(form_of(case), _rectangles)(case, target)
+
+
+def _no_film(_: Case, __: float) -> FilmChoice:
+    return FilmChoice(str(NO_FILM), NO_FILM, DEFAULT_MESH, None, 0.0, "", "")
+
+
+def _given(case: Case, _: float) -> FilmChoice:
+    each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
+    return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
+
+
+def _published(case: Case, _: float) -> FilmChoice:
+    cells, mesh_why = published_elements(case)
+    theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
+    return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
+
+
+def _volumes(case: Case, target: float) -> FilmChoice:
+    cells, cells_why = _cells(case, target)
+    error = cell_error(case, cells)
+    theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
+    mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
+    if case.film.solution == "cells":
+        mesh_why += "; film.solution is set in the case"
+    elif all(law_named(model).tabulated for model in case.cavitations):
+        mesh_why += f"; no table: {table_obstacle(case)}"
+    return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, error, theory_why, mesh_why)
+
+
+def _solutions(case: Case, _: float) -> FilmChoice:
     given = case.accuracy.mesh
-    if not case.bearings:
-        return FilmChoice(str(NO_FILM), NO_FILM, DEFAULT_MESH, None, 0.0, "", "")
-    if case.film.bearing_model:
-        each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
-        return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
-    if is_published(case):
-        cells, mesh_why = published_elements(case)
-        theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
-        return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
-    if needs_cells(case):
-        cells, cells_why = _cells(case, target)
-        error = cell_error(case, cells)
-        theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
-        mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
-        if case.film.solution == "cells":
-            mesh_why += "; film.solution is set in the case"
-        elif all(law_named(model).tabulated for model in case.cavitations):
-            mesh_why += f"; no table: {table_obstacle(case)}"
-        return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, error, theory_why, mesh_why)
-    if not all_clipped(case):
-        mesh = SOLUTION_MESH if given is None else Mesh(*given)
-        mesh_why = "set in the case" if given is not None else f"error {SOLUTION_ERROR:.1g}, as of the splines"
-        theory_why = "tabulated before the run"
-        return FilmChoice("finite", SOLUTIONS, mesh, None, SOLUTION_ERROR, theory_why, mesh_why)
-    films = [place.geometry for place in film_places(case)]
+    mesh = SOLUTION_MESH if given is None else Mesh(*given)
+    mesh_why = "set in the case" if given is not None else f"error {SOLUTION_ERROR:.1g}, as of the splines"
+    return FilmChoice("finite", SOLUTIONS, mesh, None, SOLUTION_ERROR, "tabulated before the run", mesh_why)
+
+
+def _rectangles(case: Case, target: float) -> FilmChoice:
+    given, films = case.accuracy.mesh, [place.geometry for place in film_places(case)]
     slenderness = max(_slenderness(film) for film in films)
     short = short_error(slenderness, SOLVED_HOLDS_TO)
     theory, theory_why = case.film.theory, "set in the case"
@@ -121,10 +149,8 @@ def all_clipped(case: Case) -> bool:
     return all(law_named(model).closed for model in case.cavitations)
 
 
-def needs_cells(case: Case) -> bool:
+def _on_volumes(case: Case) -> bool:
     """Whether the films of a case are solved on volumes in a run."""
-    if case.film.bearing_model or not case.bearings:
-        return False
     if case.film.solution == "cells":
         return True
     if not all_clipped(case):

@@ -19,11 +19,13 @@ from frbcli.scene.films import make_law
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import GIVEN, chosen_model, model_decisions
-from frbcli.scene.forms.published import PUBLISHED, diffusion_decision, is_published, published_elements
+from frbcli.scene.forms.published import PUBLISHED, diffusion_decision, published_elements
 from frbcli.scene.forms.tables import MODAL
 from frbcli.scene.gate.analysis import KINEMATIC, ROTATION
-from frbcli.scene.gate.gate import motion_omega, require
+from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import motion_omega
 from frbcli.scene.planning.cell_choice import FEWEST, given_cells
+from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Decision
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
@@ -136,10 +138,8 @@ def _name_faults(case: Case, cavitation: str) -> Iterator[Fault]:
 
 
 def _form(case: Case, rectangle: Section | None) -> FilmForm:
-    if case.film.bearing_model:
-        return GIVEN
-    if is_published(case):
-        return PUBLISHED
+    if (form := form_of(case)).same_in_tests:
+        return form
     return MODAL if rectangle is not None and law_named(case.film.cavitation).closed else CELLS
 
 
@@ -159,7 +159,7 @@ def _decisions(
     law = law_named(case.film.cavitation)
     yield _gap_decision(section, bearing)
     yield from _lobe_decision(section)
-    yield Decision("film", *_about_film(form, law))
+    yield Decision("film", *form.told_in_tests(law))
     if form != PUBLISHED and law.closed and bearing.ends == "free-to-air":
         reason = f"{law.name} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
         yield Decision("ends", "ambient pressure", reason)
@@ -169,16 +169,6 @@ def _decisions(
         yield Decision("elements", f"{cells[0]} x {cells[1]}", f"around x along of a section; {why}")
     else:
         yield Decision("cells", f"{cells[0]} x {cells[1]}", f"around x along; {why}")
-
-
-def _about_film(form: FilmForm, law: type[Law]) -> tuple[str, str]:
-    if form == PUBLISHED:
-        return "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
-    if form == MODAL:
-        return "modal, quadratic elements", f"{law.name} in a rectangular gap; it has no state"
-    if law.keeps_oil:
-        return "finite volumes", f"{law.name}: conserves oil and keeps it from moment to moment"
-    return "finite volumes", f"{law.name}: has no state, each moment is a steady film of its own"
 
 
 def _transport(case: Case, bearing: SingleFilmBearing, form: FilmForm) -> Iterator[Decision]:

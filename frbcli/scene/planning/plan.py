@@ -26,7 +26,7 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
 from frbcli.scene.planning.expected_error import expected_error
-from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films
+from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films, form_of
 from frbcli.scene.planning.planned import Decision, Plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.scene.shafts.table import shaft_of
@@ -204,7 +204,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
             decide(f"{bearing.name} ring".strip(), *computed)
         if coupled(bearing):
             decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
-    if len(places) == 1 and not case.film.bearing_model:
+    if len(places) == 1 and form_of(case).solved:
         decide("gap", *_gap(places[0].geometry))
     for decided in clearance_decisions(case):
         decide(*decided)

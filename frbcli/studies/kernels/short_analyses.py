@@ -14,7 +14,7 @@ from frbcli.linear.stability import stability_points
 from frbcli.runs.run import runup
 from frbcli.scene.gate.analysis import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
 from frbcli.scene.gate.gate import faults
-from frbcli.scene.planning.film_choice import needs_cells
+from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
 
@@ -51,7 +51,7 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
         decisions = kinematic_plan(case, test=analysis) if analysis in KINEMATIC else make_plan(case)
         chosen = tuple(made.value for made in decisions.decisions if made.choice in COMPILED_FOR)
         kind = (analysis, *chosen, case.heat is not None, case.output.signals, case.film.bearing_model)
-        on_cells = analysis in (BEARING, *KINEMATIC) or needs_cells(case)
+        on_cells = analysis in (BEARING, *KINEMATIC) or form_of(case).by_cells
         yield ShortAnalysis(case, analysis, kind, CELLS if on_cells else OTHERS)
 
 

@@ -1,0 +1,50 @@
+"""A rule of the gate, with the analyses that it holds for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+
+Faults = Iterable[Fault]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule. of: the faults of a case; analyses: that it holds for; last: whether it is asked only of a case that has
+    passed all rules before, since it needs their subjects to be whole."""
+
+    of: Callable[[Case], Faults]
+    analyses: tuple[str, ...]
+    last: bool = False
+
+
+def refusal(
+    analyses: tuple[str, ...], key: str, asked: Callable[[Case], str | None], problem: str, remedy: str
+) -> Rule:
+    """A rule of one key. asked: its value in a case that is refused, None in others; problem: without the full stop."""
+
+    def faults(case: Case) -> Faults:
+        value = asked(case)
+        return () if value is None else (Fault(key, value, None, f"{problem}.", remedy),)
+
+    return Rule(faults, analyses)
+
+
+def oil_flow_signal(case: Case) -> str | None:
+    """The signal, where a case asks for the oil that leaves the films."""
+    return "oil-flow" if "oil-flow" in case.output.signals else None
+
+
+def run_omega(case: Case) -> float:
+    """Highest speed of the rotor in a run, rad/s."""
+    return 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
+
+
+def motion_omega(case: Case) -> float:
+    """Speed in rad/s that a kinematic test refers to: of the journal, else of its motion."""
+    motion = case.motion
+    return 2.0 * math.pi * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
