@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 AXES = "xy"
 ENTRIES = ("xx", "xy", "yx", "yy")  # heads of a matrix
 ZERO_CELSIUS = 273.15
+TWO_DIGITS = 2.0  # an uncertainty that begins with 1 has two digits
+ROUND_OFF = 1e-9  # of a number that is rounded up
 SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6}  # over SI
 
 
@@ -241,9 +243,22 @@ def short_number(value: float | None) -> str:
     return f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
 
 
+def with_uncertainty(value: float | None, uncertainty: float | None, digits: int) -> str:
+    """A number with the uncertainty of its last digits in brackets, as 318(4) for 318 +- 4 or 204.4(12) for
+    204.4 +- 1.2; without an uncertainty with so many digits behind the point; "-" where there is none."""
+    if value is None or math.isnan(value):
+        return "-"
+    if uncertainty is None or not 0.0 < uncertainty < math.inf:
+        return f"{value:.{digits}f}"
+    leading = math.floor(math.log10(uncertainty))
+    places = 1 - leading if uncertainty < TWO_DIGITS * 10.0**leading else -leading
+    places = min(max(places, 0), digits)
+    in_last = max(1, math.ceil(uncertainty * 10.0**places - ROUND_OFF))
+    return f"{value:.{places}f}({in_last})"
+
+
 def _joined(*words: str) -> str:
     return "_".join(word for word in words if word)
-
 
 
 def _in(column: Column, table: str) -> list[Shown]:

@@ -12,7 +12,18 @@ import pandas as pd
 import pytest
 from pages import column_tables
 
-from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
+from frbcli.columns import (
+    ENTRIES,
+    Column,
+    Shown,
+    heads,
+    keys,
+    legend,
+    named,
+    spread_table,
+    table_of,
+    with_uncertainty,
+)
 
 COLUMNS = (
     Column("speed", "Hz", "rotor speed", shown=(Shown("Hz", ".3g"), Shown("Hz", ".4g", table="stiffness"))),
@@ -101,3 +112,26 @@ def test_declared_names_are_of_one_column_each(columns: tuple[Column, ...]) -> N
     json = [column.path for column in columns if column.path]
     assert len(set(flat)) == len(flat)
     assert len(set(json)) == len(json)
+
+
+@pytest.mark.parametrize(
+    ("value", "uncertainty", "digits", "told"),
+    [
+        (318.04, 4.0, 1, "318(4)"),
+        (318.04, 3.2, 1, "318(4)"),
+        (204.44, 0.6, 1, "204.4(6)"),
+        (204.44, 1.2, 1, "204.4(12)"),
+        (1014.0, 17.2, 1, "1014(18)"),
+        (1014.0, 230.0, 1, "1014(230)"),
+        (142.907, 0.004, 1, "142.9(1)"),
+        (0.372, 0.0053, 3, "0.372(6)"),
+        (0.372, None, 3, "0.372"),
+        (0.372, 0.0, 3, "0.372"),
+        (0.372, math.inf, 3, "0.372"),
+        (None, 1.0, 3, "-"),
+    ],
+)
+def test_a_number_has_its_uncertainty_in_its_last_digits(
+    value: float | None, uncertainty: float | None, digits: int, told: str
+) -> None:
+    assert with_uncertainty(value, uncertainty, digits) == told

@@ -10,15 +10,22 @@ speed and self-excited vibration are in resonance.py.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 
 from frbcli.analysis import signals
-from frbcli.analysis.orders.resonance import FLOOR, beside, critical_step, resonant, vibrations_beside
+from frbcli.analysis.orders.resonance import (
+    FLOOR,
+    beside,
+    critical_step,
+    resonant,
+    synchronous_amplitude,
+    vibrations_beside,
+)
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked, track
-from frbcli.analysis.orders.subsynchronous import find_whirls
+from frbcli.analysis.orders.subsynchronous import SIDES, find_whirls, window_step_s
 from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, points
 from frbcli.analysis.spectra.peaks import intervals_above
 from frbcli.analysis.spectra.windows import hann
@@ -46,6 +53,12 @@ class Event:
 
     frequency_Hz, frequency_ratio (to the rotor speed): of the motion, where it has one. point: whose motion it was
     found in, "disk" or "journal", "disk_NAME" or "journal_NAME" where there are several; None where no motion shows it.
+    amplitude: over the clearance (C_i + C_o of a floating ring, the length of a machine without films): of an onset and
+    a self-excited vibration the largest one that the motion reaches until it ends, of a critical speed that of the
+    synchronous motion there; None of others.
+
+    speed_uncertainty_Hz, frequency_uncertainty_Hz, amplitude_uncertainty, certain, reason: see uncertainty.py; None
+    where no second run was made.
     """
 
     kind: Kind
@@ -55,6 +68,12 @@ class Event:
     frequency_Hz: float | None
     frequency_ratio: float | None
     point: str | None = None
+    amplitude: float | None = None
+    speed_uncertainty_Hz: float | None = None
+    frequency_uncertainty_Hz: float | None = None
+    amplitude_uncertainty: float | None = None
+    certain: bool | None = None
+    reason: str | None = None
 
 
 def find_events(run: RunLike) -> tuple[Event, ...]:
@@ -113,6 +132,18 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     return tuple(sorted([*changes, *events], key=lambda event: event.t_s))
 
 
+def resolution(run: RunLike, event: Mapping[str, Any]) -> tuple[float, float]:
+    """How fine the speed and the frequency of an event, as in the file of a run, are resolved by the search, in Hz."""
+    t, speed = float(event["t_s"]), abs(float(event["speed_Hz"]))
+    in_rings = str(event["film"] or "").endswith(SIDES)
+    step_s = window_step_s(run) if in_rings else 1.0 / (STEPS * max(speed, 1.0))
+    around = [signals.speed_at(run, t + sign * step_s) for sign in (-1.0, 1.0)]
+    speed_Hz = 0.5 * abs(around[1] - around[0])
+    if event["kind"] == "critical-speed":
+        return speed_Hz, speed_Hz
+    return speed_Hz, 0.0 if in_rings else speed / (FREQUENCY_PADDING * FREQUENCY_REVOLUTIONS)
+
+
 def _near_the_speed(
     run: RunLike,
     turns: Revolutions,
@@ -137,11 +168,11 @@ def _near_the_speed(
     critical = critical_step(resonances.values(), turns, FLOOR * room, before_s, modes, own_frequencies)
     if critical is not None:
         point, step = list(resonances)[critical[0]], critical[1]
-        its_speed = float(turns.speed_Hz[step])
-        yield Event("critical-speed", None, float(turns.time_s[step]), its_speed, its_speed, 1.0, point)
+        its_speed, amplitude = float(turns.speed_Hz[step]), synchronous_amplitude(resonances[point], step) / room
+        yield Event("critical-speed", None, float(turns.time_s[step]), its_speed, its_speed, 1.0, point, amplitude)
     for own, point in vibrations[:1]:
         ratio = own.frequency_Hz / abs(own.speed_Hz)
-        yield Event("self-excited", None, own.time_s, own.speed_Hz, ratio * own.speed_Hz, ratio, point)
+        yield Event("self-excited", None, own.time_s, own.speed_Hz, ratio * own.speed_Hz, ratio, point, own.amplitude)
 
 
 def _clearance_steps(run: RunLike) -> Iterator[Event]:
@@ -166,7 +197,7 @@ def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> It
             t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
             speed = signals.speed_at(run, t)
             film, point = joined(name, whirl.side), joined("journal", name)
-            yield Event(kind, film, t, speed, frequency, frequency / speed, point)
+            yield Event(kind, film, t, speed, frequency, frequency / speed, point, _reached(kind, whirl.amplitude))
 
 
 def _whirls_without_films(run: RunLike, name: str, turns: Revolutions) -> Iterator[Event]:
@@ -181,7 +212,13 @@ def _whirls_without_films(run: RunLike, name: str, turns: Revolutions) -> Iterat
         for kind, at in moments:
             t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
             speed = signals.speed_at(run, t)
-            yield Event(kind, None, t, speed, frequency, frequency / speed, joined("journal", name))
+            amplitude = _reached(kind, whirl.amplitude)
+            yield Event(kind, None, t, speed, frequency, frequency / speed, joined("journal", name), amplitude)
+
+
+def _reached(kind: Kind, amplitude: Values) -> float | None:
+    """The largest amplitude of a whirl (k,), which stands at its onset alone."""
+    return float(np.max(amplitude, initial=0.0)) if kind == "onset" else None
 
 
 def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Iterator[Event]:
@@ -195,7 +232,8 @@ def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Itera
         if last - max(first, settled) < sustained and not (lasts and run.status == "contact"):
             continue
         # An interval that the start of the run leads into began with the run.
-        yield _whirl_event("onset", run, name, turns, first + middle)
+        begun = _whirl_event("onset", run, name, turns, first + middle)
+        yield replace(begun, amplitude=_reached("onset", amplitude[max(first, settled) : last]))
         if not lasts:
             yield _whirl_event("offset", run, name, turns, last + middle)
 

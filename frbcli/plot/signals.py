@@ -10,14 +10,14 @@ from typing import Any
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.revolutions import CELLS
-from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points
+from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
 from frbcli.case.reading.load import LARGEST_FILE
 from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import extremes
-from frbcli.plot.style import plain
+from frbcli.plot.style import MOST_MARKED, plain
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.signals import Signal
@@ -25,6 +25,7 @@ from frbcli.results.store import Run
 
 MICRO = 1e6
 NO_CLEARANCE = "Run the case again; of a measurement give --clearance, or --linear for amplitudes in um."
+RAMP_s = 5e-3  # before and after an event, in which its ramp is taken
 MOST_SEARCHED = 2_000_000  # samples in which events are sought
 _MODEL = re.compile("[a-z-]{1,40}")
 
@@ -133,6 +134,18 @@ def heading(runs: Sequence[Run]) -> tuple[str, str]:
 def events(run: Run) -> list[dict[str, Any]]:
     """The recorded events of the run, else those found in it; none where the search would take too much memory."""
     return run.events or ([asdict(event) for event in find_events(run)] if is_searchable(run) else [])
+
+
+def uncertain_times(run: Run) -> list[tuple[float, float]]:
+    """Time in s of each event with an uncertainty, and how much earlier or later it may be, from its uncertainty in the
+    rotor speed; none of those at a constant speed."""
+    found = []
+    for event in run.events[:MOST_MARKED]:
+        uncertainty, t = event.get("speed_uncertainty_Hz"), event["t_s"]
+        before, after = (speed_at(run, time) for time in (t - RAMP_s, t + RAMP_s))
+        if uncertainty and after != before:
+            found.append((t, min(uncertainty * 2.0 * RAMP_s / abs(after - before), ends(run)[1])))
+    return found
 
 
 def is_searchable(run: Run) -> bool:

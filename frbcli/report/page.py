@@ -35,13 +35,13 @@ from frbcli.plot.style import Picture, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.speed_words import SpeedWords, speed_words
 from frbcli.report.waterfall import Waterfall, page_waterfall
-from frbcli.results.columns import event_name
+from frbcli.results.columns import event_name, told_amplitude, told_frequency
 from frbcli.results.files.kinds import PAGE
 from frbcli.results.files.place import require_places
 from frbcli.results.files.write import write
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
-from frbcli.runs.errors.account import account
+from frbcli.runs.errors.account import about_certainty, account
 from frbcli.runs.record.header import FILM_SIGNALS
 from frbcli.scene.machine.findings import Findings, findings
 from frbcli.scene.planning.plan import make_plan
@@ -136,6 +136,7 @@ def report(
         script=script,
         cards=_cards(run, found, unit),
         events=[_event(number, event, unit) for number, event in enumerate(found, start=1)],
+        certainty=about_certainty(found, run.cost),
         speed_unit=unit.head,
         waterfall=None if waterfall is None else Waterfall(Markup(waterfall.svg), Markup(waterfall.data)),
         waterfall_note="" if spectra is None else _note(run, signal, reading(spectra)),
@@ -221,8 +222,8 @@ def _event(number: int, event: dict[str, Any], unit: SpeedWords) -> tuple[str, .
         return "-" if event[key] is None else format(event[key], form)
 
     named = event_name(event | {"film": (event["film"] or "").replace("_", " ")})
-    return (str(number), named, told("t_s", ".3f"), unit.cell(event["speed_Hz"]),
-            told("frequency_Hz", ".1f"), told("frequency_ratio", ".3f"))  # fmt: skip
+    return (str(number), named, told("t_s", ".3f"), unit.cell(event["speed_Hz"], event.get("speed_uncertainty_Hz")),
+            told_frequency(event), told("frequency_ratio", ".3f"), told_amplitude(event))  # fmt: skip
 
 
 def _note(run: Run, signal: str, words: str) -> str:

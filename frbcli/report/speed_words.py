@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from frbcli.columns import with_uncertainty
 from frbcli.errors import FrbError
 from frbcli.plot.signals import case_tables
 from frbcli.results.store import Run
@@ -27,9 +28,11 @@ class SpeedWords:
         """A speed without its unit, as in a scale."""
         return f"{PER_MINUTE * speed_Hz:.0f}" if self.rpm else f"{speed_Hz:.4g}"
 
-    def cell(self, speed_Hz: float) -> str:
-        """A speed in a table whose head names the unit; with the other one in brackets."""
-        own, other = f"{speed_Hz:.1f}", f"{PER_MINUTE * speed_Hz:.0f}"
+    def cell(self, speed_Hz: float, uncertainty_Hz: float | None = None) -> str:
+        """A speed in a table whose head names the unit, with its uncertainty; with the other one in brackets."""
+        per_minute = None if uncertainty_Hz is None else PER_MINUTE * uncertainty_Hz
+        own = with_uncertainty(speed_Hz, uncertainty_Hz, 1)
+        other = with_uncertainty(PER_MINUTE * speed_Hz, per_minute, 0)
         if self.rpm:
             own, other = other, own
         return f"{own} ({other})" if self.both else own

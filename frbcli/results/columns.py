@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from frbcli.columns import Column, Shown
+from frbcli.columns import Column, Shown, with_uncertainty
 
 
 def event_place(event: Mapping[str, Any]) -> str:
@@ -19,6 +19,21 @@ def event_name(event: Mapping[str, Any]) -> str:
     return " ".join(word for word in (event["kind"], event.get("whirl", ""), event_place(event)) if word)
 
 
+def told_speed(event: Mapping[str, Any]) -> str:
+    """The rotor speed of an event with its uncertainty in brackets, Hz."""
+    return with_uncertainty(event["speed_Hz"], event.get("speed_uncertainty_Hz"), 1)
+
+
+def told_frequency(event: Mapping[str, Any]) -> str:
+    """The frequency of an event with its uncertainty in brackets, Hz."""
+    return with_uncertainty(event.get("frequency_Hz"), event.get("frequency_uncertainty_Hz"), 1)
+
+
+def told_amplitude(event: Mapping[str, Any]) -> str:
+    """The amplitude of an event over the clearance with its uncertainty in brackets."""
+    return with_uncertainty(event.get("amplitude"), event.get("amplitude_uncertainty"), 3)
+
+
 # Of an event of a run, a dict
 EVENTS = (
     Column("event", "", "", event_name, shown=(Shown("event"),),
@@ -26,10 +41,21 @@ EVENTS = (
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `clearance-step`"),
     Column("film", "", "film, none where there is but one"),
     Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
-    Column("speed", "Hz", "rotor speed", shown=(Shown("speed, Hz", ".1f"),)),
-    Column("frequency", "Hz", "frequency of the motion, if it has one", shown=(Shown("frequency, Hz", ".1f"),)),
+    Column("speed", "Hz", "rotor speed"),
+    Column("speed", "", "", told_speed, shown=(Shown("speed, Hz"),), key="", flat=False),
+    Column("frequency", "Hz", "frequency of the motion, if it has one"),
+    Column("frequency", "", "", told_frequency, shown=(Shown("frequency, Hz"),), key="", flat=False),
     Column("frequency_ratio", "", "frequency over the rotor speed", shown=(Shown("ratio", ".3f"),)),
     Column("point", "", "point of the rotor whose motion shows it"),
+    Column("amplitude", "", "amplitude over the clearance",
+           more="of an onset and a self-excited vibration the largest one that the motion reaches; of a critical speed "
+                "that of the synchronous motion there"),
+    Column("amplitude", "", "", told_amplitude, shown=(Shown("ampl."),), key="", flat=False),
+    Column("speed_uncertainty", "Hz", "uncertainty of the rotor speed", more="none without a second run"),
+    Column("frequency_uncertainty", "Hz", "uncertainty of the frequency"),
+    Column("amplitude_uncertainty", "", "uncertainty of the amplitude"),
+    Column("certain", "", "whether the second run has the event, too", more="none without a second run"),
+    Column("reason", "", "why an event is not certain"),
 )  # fmt: skip
 
 # Signals of a run, by the quantities of their names

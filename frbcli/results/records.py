@@ -161,7 +161,10 @@ def _is_event(record: Any) -> bool:
         and all(_is_finite(record[name]) for name in EVENT_NUMBERS)
         and all(record[name] is None or _is_finite(record[name]) for name in EVENT_OPTIONAL)
         and (record["film"] is None or _is_label(record["film"]))
-        and all(value is None or _is_number(value) or _is_label(value) for value in record.values())
+        and all(
+            value is None or isinstance(value, bool) or _is_number(value) or _is_label(value)
+            for value in record.values()
+        )
     )
 
 

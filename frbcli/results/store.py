@@ -169,6 +169,11 @@ class RunWriter:
         run = read_run(path)
         if run.status != INTERRUPTED:
             raise refuse(run.path, f'cannot be resumed: its status is "{run.status}".', "Start a new run.")
+        return cls.of(run)
+
+    @classmethod
+    def of(cls, run: Run) -> RunWriter:
+        """A writer that holds a run up to its checkpoint, which a run that has ended has at its end."""
         units = {name: signal.unit for name, signal in run.signals.items()}
         header = Header(run.title, run.command, run.case_name, run.case_text, units, run.versions, run.references)
         writer = cls.__new__(cls)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from frbcli.analysis.events import find_events
 from frbcli.case.schema import Case
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.files.container import refuse
@@ -15,6 +16,7 @@ from frbcli.results.store import Header, Run, RunWriter, check_output
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.errors.error_budget import quiet_until
 from frbcli.runs.errors.fewer_cells import on_fewer_cells
+from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, uncertain_events
 from frbcli.runs.march import March, Progress
 from frbcli.runs.record.header import header
 from frbcli.runs.record.interrupt import held_back
@@ -23,6 +25,7 @@ from frbcli.runs.record.standing import standing_run
 from frbcli.scene.costs.cost import ExpectedCost, expected_cost
 from frbcli.scene.costs.limits import require_affordable
 from frbcli.scene.machine.segments import Segment, make_segments
+from frbcli.scene.planning.coarser_plan import is_cheap, second_run_s
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.planning.profiles import run_down_profile, run_up_profile
@@ -39,7 +42,12 @@ Observer = Callable[[Progress], None]
 
 
 def runup(
-    case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None, force: bool = False
+    case: Case,
+    output: str | Path,
+    resume: bool = False,
+    observe: Observer | None = None,
+    force: bool = False,
+    uncertainty: bool = False,
 ) -> Run:
     """Run the rotor of a case up as its [speed] says.
 
@@ -56,6 +64,9 @@ def runup(
         Called some times a second.
     force : bool
         Replace any run in `output`.
+    uncertainty : bool
+        Make a second, coarser run for the uncertainties of the events, whatever it costs; without it only where that
+        takes at most a third of the CPU time of the run. A run in `output` that has ended without them gets them.
 
     Returns
     -------
@@ -75,11 +86,16 @@ def runup(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> run = frbcli.runup(case, "run.h5")  # doctest: +SKIP
     """
-    return _run("runup", case, output, resume, observe, force)
+    return _run("runup", case, Path(output), Wanted(resume, force, uncertainty), observe)
 
 
 def rundown(
-    case: Case, output: str | Path, resume: bool = False, observe: Observer | None = None, force: bool = False
+    case: Case,
+    output: str | Path,
+    resume: bool = False,
+    observe: Observer | None = None,
+    force: bool = False,
+    uncertainty: bool = False,
 ) -> Run:
     """Run the rotor of a case up, hold it, and run it down again (section 7.2.2).
 
@@ -96,6 +112,9 @@ def rundown(
         Called some times a second.
     force : bool
         Replace any run in `output`.
+    uncertainty : bool
+        Make a second, coarser run for the uncertainties of the events, whatever it costs; without it only where that
+        takes at most a third of the CPU time of the run. A run in `output` that has ended without them gets them.
 
     Returns
     -------
@@ -115,13 +134,22 @@ def rundown(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> run = frbcli.rundown(case, "down.h5")  # doctest: +SKIP
     """
-    return _run("rundown", case, output, resume, observe, force)
+    return _run("rundown", case, Path(output), Wanted(resume, force, uncertainty), observe)
 
 
 def run_cost(command: str, case: Case) -> ExpectedCost:
     """The expected cost of a "runup" or "rundown" of a case. Raises InputError for a case that cannot be modelled
     or afforded."""
     return _planned(command, case)[2]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a run is asked for, see runup."""
+
+    resume: bool
+    force: bool
+    uncertainty: bool
 
 
 def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost]:
@@ -131,28 +159,43 @@ def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost
     return plan, profile, cost
 
 
-def _run(command: str, case: Case, output: str | Path, resume: bool, observe: Observer | None, force: bool) -> Run:
-    plan, profile, _ = _planned(command, case)
-    path = Path(output)
+def _run(command: str, case: Case, path: Path, wanted: Wanted, observe: Observer | None) -> Run:
+    plan, profile, cost = _planned(command, case)
     check_output(path)
     with locked(path):
-        earlier = standing_run(command, case, path, resume, force)
+        earlier = standing_run(command, case, path, wanted.resume, wanted.force)
         if earlier is not None and earlier.status != "interrupted":
-            return earlier
+            if not wanted.uncertainty or SECOND_RUN in earlier.cost:
+                return earlier
+            march = March(case, plan, make_segments(case, plan), profile)
+            return _with_second_run(march, RunWriter.of(earlier), earlier, observe)
         segments = make_segments(case, plan)
         march = March(case, plan, segments, profile)
         head = header(command, case, segments)
         if earlier is not None and earlier.checkpoint is not None:
             _restore(march, earlier, head)
-            writer = RunWriter.resume(output)
+            writer = RunWriter.resume(path)
         else:
-            writer = RunWriter(output, header(command, case, segments, _critical_speeds(segments)))
+            writer = RunWriter(path, header(command, case, segments, _critical_speeds(segments)))
         march.compile()
-        return _go(march, writer, observe)
+        run = _go(march, writer, observe, second_run_s(case, plan, profile))
+        if run.status == "interrupted":
+            return run
+        cheap = bool(run.events) and is_cheap(run.cost[SECOND_RUN_PREDICTED], cost)
+        return _with_second_run(march, writer, run, observe) if wanted.uncertainty or cheap else run
 
 
-def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
-    """March to the end or to Ctrl-C; checkpoints are spaced so that writing takes a small share of the time."""
+def _with_second_run(march: March, writer: RunWriter, run: Run, observe: Observer | None) -> Run:
+    """A run that has ended, with the uncertainties of its events, in its file."""
+    began = time.process_time()
+    events = uncertain_events(march, run, observe)
+    cost = {**run.cost, SECOND_RUN: time.process_time() - began}
+    return writer.finish(run.status, cost, run.error, events, run.t_end_s)
+
+
+def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: float) -> Run:
+    """March to the end or to Ctrl-C; checkpoints are spaced so that writing takes a small share of the time. second_s:
+    expected CPU time of the second run, which is told with the cost."""
 
     def checkpoint(error: dict[str, float | None]) -> None:
         writer.checkpoint(march.snapshot(), march.cost(), error, march.time)
@@ -174,8 +217,6 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
         checkpoint(march.error_so_far())
         if status == RUNNING:
             return _interrupted(march, writer)
-    from frbcli.analysis.events import find_events  # the analysis at the end of a run
-
     ended = STATUS.get(status, "not-converged")
     if status not in (FINISHED, OVERHEATED) and march.starves:
         ended = STARVED
@@ -183,7 +224,7 @@ def _go(march: March, writer: RunWriter, observe: Observer | None) -> Run:
     events = [asdict(event) for event in find_events(so_far)]
     until, began = quiet_until(events, march.time), time.process_time()
     error = march.error(until, on_fewer_cells(march, until, observe))
-    cost = {**so_far.cost, "error_cpu_s": time.process_time() - began}
+    cost = {**so_far.cost, "error_cpu_s": time.process_time() - began, SECOND_RUN_PREDICTED: second_s}
     return writer.finish(ended, cost, error, events, march.time)
 
 
@@ -205,8 +246,6 @@ def _restore(march: March, earlier: Run, head: Header) -> None:
 def _interrupted(march: March, writer: RunWriter) -> Run:
     """The run so far, with its events and its error until the first whirl, without the parts that need
     another run, since the user waits and the run may be resumed."""
-    from frbcli.analysis.events import find_events
-
     events = [asdict(event) for event in find_events(writer.so_far())]
     at_once = march.film_error_s <= WAIT_s
     error = march.error(quiet_until(events, march.time)) if at_once else march.error_so_far()

@@ -28,6 +28,7 @@ SHORT = ("film.theory=short", "speed.duration=0.4 s", "speed.to=120 Hz")
 WAVY = (*SHORT, "speed.from=60 Hz", "rotor.unbalance=60 g*mm")  # much moves, and the critical speed is near
 COST = {"cpu_s", "error_cpu_s", "predicted_cpu_s", "wall_s", "steps", "rejected_steps", "steps_per_revolution",
         "film_solves", "ms_per_film_solve", "simulated_ms_per_hour"}  # fmt: skip
+SECOND = {"second_run_cpu_s", "second_run_predicted_cpu_s"}  # of a run that has ended, the former if it was made
 
 
 def short_case(*settings: str) -> Case:
@@ -79,7 +80,7 @@ def test_runup_holds_its_signals_and_tells_its_cost_and_error(tmp_path: Path) ->
     assert run.references["critical_speeds"] == len(critical) > 0
     np.testing.assert_allclose(critical, 143.5, atol=1.5)  # of the linearised machine; the run ends just below
     assert load_case_text(run.case_text) == case
-    assert set(run.cost) == COST
+    assert COST <= set(run.cost) <= COST | SECOND
     assert run.cost["steps_per_revolution"] > 40
     assert 0.0 < run.error["time_integration"] < 1e-3
     assert run.error["film_force_relative"] > 0.01  # the short bearing is a short bearing
@@ -110,7 +111,9 @@ def test_events_are_those_found_in_the_signals(tmp_path: Path) -> None:
     case = load_case("jeffcott", ["film.theory=short", "speed.from=60 Hz", "speed.to=250 Hz", "speed.duration=3 s"])
     run = runup(case, tmp_path / "run.h5")
     assert [event["kind"] for event in run.events] == ["critical-speed", "onset"]
-    assert run.events == [asdict(event) for event in find_events(run)]
+    told = [name for name in run.events[0] if not name.endswith(("uncertainty", "uncertainty_Hz", "certain", "reason"))]
+    found = [asdict(event) for event in find_events(run)]
+    assert [[event[name] for name in told] for event in run.events] == [[event[name] for name in told] for event in found]
 
 
 # --- how a run ends ---
@@ -179,7 +182,9 @@ def test_an_interrupted_run_has_its_events_and_the_error_of_its_quiet_time(tmp_p
     run = runup(case, broken, observe=interrupt)
     assert run.status == "interrupted"
     assert onset_s + 0.4 < run.t_end_s < 3.0
-    assert run.events == [asdict(event) for event in find_events(run)]
+    told = [name for name in run.events[0] if not name.endswith(("uncertainty", "uncertainty_Hz", "certain", "reason"))]
+    found = [asdict(event) for event in find_events(run)]
+    assert [[event[name] for name in told] for event in run.events] == [[event[name] for name in told] for event in found]
     assert [event["kind"] for event in run.events] == ["critical-speed", "onset"]
     for event, same in zip(run.events, whole.events, strict=True):
         assert (event["t_s"], event["speed_Hz"]) == pytest.approx((same["t_s"], same["speed_Hz"]), rel=1e-6)

@@ -39,12 +39,14 @@ SUSTAINED_REVOLUTIONS = 20.0  # likewise: what dies sooner is the end of a reson
 
 @dataclass(frozen=True)
 class Vibration:
-    """A vibration with a frequency of its own: from when, and at which rotor speed, until when it is seen."""
+    """A vibration with a frequency of its own: from when, and at which rotor speed, until when it is seen; amplitude:
+    the largest one over the clearance, along the longer axis of the orbit."""
 
     time_s: float
     until_s: float
     speed_Hz: float
     frequency_Hz: float
+    amplitude: float
 
 
 def resonant(kind: str, name: str) -> tuple[Tracked, ...]:
@@ -94,6 +96,12 @@ def critical_step(
             if known and not own and (best is None or prominence > best[0]):
                 best = prominence, point, step
     return None if best is None else best[1:]
+
+
+def synchronous_amplitude(motions: Sequence[Motion], step: int) -> float:
+    """Amplitude in m of the synchronous motion of a point at a step of its revolutions; motions: those of `resonant`,
+    whose windows are half of REVOLUTIONS behind."""
+    return float(np.abs(motions[0][step - REVOLUTIONS * STEPS // 2]))
 
 
 def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tuple[int, float, bool]]:
@@ -170,8 +178,9 @@ def vibrations_beside(
         frequency = float(np.median((order * np.abs(speed))[seen]))
         if modes is None or not near(frequency, modes):
             begins, ends = settled + first + half, settled + last - 1 + half
-            time_s = turns.time_s
-            yield Vibration(float(time_s[begins]), float(time_s[ends]), float(turns.speed_Hz[begins]), frequency)
+            time_s, largest = turns.time_s, float(np.max(apart[seen]))
+            began = float(turns.speed_Hz[begins])
+            yield Vibration(float(time_s[begins]), float(time_s[ends]), began, frequency, largest)
 
 
 def _ramp(turns: Revolutions, step: int) -> float:

@@ -21,6 +21,7 @@ from frbcli.analysis.spectra.peaks import local_maxima
 from frbcli.analysis.spectra.windows import fast_length, hann
 
 Side = Literal["inner", "outer"]
+SIDES: tuple[Side, ...] = ("inner", "outer")
 
 LONGEST_s = 0.1  # of a window: separates frequencies 20 Hz apart, and is short against a run-up of some seconds
 SWEEP = 3.0  # r T^2 of the window T in a ramp of r Hz/s, in which a whirl moves by its width at most
@@ -111,6 +112,11 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
     return tuple(sorted(whirls, key=lambda whirl: float(whirl.time_s[0])))
 
 
+def window_step_s(run: RunLike) -> float:
+    """Time from window to window, which resolves onset, lock-in and offset of a whirl in a floating ring bearing."""
+    return _window_length(run) / HOPS
+
+
 def _window_length(run: RunLike) -> float:
     """Length in s of the windows: a steep ramp asks for short ones."""
     ramp = steepest_ramp(SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"))
@@ -153,7 +159,7 @@ def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
         kind, film = event["kind"], str(event.get("film") or "")
         bearing, _, side = film.rpartition("_")
         seen[film, kind] += 1
-        if kind not in ("onset", "lock-in", "offset") or side not in ("inner", "outer"):
+        if kind not in ("onset", "lock-in", "offset") or side not in SIDES:
             names.append("")
         elif not bearing:
             names.append(f"Sub_{side[0]}")

@@ -47,6 +47,7 @@ class RunOptions:
     picture: bool
     verify: bool
     explain: bool
+    uncertainty: bool
 
 
 def run_options(function: Function) -> Function:
@@ -60,8 +61,11 @@ def run_options(function: Function) -> Function:
     explain = click.option(
         "--explain", is_flag=True, help="Name the Hopf point or fold behind each onset and offset of a whirl."
     )
+    uncertainty = click.option(
+        "--uncertainty", is_flag=True, help="Make a second, coarser run for the uncertainties of the events."
+    )
     gathering = gathered("options", RunOptions)(function)
-    return output(resume(force(verify(explain(picture_switch(look_options(gathering)))))))
+    return output(resume(force(verify(explain(uncertainty(picture_switch(look_options(gathering))))))))
 
 
 @click.command()
@@ -98,6 +102,7 @@ def transient(
 ) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.results.store import check_output
+    from frbcli.runs.errors.second_run import SECOND_RUN
     from frbcli.runs.record.standing import INTERRUPTED, standing_run
     from frbcli.runs.run import run_cost
 
@@ -106,13 +111,16 @@ def transient(
     if options.picture:
         check_outputs(picture=beside(path, SUMMARY))
     standing = standing_run(command, case, path, options.resume, options.force)
-    if standing is not None and standing.status != INTERRUPTED:
+    told = not options.uncertainty or (standing is not None and SECOND_RUN in standing.cost)
+    if standing is not None and standing.status != INTERRUPTED and told:
         terminal.remark(f"{path} holds this run already; --force computes it again.")
     cost = run_cost(command, case)
     if cost.total_s > TOLD_s:
         terminal.remark(cost_line(cost))
     with computing(terminal, case) as shown:
-        run = run_case(case, path, resume=options.resume, observe=_watch(terminal, shown), force=options.force)
+        run = run_case(
+            case, path, options.resume, _watch(terminal, shown), force=options.force, uncertainty=options.uncertainty
+        )
     _report(case, run, terminal)
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if options.verify and run.status != "interrupted" else None
@@ -226,11 +234,14 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
     from frbcli.results.columns import EVENTS
     from frbcli.runs.advice import run_advice, run_end
-    from frbcli.runs.errors.account import account
+    from frbcli.runs.errors.account import about_certainty, account
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
     for sentence in run_advice(case, run_end(run)):
         terminal.remark(wrapped(sentence))
     if run.events:
-        terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
+        events = with_whirl_names(run.events)
+        terminal.show("events", table_of(EVENTS, events))
+        for sentence in about_certainty(events, run.cost):
+            terminal.sentence(sentence)
     terminal.table("cost and error", ("", "", ""), account(run))

@@ -14,13 +14,14 @@ from frbcli.analysis.signals import films, joined, points
 from frbcli.plot.run.displacement import draw_distances
 from frbcli.plot.run.eccentricity import draw_eccentricity
 from frbcli.plot.run.envelope import curve
-from frbcli.plot.signals import ends, events, heading, is_searchable
+from frbcli.plot.signals import ends, events, heading, is_searchable, uncertain_times
 from frbcli.plot.spectra.waterfall import draw_levels, level_label, reading, run_spectra
 from frbcli.plot.style import BLACK, GREY, MOST_MARKED, SKY, legend_beside, mark_times, new_figure, set_title, styled
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 
 SIGNAL = "journal"
+BAND = 0.25  # opacity of the times between which an event lies
 FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
 
 NAMES = {
@@ -36,7 +37,7 @@ NAMES = {
 
 def summary_figure(run: Run) -> Figure:
     """Eccentricity, or without films the distance of all points, with the events marked, waterfall of the journal and
-    rotor speed over one time axis.
+    rotor speed over one time axis. Bands about the events are their uncertainties, where the run has them.
 
     Raises RunFileError if the run holds no samples.
     """
@@ -48,6 +49,9 @@ def summary_figure(run: Run) -> Figure:
         words.append("too long for a search for events")
     if len(marked) > MOST_MARKED:
         words.append(f"the first {MOST_MARKED} of {len(marked)} events")
+    bands = uncertain_times(run)
+    if bands:
+        words.append("bands: uncertainty of the events")
     with styled():
         figure = new_figure(title, ", ".join(word for word in words if word), height=7.6)
         above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
@@ -67,6 +71,9 @@ def summary_figure(run: Run) -> Figure:
         for axes in (above, middle):
             axes.set_xlabel("")
         marked = marked[:MOST_MARKED]
+        for axes in (above, middle):
+            for time, half in bands:
+                axes.axvspan(time - half, time + half, color=GREY, alpha=BAND, linewidth=0.0)
         left_out = mark_times((above, middle), [time for time, _ in marked], [told for _, told in marked])
         if left_out:
             words.append(f"{left_out} of {len(marked)} events have no room for their names")

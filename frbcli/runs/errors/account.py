@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from frbcli.results.columns import event_name
 from frbcli.results.store import Run
+from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED
+from frbcli.scene.costs.cost import clock
 
 
 def account(run: Run) -> list[tuple[str, str, str]]:
@@ -28,6 +32,7 @@ def account(run: Run) -> list[tuple[str, str, str]]:
         *kept(("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each")),
         *_oil_rows(run),
         *_heat_rows(run),
+        *_second_run(cost),
         *kept(("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes")),
         ("error, time integration", f"{error['time_integration']:.1e}", _of(run)),
         *kept(("error, film forces", "-" if film is None else f"{film:.1e}", f"relative, {against}")),
@@ -35,11 +40,33 @@ def account(run: Run) -> list[tuple[str, str, str]]:
     ]
 
 
+def about_certainty(events: Sequence[Mapping[str, Any]], cost: Mapping[str, Any]) -> list[str]:
+    """Sentences on the uncertainties of the events of a run: which events are not certain and why, or what it would
+    cost to know. events: with the names of their whirls."""
+    if SECOND_RUN in cost and any(event.get("certain") is None for event in events):
+        return ["No uncertainties of the events: the machine does not begin to run on fewer cells."]
+    if SECOND_RUN in cost:
+        return [
+            f"Not certain: {event_name(event)} at {event['speed_Hz']:.4g} Hz: {event['reason']}."
+            for event in events
+            if event.get("certain") is False
+        ]
+    if not events or SECOND_RUN_PREDICTED not in cost:
+        return []
+    return [f"No uncertainties of the events: they take about {clock(cost[SECOND_RUN_PREDICTED])} with --uncertainty."]
+
+
 def _of(run: Run) -> str:
     """The quantity that the error of the time integration is of."""
     if "length_m" not in run.references:
         return "of the eccentricity"
     return f"of displacements, over {1e6 * run.references['length_m']:.4g} um"
+
+
+def _second_run(cost: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    if SECOND_RUN not in cost:
+        return []
+    return [("CPU time of uncertainties", f"{cost[SECOND_RUN]:.3g} s", "second, coarser run")]
 
 
 def _oil_rows(run: Run) -> list[tuple[str, str, str]]:

@@ -1,0 +1,179 @@
+"""How uncertain the events of a run are, from those of a second, coarser run of the same machine.
+
+Events of both runs belong together if they have the same kind, film and point, are near in time and in the same order.
+The second run is about twice as far from the truth, so that the difference of such a pair, times SAFETY, is the
+uncertainty. Two runs may agree in one number by chance. So the uncertainty of an onset, a lock-in and an offset is at
+least the usual one of all of them, relative to the speed and to the frequency, and that of any event at least the
+resolution of the search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from frbcli.analysis.events import WHIRL_BEGINS, resolution
+from frbcli.analysis.orders.subsynchronous import BEGINS, SIDES
+from frbcli.analysis.signals import RunLike
+
+NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
+NEAR_REVOLUTIONS = 40.0  # of the rotor, or as much: at the beginning of a run a whirl settles in as many
+SAFETY = 1.5  # times the difference of both runs
+FAINT = 1.5  # times the amplitude from which a whirl counts: below it one run has it and another one has not
+RETURNS = 3  # onsets of one whirl within so many windows are a motion that comes and goes
+GIVEN = "clearance-step"  # its time stands in the case
+SAME = ("kind", "film", "point")
+OF_WHIRLS = ("onset", "lock-in", "offset")
+SPEED, FREQUENCY, AMPLITUDE = "speed_Hz", "frequency_Hz", "amplitude"
+
+Record = Mapping[str, Any]
+
+
+def with_uncertainties(run: RunLike, events: Sequence[Record], second: Sequence[Record]) -> list[dict[str, Any]]:
+    """The events of a run with the uncertainties of speed and frequency in Hz and of the amplitude.
+
+    Parameters
+    ----------
+    run : RunLike
+        The run that has them.
+    events, second : sequence of dict
+        The events of the run, and of the second run.
+
+    Returns
+    -------
+    list of dict
+        Events as `Event` has them. One that the second run does not have is not certain: its uncertainties are None,
+        and `reason` says why.
+    """
+    others = partners(events, second)
+    both = [(event, other) for event, other in zip(events, others, strict=True) if other is not None]
+    usual = _Usual.of([pair for pair in both if pair[0]["kind"] in OF_WHIRLS])
+    alone = _Usual()
+    return [
+        {**event, **_unmatched(event, events, second)}
+        if other is None
+        else {**event, **_matched(run, event, other, usual if event["kind"] in OF_WHIRLS else alone)}
+        for event, other in zip(events, others, strict=True)
+    ]
+
+
+@dataclass(frozen=True)
+class _Usual:
+    """Usual differences of all events of whirls: of speed and frequency relative to them, of the amplitude."""
+
+    speed: float = 0.0
+    frequency: float = 0.0
+    amplitude: float = 0.0
+
+    @classmethod
+    def of(cls, both: Sequence[tuple[Record, Record]]) -> _Usual:
+        """Those of some pairs."""
+        speed, frequency = (
+            _usual([_apart(*pair, key) / _size(pair[0], key) for pair in both]) for key in (SPEED, FREQUENCY)
+        )
+        return cls(speed, frequency, _usual([_apart(*pair, AMPLITUDE) for pair in both]))
+
+
+def partners(events: Sequence[Record], second: Sequence[Record]) -> list[Record | None]:
+    """The event of the second run that belongs to each event, None where there is none: the nearest pairs first, and no
+    pair that crosses another one of its kind, film and point."""
+    candidates = sorted(
+        (abs(other["t_s"] - event["t_s"]), i, j)
+        for i, event in enumerate(events)
+        for j, other in enumerate(second)
+        if _key(other) == _key(event) and abs(other["t_s"] - event["t_s"]) <= _window_s(event)
+    )
+    found: dict[int, int] = {}
+    for _, i, j in candidates:
+        same = [(a, b) for a, b in found.items() if _key(events[a]) == _key(events[i])]
+        if i not in found and all((a < i) == (b < j) and b != j for a, b in same):
+            found[i] = j
+    return [second[found[i]] if i in found else None for i in range(len(events))]
+
+
+def _key(event: Record) -> tuple[Any, ...]:
+    return tuple(event.get(name) for name in SAME)
+
+
+def _window_s(event: Record) -> float:
+    return max(NEAR * float(event["t_s"]), NEAR_REVOLUTIONS / max(abs(float(event["speed_Hz"])), 1.0))
+
+
+def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[str, Any]:
+    """What is added to an event that the second run has, too."""
+    if event["kind"] == GIVEN:
+        return {"speed_uncertainty_Hz": 0.0, "certain": True}
+    speed_Hz, frequency_Hz = resolution(run, event)
+    usual_of = {
+        SPEED: usual.speed * _size(event, SPEED),
+        FREQUENCY: usual.frequency * _size(event, FREQUENCY),
+        AMPLITUDE: usual.amplitude,
+    }
+    resolved = {SPEED: speed_Hz, FREQUENCY: frequency_Hz, AMPLITUDE: 0.0}
+    told = {
+        key: None if event.get(key) is None else max(SAFETY * _apart(event, other, key), SAFETY * least, resolved[key])
+        for key, least in usual_of.items()
+    }
+    reason = _faint(event)
+    return {
+        "speed_uncertainty_Hz": told[SPEED],
+        "frequency_uncertainty_Hz": told[FREQUENCY],
+        "amplitude_uncertainty": told[AMPLITUDE],
+        "certain": not reason,
+        "reason": reason or None,
+    }
+
+
+def _unmatched(event: Record, events: Sequence[Record], second: Sequence[Record]) -> dict[str, Any]:
+    """What is added to an event that the second run does not have."""
+    elsewhere = [other for other in second if _key(other) == _key(event)]
+    again = [other for other in events if _key(other) == _key(event) and _are_near(event, other)]
+    if reason := _faint(event):
+        pass
+    elif len(again) >= RETURNS:
+        reason = "the motion comes and goes, and is chaotic"
+    elif elsewhere and len(elsewhere) == sum(_key(other) == _key(event) for other in events):
+        nearest = min(elsewhere, key=lambda other: abs(other["t_s"] - event["t_s"]))
+        speed = float(nearest["speed_Hz"])
+        reason = f"at {speed:.4g} Hz in the second run: it starts from round-off, or is near a fold"
+    else:
+        reason = "not in the second run: it starts from round-off, is near a fold, or chaotic"
+    return {"certain": False, "reason": reason}
+
+
+def _are_near(event: Record, other: Record) -> bool:
+    return abs(float(other["t_s"]) - float(event["t_s"])) <= RETURNS * _window_s(event)
+
+
+def _faint(event: Record) -> str:
+    """Why an onset is not certain whose whirl hardly counts as one, "" for any other event."""
+    amplitude = event.get("amplitude")
+    begins = BEGINS if str(event["film"] or "").endswith(SIDES) else WHIRL_BEGINS
+    if event["kind"] != "onset" or amplitude is None or amplitude >= FAINT * begins:
+        return ""
+    return f"its amplitude of at most {amplitude:.2g} is close to the {begins:g} from which a whirl counts"
+
+
+def _apart(event: Record, other: Record, key: str) -> float:
+    """Difference of a number, NaN where one of both has none."""
+    own, its = (_number(each, key) for each in (event, other))
+    return abs(own - its)
+
+
+def _size(event: Record, key: str) -> float:
+    return max(abs(_number(event, key)), 1e-300)
+
+
+def _number(event: Record, key: str) -> float:
+    value = event.get(key)
+    return np.nan if value is None else float(value)
+
+
+def _usual(differences: Sequence[float]) -> float:
+    """Their root mean square without the largest quarter, which are outliers."""
+    known = np.sort([value for value in differences if not np.isnan(value)])
+    kept = known[: max(1, int(np.ceil(0.75 * len(known))))]
+    return float(np.sqrt(np.mean(kept**2))) if len(known) else 0.0

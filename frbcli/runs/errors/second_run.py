@@ -1,0 +1,66 @@
+"""The uncertainty of the events of a run, from a second run on fewer cells or elements and with a larger tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from frbcli.analysis.events import find_events
+from frbcli.analysis.signals import Values
+from frbcli.analysis.uncertainty import NEAR, with_uncertainties
+from frbcli.errors import NotConverged
+from frbcli.results.store import Run
+from frbcli.runs.march import March, Progress
+from frbcli.scene.planning.coarser_plan import coarser_plan
+from frbcli.solve.state import CONTACT, FINISHED, RUNNING
+
+SECOND_RUN, SECOND_RUN_PREDICTED = "second_run_cpu_s", "second_run_predicted_cpu_s"  # of the cost of a run
+
+Observer = Callable[[Progress], None]
+
+
+@dataclass(frozen=True)
+class SecondRun:
+    """A run that is in no file. signals: (n,) each, in the unit of its name; references, status: as of a run."""
+
+    signals: Mapping[str, Values]
+    references: dict[str, float]
+    status: str
+
+    def __getitem__(self, name: str) -> Values:
+        """The values of a signal."""
+        return self.signals[name]
+
+    def __len__(self) -> int:
+        """The number of samples."""
+        return len(self.signals["time_s"])
+
+
+def second_run(march: March, run: Run, observe: Observer | None = None) -> SecondRun | None:
+    """The coarser run of the machine of a march, a little farther than `run` has come; None if it does not begin.
+    observe: called some times a second."""
+    try:
+        other = march.again(coarser_plan(march.case, march.plan))
+    except NotConverged:
+        return None
+    end_s, status, chunks = (1.0 + NEAR) * run.t_end_s, RUNNING, list[dict[str, Values]]()
+    while status == RUNNING and other.time <= end_s:
+        status, signals = other.chunk()
+        chunks.append(signals)
+        if observe is not None:
+            observe(other.progress(run.t_end_s))
+    joined = {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
+    ended = {RUNNING: "interrupted", FINISHED: "finished", CONTACT: "contact"}
+    return SecondRun(joined, run.references, ended.get(status, "not-converged"))
+
+
+def uncertain_events(march: March, run: Run, observe: Observer | None = None) -> list[dict[str, Any]]:
+    """The events of a run with their uncertainties, see `with_uncertainties`; as they are if the second run does not
+    begin."""
+    second = second_run(march, run, observe)
+    if second is None:
+        return run.events
+    return with_uncertainties(run, run.events, [asdict(event) for event in find_events(second)])

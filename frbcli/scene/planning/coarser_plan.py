@@ -1,0 +1,42 @@
+"""The plan of a second, coarser run, whose difference to the run tells how uncertain is what is read off it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from frbcli.case.schema import Case
+from frbcli.film.grid import Mesh
+from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.scene.costs.cost import ExpectedCost, expected_cost
+from frbcli.scene.planning.planned import Plan
+
+LOOSER = 3.0  # tolerance of a step over that of the run
+COARSER = 0.75  # elements in each direction over those of the run
+FEWEST_ELEMENTS = 2, 24  # axial, around
+SHARE = 1.0 / 3.0  # of the CPU time of a run that a second one may take unasked
+
+
+def coarser_plan(case: Case, plan: Plan) -> Plan:
+    """The plan with fewer cells or elements and a larger tolerance; cells: those of the stated error of a run."""
+    films = tuple((form, _coarser(mesh)) for form, mesh in plan.films)
+    cells = plan.form.fewer_cells(case, plan) or plan.cells
+    return replace(plan, films=films, mesh=_coarser(plan.mesh), cells=cells, tolerance=LOOSER * plan.tolerance)
+
+
+def second_run_s(case: Case, plan: Plan, profile: SpeedProfile) -> float:
+    """Expected CPU time in s of the second run."""
+    cost = expected_cost(case, coarser_plan(case, plan), profile)
+    return cost.before_s + cost.cpu_s
+
+
+def is_cheap(second_s: float, cost: ExpectedCost) -> bool:
+    """Whether a second run of so many s of CPU time is made unasked, beside a run of that cost."""
+    return second_s <= SHARE * cost.total_s
+
+
+def _coarser(mesh: Mesh) -> Mesh:
+    axial, around = (
+        max(min(least, elements), round(COARSER * elements))
+        for elements, least in zip((mesh.axial, mesh.circumferential), FEWEST_ELEMENTS, strict=True)
+    )
+    return replace(mesh, axial=axial, circumferential=around)

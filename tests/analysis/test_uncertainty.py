@@ -1,0 +1,114 @@
+"""Uncertainties of events by hand: which events of two runs belong together, and what their differences say."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from synthetic_run import Rotor, make_run
+
+from frbcli.analysis.events import WHIRL_BEGINS
+from frbcli.analysis.uncertainty import FAINT, NEAR, SAFETY, partners, with_uncertainties
+from frbcli.results.store import Run
+
+RAMP = 30.0  # Hz/s of the synthetic run
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return make_run(Rotor())
+
+
+def event(t_s: float, kind: str = "onset", frequency_Hz: float = 90.0, **more: Any) -> dict[str, Any]:
+    speed = RAMP * t_s
+    return {"kind": kind, "film": None, "t_s": t_s, "speed_Hz": speed, "frequency_Hz": frequency_Hz,
+            "frequency_ratio": frequency_Hz / speed, "point": "journal", "amplitude": 0.8, **more}  # fmt: skip
+
+
+def test_an_event_is_as_uncertain_as_both_runs_differ(run: Run) -> None:
+    found = with_uncertainties(run, [event(6.0)], [event(6.1, frequency_Hz=92.0, amplitude=0.78)])[0]
+    assert found["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 3.0)
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(SAFETY * 2.0)
+    assert found["amplitude_uncertainty"] == pytest.approx(SAFETY * 0.02)
+    assert (found["certain"], found["reason"]) == (True, None)
+
+
+def test_what_agrees_by_chance_is_as_uncertain_as_the_other_whirls(run: Run) -> None:
+    """Four whirls that are 1, 1, 1 % and nothing off: the last one has 1.5 * 1 % without its outlier, which is none."""
+    own = [event(t) for t in (4.0, 5.0, 6.0, 7.0)]
+    second = [event(t) for t in (4.04, 5.05, 6.06, 7.0)]
+    found = with_uncertainties(run, own, second)
+    least = SAFETY * 0.01 * (2.0 / 3.0) ** 0.5  # the root mean square of 0, 1 and 1 %, three of the four
+    assert found[3]["speed_uncertainty_Hz"] == pytest.approx(least * 210.0)
+    assert found[0]["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 0.01 * 120.0)
+
+
+def test_equal_runs_leave_the_resolution(run: Run) -> None:
+    """An eighth of a revolution at 180 Hz in a ramp of 30 Hz/s; a line of a window of 16 revolutions, 16 times finer."""
+    found = with_uncertainties(run, [event(6.0)], [event(6.0)])[0]
+    assert found["speed_uncertainty_Hz"] == pytest.approx(RAMP / (8 * 180.0), rel=1e-6)
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(180.0 / 256.0)
+    critical = with_uncertainties(run, [event(6.0, "critical-speed", 180.0)], [event(6.0, "critical-speed", 180.0)])[0]
+    assert critical["frequency_uncertainty_Hz"] == critical["speed_uncertainty_Hz"]
+
+
+def test_a_step_of_the_clearance_is_given(run: Run) -> None:
+    step = event(6.0, "clearance-step") | {"frequency_Hz": None, "amplitude": None}
+    assert with_uncertainties(run, [step], [step])[0]["speed_uncertainty_Hz"] == 0.0
+
+
+def test_a_contact_has_no_frequency(run: Run) -> None:
+    touch = event(6.0, "contact") | {"frequency_Hz": None, "amplitude": None}
+    found = with_uncertainties(run, [touch], [touch | {"t_s": 6.01, "speed_Hz": 180.3}])[0]
+    assert found["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 0.3)
+    assert (found["frequency_uncertainty_Hz"], found["amplitude_uncertainty"]) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("second", "words"),
+    [
+        ([], "not in the second run"),
+        ([event(6.0, "offset")], "not in the second run"),
+        ([event(6.0, point="disk")], "not in the second run"),
+        ([event(6.0 * (1.0 + 2.0 * NEAR))], "at 216 Hz in the second run: it starts from round-off, or is near a fold"),
+    ],
+)
+def test_an_event_that_the_second_run_lacks_is_not_certain(run: Run, second: list[Any], words: str) -> None:
+    found = with_uncertainties(run, [event(6.0)], second)[0]
+    assert found["certain"] is False
+    assert words in found["reason"]
+    assert "speed_uncertainty_Hz" not in found
+
+
+def test_a_motion_that_comes_and_goes_is_chaotic(run: Run) -> None:
+    own = [event(5.0 + 0.3 * i) for i in range(4)]
+    found = with_uncertainties(run, own, [own[0]])
+    assert [one["certain"] for one in found] == [True, False, False, False]
+    assert "chaotic" in found[1]["reason"]
+
+
+def test_a_faint_whirl_is_not_certain_even_if_both_runs_have_it(run: Run) -> None:
+    faint = event(6.0, amplitude=0.9 * FAINT * WHIRL_BEGINS)
+    found = with_uncertainties(run, [faint], [faint])[0]
+    assert found["certain"] is False
+    assert "close to the 0.05" in found["reason"]
+    assert found["speed_uncertainty_Hz"] > 0.0
+
+
+def test_pairs_do_not_cross() -> None:
+    """The nearest pair is 5.02 and 5.03; what is left on either side of it stays there."""
+    own, second = [event(5.0), event(5.02), event(5.3)], [event(5.03), event(5.1)]
+    assert partners(own, second) == [None, second[0], second[1]]
+
+
+times = st.lists(st.floats(1.0, 9.0), max_size=6, unique=True).map(sorted)
+
+
+@given(times, times)
+def test_every_event_has_one_partner_at_most_and_all_are_in_order(own: list[float], second: list[float]) -> None:
+    found = partners([event(t) for t in own], [event(t) for t in second])
+    matched = [(t, other["t_s"]) for t, other in zip(own, found, strict=True) if other is not None]
+    assert [other for _, other in matched] == sorted({other for _, other in matched})
+    assert all(abs(t - other) <= max(NEAR * t, 40.0 / (RAMP * t)) + 1e-12 for t, other in matched)

@@ -1,0 +1,122 @@
+"""The second, coarser run: what it says of the events of a run, when it is made, and where it is kept."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from frbcli.analysis.uncertainty import partners
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.errors import NotConverged
+from frbcli.results.store import Run, read_run
+from frbcli.runs.errors import second_run
+from frbcli.runs.errors.account import about_certainty
+from frbcli.runs.march import March
+from frbcli.runs.run import runup
+from frbcli.scene.costs.cost import expected_cost
+from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, is_cheap, second_run_s
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.profiles import run_up_profile
+
+CASE = ("film.theory=short", "output.step=0.2 ms")
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return load_case("jeffcott", CASE)
+
+
+@pytest.fixture(scope="module")
+def run(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return runup(case, tmp_path_factory.mktemp("second") / "run.h5", uncertainty=True)
+
+
+def test_a_run_at_a_tenth_of_the_target_is_within_the_uncertainties(run: Run, case: Case, tmp_path: Path) -> None:
+    exact = runup(case.with_settings("accuracy.target=1e-4"), tmp_path / "exact.h5")
+    assert [event["kind"] for event in run.events] == ["critical-speed", "onset"]
+    for event, true in zip(run.events, partners(run.events, exact.events), strict=True):
+        assert event["certain"]
+        assert true is not None
+        for key in ("speed_Hz", "frequency_Hz", "amplitude"):
+            uncertainty = event[key.removesuffix("_Hz") + "_uncertainty" + ("_Hz" if key.endswith("_Hz") else "")]
+            assert abs(event[key] - true[key]) <= uncertainty < 0.02 * max(event[key], 1.0)
+
+
+def test_the_file_keeps_them(run: Run) -> None:
+    assert read_run(run.path).events == run.events
+    assert run.cost["second_run_cpu_s"] > 0.0
+    assert about_certainty(run.events, run.cost) == []
+
+
+def test_a_run_that_has_ended_gets_them_later(run: Run, case: Case, tmp_path: Path) -> None:
+    path = tmp_path / "later.h5"
+    first = runup(case, path)
+    assert all(event["certain"] is None for event in first.events)
+    assert "with --uncertainty" in about_certainty(first.events, first.cost)[0]
+    later = runup(case, path, uncertainty=True)
+    assert later.events == run.events
+    assert later.cost["cpu_s"] == first.cost["cpu_s"]
+    assert all((later[name] == first[name]).all() for name in first.signals)
+    assert read_run(path).checkpoint_samples == len(first)
+
+
+def test_the_terminal_says_them_and_their_cost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["jeffcott", *(word for key in CASE for word in ("--set", key)), "--no-picture"]
+    words += ["-o", str(tmp_path / "run.h5")]
+    assert frb(["runup", *words]) == 0
+    assert "No uncertainties of the events: they take about 0." in capsys.readouterr().out
+    assert frb(["runup", *words, "--uncertainty"]) == 0
+    told = capsys.readouterr()
+    assert re.search(r"14\d\.\d\(\d\)", told.out)
+    assert "second, coarser run" in told.out
+    assert "--force" not in told.err
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        (),
+        ("film.theory=finite",),
+        ("film.theory=finite", "film.cavitation=reynolds"),
+        ("film.cavitation=two-phase", "accuracy.target=3e-3"),
+    ],
+)
+def test_the_second_plan_is_coarser_in_all(settings: tuple[str, ...]) -> None:
+    case = load_case("jeffcott", (*settings, "film.theory=short") if not settings else settings)
+    plan = make_plan(case)
+    coarser = coarser_plan(case, plan)
+    assert coarser.tolerance == LOOSER * plan.tolerance
+    assert (coarser.method, coarser.theory) == (plan.method, plan.theory)
+    if plan.cells is not None:
+        assert coarser.cells is not None
+        assert coarser.cells[0] * coarser.cells[1] < plan.cells[0] * plan.cells[1]
+    for (form, mesh), (its_form, its_mesh) in zip(plan.films, coarser.films, strict=True):
+        assert form == its_form
+        assert its_mesh.axial < mesh.axial
+        assert its_mesh.circumferential < mesh.circumferential
+
+
+def test_it_is_made_unasked_only_where_it_is_cheap() -> None:
+    case = load_case("floating-ring")
+    plan, profile = make_plan(case), run_up_profile(case)
+    cost = expected_cost(case, plan, profile)
+    assert second_run_s(case, plan, profile) < cost.cpu_s
+    assert is_cheap(cost.total_s / 3.01, cost)
+    assert not is_cheap(cost.total_s / 2.9, cost)
+
+
+def test_a_second_run_that_does_not_begin_leaves_the_events(
+    run: Run, monkeypatch: pytest.MonkeyPatch, case: Case, tmp_path: Path
+) -> None:
+    def again(*_: object) -> March:
+        raise NotConverged("no")
+
+    monkeypatch.setattr(March, "again", again)
+    found = runup(case, tmp_path / "run.h5", uncertainty=True)
+    assert all(event["certain"] is None for event in found.events)
+    assert second_run.SECOND_RUN in found.cost
+    assert "does not begin" in about_certainty(found.events, found.cost)[0]
