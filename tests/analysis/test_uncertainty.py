@@ -46,7 +46,7 @@ def test_what_agrees_by_chance_is_as_uncertain_as_the_other_whirls(run: Run) -> 
 
 
 def test_equal_runs_leave_the_resolution(run: Run) -> None:
-    """An eighth of a revolution at 180 Hz in a ramp of 30 Hz/s; a line of a window of 16 revolutions, 16 times finer."""
+    """An eighth of a revolution at 180 Hz in a ramp of 30 Hz/s; a line of 16 revolutions, 16 times finer."""
     found = with_uncertainties(run, [event(6.0)], [event(6.0)])[0]
     assert found["speed_uncertainty_Hz"] == pytest.approx(RAMP / (8 * 180.0), rel=1e-6)
     assert found["frequency_uncertainty_Hz"] == pytest.approx(180.0 / 256.0)

@@ -79,14 +79,14 @@ def test_the_terminal_says_them_and_their_cost(tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.parametrize(
     "settings",
     [
-        (),
+        ("film.theory=short",),
         ("film.theory=finite",),
         ("film.theory=finite", "film.cavitation=reynolds"),
         ("film.cavitation=two-phase", "accuracy.target=3e-3"),
     ],
 )
 def test_the_second_plan_is_coarser_in_all(settings: tuple[str, ...]) -> None:
-    case = load_case("jeffcott", (*settings, "film.theory=short") if not settings else settings)
+    case = load_case("jeffcott", settings)
     plan = make_plan(case)
     coarser = coarser_plan(case, plan)
     assert coarser.tolerance == LOOSER * plan.tolerance
@@ -110,7 +110,7 @@ def test_it_is_made_unasked_only_where_it_is_cheap() -> None:
 
 
 def test_a_second_run_that_does_not_begin_leaves_the_events(
-    run: Run, monkeypatch: pytest.MonkeyPatch, case: Case, tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, case: Case, tmp_path: Path
 ) -> None:
     def again(*_: object) -> March:
         raise NotConverged("no")
