@@ -1,118 +1,33 @@
-"""The bearings of a case: one film, a floating ring between two films, or given coefficients; their ends.
-
-Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are those of the
-whole bearing, both symmetric halves.
-"""
+"""The bearings of a case: one film, a floating ring between two films, or given coefficients."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from frbcli.case.elements import CoefficientsBearing
-from frbcli.case.laws import Cavitation
+from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.model import Model, altered
 from frbcli.case.quantities import (
-    Angle,
-    Clearance,
-    Count,
-    Duration,
     Expansion,
-    Fraction,
     Identifier,
     Length,
     Mass,
     Position,
-    Preload,
-    Ratio,
     RingInertia,
     SpecificHeat,
     Temperature,
     ThermalConductivity,
-    Viscosity,
 )
-from frbcli.case.supplies.none import NoSupply
-from frbcli.case.supplies.table import Supply
+from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.support import Support
-from frbcli.case.thermal import ROOM_TEMPERATURE, AnyWall, Material
+from frbcli.case.thermal import AnyWall, Material
 from frbcli.materials.solids import SOLIDS, Solid
-
-
-class ColdClearance(Model):
-    """A clearance at the reference temperature and its change by thermal expansion, equation (4.24)."""
-
-    cold: Clearance = Field(description="radial clearance at the reference temperature")
-    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="temperature of `cold`")
-    shell_temperature: Temperature = Field(description="in operation")
-    journal_temperature: Temperature = Field(description="in operation")
-    shell_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
-    journal_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
-
-    def warm(self, diameter: float) -> float:
-        """The warm radial clearance [m] of a bearing of `diameter` [m]."""
-        growth = self.shell_expansion * (self.shell_temperature - self.reference_temperature)
-        growth -= self.journal_expansion * (self.journal_temperature - self.reference_temperature)
-        return self.cold + 0.5 * diameter * growth
-
-
-class ClearanceStep(Model):
-    """A clearance from a given time of a run on: the gap changes suddenly, and the oil in it stays."""
-
-    time: Duration = Field(description="from the start of the run")
-    clearance: Clearance = Field(description="radial, warm, from this time on")
-
-
-def _clearance_form(given: object) -> str:
-    return "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"
-
-
-AnyClearance = Annotated[
-    Annotated[Clearance, Tag("(warm)")] | Annotated[ColdClearance, Tag("(cold)")], Discriminator(_clearance_form)
-]
-
-
-class Lobes(Model):
-    """Equal lobes of the shell, machined with a larger radius than the assembled clearance (preload)."""
-
-    count: Annotated[int, Count(2, 12, 3)] = Field(description="number of lobes")
-    preload: Preload = Field(
-        description="1 - c_b / c_p: `clearance` is c_b, the assembled clearance at the narrowest place of a lobe; "
-        "c_p is the machined clearance of a lobe"
-    )
-    position: Angle = Field(default=0.0, description="phi of the middle of the first lobe")
-    offset: Fraction = Field(
-        default=0.5, description="narrowest place of a lobe, as a share of its arc from its start, counter-clockwise"
-    )
-
-
-class FilmGeometry(Model):
-    """The geometry of one film, its supply and its ends."""
-
-    width: Length = Field(description="axial width of the whole bearing")
-    diameter: Length = Field(description="of the journal")
-    given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
-    clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
-    ends: Literal["free-to-air", "oil-bath"] = Field(
-        default="free-to-air", description="no oil comes in at the ends (4.36), or they lie in oil at ambient pressure"
-    )
-    supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
-    lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
-    viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
-    temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
-    side_flow_factor: Ratio | None = Field(
-        default=None,
-        description="beta of the flow of a concentric film, for thermal.side_flow; 1 for a groove around, else 0.6",
-    )
-
-    @property
-    def clearance(self) -> float:
-        """The warm radial clearance [m]."""
-        given = self.given_clearance
-        return given.warm(self.diameter) if isinstance(given, ColdClearance) else given
 
 
 class BearingWalls(Model):
@@ -131,13 +46,19 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     kind: Literal["single-film"] = Field(description="one film between journal and shell")
     name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
+    damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed to the ground if not given")
 
+    @property
+    def films(self) -> tuple[FilmGeometry, ...]:
+        """Its films, without that of a damper."""
+        return (self,)
 
-class RingFilm(FilmGeometry):
-    """A film inside or outside of a floating ring."""
-
-    cavitation: Cavitation | None = Field(default=None, description="of this film, if not film.cavitation")
+    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
+        """The bearing with other films."""
+        (film,) = films
+        assert isinstance(film, type(self))
+        return film
 
 
 class Ring(Model):
@@ -188,7 +109,18 @@ class FloatingRingBearing(BearingWalls):
         description="feed holes of the inner film in the ring: at given pressure, or coupled to the outer film: "
         "oil that leaves one film enters the other",
     )
+    damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed to the ground if not given")
+
+    @property
+    def films(self) -> tuple[FilmGeometry, ...]:
+        """Its films from the journal outwards, without that of a damper."""
+        return (self.inner, self.outer)
+
+    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
+        """The bearing with other films."""
+        inner, outer = films
+        return altered(self, {"inner": inner, "outer": outer})
 
     @property
     def ring_mass(self) -> float:

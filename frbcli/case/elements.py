@@ -5,11 +5,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import Model
 from frbcli.case.quantities import (
     Clearance,
@@ -22,6 +24,7 @@ from frbcli.case.quantities import (
     Quantity,
     SignedSpeed,
 )
+from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.support import Support
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
@@ -100,7 +103,18 @@ class CoefficientsBearing(Model):
     over_speed: CoefficientsOverSpeed | None = Field(
         default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
     )
+    damper: Damper | None = Field(default=None, description="squeeze film damper around its shell or outer ring")
     support: Support | None = Field(default=None, description="its shell as a body; fixed to the ground if not given")
+
+    @property
+    def films(self) -> tuple[FilmGeometry, ...]:
+        """None, without that of a damper."""
+        return ()
+
+    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
+        """The bearing itself."""
+        assert not films
+        return self
 
 
 Element = CoefficientsBearing

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from frbcli.case.bearing import Bearings, FilmBearing, FilmGeometry, FloatingRingBearing, RingFilm
-from frbcli.case.elements import Element, ThrustBearings
+from frbcli.case.bearing import Bearings, FilmBearing, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.elements import CoefficientsBearing, Element, ThrustBearings
+from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.laws import Cavitation, adopt, attribute
 from frbcli.case.model import Model, altered, with_default
 from frbcli.case.oil import Oil
@@ -38,6 +39,7 @@ from frbcli.case.quantities import (
 )
 from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
+from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.theories import Theory, adopt_models, check_model
@@ -306,12 +308,19 @@ class Case(Model):
         """The bearings without a film."""
         return tuple(bearing for bearing in self.given_bearings if isinstance(bearing, Element))
 
-    def with_bearings(self, bearings: Sequence[FilmBearing]) -> Case:
-        """This case with other bearings in place of those with a film, in their order; values that the program has
-        computed, as in `altered`."""
-        films = iter(bearings)
-        all_of_them = tuple(b if isinstance(b, Element) else next(films) for b in self.given_bearings)
-        return altered(self, {"given_bearings": all_of_them})
+    @property
+    def films(self) -> tuple[FilmGeometry, ...]:
+        """All films: of the bearings in their order, from the journal outwards, and behind them those of dampers."""
+        own = (film for bearing in self.bearings for film in bearing.films)
+        return (*own, *(bearing.damper for bearing in self.given_bearings if bearing.damper is not None))
+
+    def with_films(self, films: Sequence[FilmGeometry]) -> Case:
+        """This case with other films, in the order of `films`; values that the program has computed, as in
+        `altered`."""
+        left = iter(films)
+        bearings = [bearing.with_films([next(left) for _ in bearing.films]) for bearing in self.given_bearings]
+        damped = (b if b.damper is None else altered(b, {"damper": next(left)}) for b in bearings)
+        return altered(self, {"given_bearings": tuple(damped)})
 
     @property
     def oil(self) -> Oil:
@@ -372,13 +381,8 @@ class Case(Model):
 
     @property
     def cavitations(self) -> tuple[Cavitation, ...]:
-        """The cavitation models of all films: of the bearings in their order, the inner before the outer film."""
-        films = (
-            film
-            for bearing in self.bearings
-            for film in ((bearing.inner, bearing.outer) if isinstance(bearing, FloatingRingBearing) else (bearing,))
-        )
-        return tuple(self.cavitation(film) for film in films)
+        """The cavitation models of all films, in the order of `films`."""
+        return tuple(self.cavitation(film) for film in self.films)
 
 
 def add_law(law: type[Law]) -> None:
@@ -428,8 +432,8 @@ def remove_law(name: str) -> None:
 
 
 def _adopt_laws() -> None:
-    adopt(FilmModel, (RingFilm,))
-    for holder in (FloatingRingBearing, Case):
+    adopt(FilmModel, (RingFilm, Damper))
+    for holder in (SingleFilmBearing, FloatingRingBearing, CoefficientsBearing, Case):
         holder.model_rebuild(force=True)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from frbcli.case.machine_keys import machine_fault
+from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.cycles.faults import check
 from frbcli.cycles.method.equilibria import Equilibrium, settled

@@ -19,11 +19,13 @@ Line = tuple[str, str, str]  # of a plan: choice, value, reason
 @dataclass(frozen=True)
 class Site:
     """The machine around an element. journal, shell: nodes of the shaft and of the shell in a bearing, by its name;
-    ground: the node that this shell, or its support, stands on; count: equal bearings of a symmetric rotor, which move
+    seat: the node that this shell is fixed to, or in which its damper lies; ground: the node that seat and support
+    stand on; count: equal bearings of a symmetric rotor, which move
     as one with the elements of all of them; gravity in m/s^2."""
 
     journal: Callable[[str], str]
     shell: Callable[[str], str]
+    seat: Callable[[str], str]
     ground: Callable[[str], str]
     count: float
     gravity: float

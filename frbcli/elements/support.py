@@ -49,13 +49,14 @@ class SupportElement(MachineElement):
 
     def told(self, site: Site) -> Line:
         """See MachineElement."""
-        springs = _directions(self.given.stiffness, "N/m")
-        damping = f", {_directions(self.given.damping, 'N*s/m')}" if any(self.given.damping) else ", undamped"
+        springs = directions(self.given.stiffness, "N/m")
+        damping = f", {directions(self.given.damping, 'N*s/m')}" if any(self.given.damping) else ", undamped"
         value = f"{self.bearing}: {display(self.given.mass, 'kg')} on springs".removeprefix(": ")
         why = "the shell is a body with its weight; what acts in the bearing acts between shaft and shell"
         return "support", value, f"{springs}{damping}; {why}"
 
 
-def _directions(both: tuple[float, float], unit: str) -> str:
+def directions(both: tuple[float, float], unit: str) -> str:
+    """Quantities of x and y in words."""
     x, y = (display(each, unit) for each in both)
     return x if x == y else f"{x} in x and {y} in y"

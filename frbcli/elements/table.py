@@ -6,12 +6,15 @@ from collections.abc import Iterator
 
 from frbcli.case.schema import Case
 from frbcli.elements.coefficients import GivenCoefficients
+from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import MachineElement
 from frbcli.elements.force import ForceElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.thrust import ThrustElement
 
-ELEMENTS: tuple[type[MachineElement], ...] = (GivenCoefficients, SupportElement, ThrustElement, ForceElement)
+ELEMENTS: tuple[type[MachineElement], ...] = (
+    GivenCoefficients, DamperElement, SupportElement, ThrustElement, ForceElement
+)  # fmt: skip
 
 
 def elements_of(case: Case) -> Iterator[MachineElement]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.equilibrium.resting import RestingPosition
+from frbcli.equilibrium.resting import STILL, RestingPosition
 from frbcli.equilibrium.static_films import StaticFilms
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.machine.system import System
@@ -17,6 +17,7 @@ from frbcli.scene.machine.system import System
 Array = NDArray[np.float64]
 
 LEAST = 3e-5  # of the error: what the interpolation of tables leaves, the same on every mesh
+NO_STIFFNESS = 1e-9  # of omega times the damping: round-off
 DIFFERENCE = 1e-4  # of the gap, and of the velocity that moves the journal by it in 1 / omega
 
 
@@ -93,15 +94,17 @@ def films_at_rest(system: System, omega: float, position: RestingPosition, settl
     return FilmsAtRest(position, totals, forces)
 
 
-def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]]) -> float:
+def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]], omega: float) -> float:
     """Expected error of stiffness and damping over the largest entry of each, from the same film on other meshes and
-    the share of the difference that is the error; NaN without others."""
+    the share of the difference that is the error; NaN without others. omega: rad/s of the rotor, at which the film of a
+    damper, which does not turn, has no stiffness beside its damping."""
     errors = []
+    least = NO_STIFFNESS * abs(omega) * float(np.abs(own.by_velocity).max())
     for other, share in others:
-        for name in ("by_displacement", "by_velocity"):
+        for name, nothing in (("by_displacement", least), ("by_velocity", 0.0)):
             mine, off = getattr(own, name), getattr(own, name) - getattr(other, name)
             size = float(np.abs(mine).max())
-            errors.append(max(share * float(np.abs(off).max()) / size, LEAST) if size > 0.0 else LEAST)
+            errors.append(max(share * float(np.abs(off).max()) / size, LEAST) if size > nothing else LEAST)
     return max(errors, default=math.nan)
 
 
@@ -118,7 +121,7 @@ def force_error(static: StaticFilms, i: int, place: Array, total: float) -> floa
 def resting_film(name: str, force: FilmForce, displacement: Array, error: float) -> RestingFilm:
     """The film of a force; displacement (2,) over the clearance."""
     load, attitude = -force.force, math.nan
-    if load.any() and displacement.any():
+    if np.hypot(*load) > STILL and displacement.any():
         across = load[0] * displacement[1] - load[1] * displacement[0]
         attitude = math.degrees(math.atan2(across, load @ displacement))
     x, y = load.tolist()

@@ -93,7 +93,7 @@ class StaticMachines:
                 name,
                 force,
                 position.journals[i] / static.system.clearances[i],
-                coefficient_error(force, [(other.forces[i], share) for other, share in others])
+                coefficient_error(force, [(other.forces[i], share) for other, share in others], omega)
                 if with_error
                 else math.nan,
             )

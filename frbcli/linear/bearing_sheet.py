@@ -183,7 +183,7 @@ def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: fl
     place, force = under_vertical_load(static.system, i, eccentricity, omega)
     others = [(under_vertical_load(films.system, i, eccentricity, omega)[1], films.share) for films in static.others]
     system = static.system
-    return resting_film(system.names[i], force, place / system.clearances[i], coefficient_error(force, others))
+    return resting_film(system.names[i], force, place / system.clearances[i], coefficient_error(force, others, omega))
 
 
 def _speeds(case: Case) -> tuple[float, ...]:

@@ -106,8 +106,8 @@ def _with_error(machines: StaticMachines, speed: float) -> Threshold:
     frequency = own.imag / (2 * math.pi)
     ahead = SCATTERED_AHEAD if machine.dynamic else AHEAD
     slope = (_point(machines, speed * (1.0 + ahead)).critical - own) / (ahead * speed)
-    known = machine.static.case.bearings == () or bool(machine.others or machine.dynamic)
-    least = (LEAST if machine.static.case.bearings else THRESHOLD_TOLERANCE) if known else math.nan
+    known = machine.static.case.films == () or bool(machine.others or machine.dynamic)
+    least = (LEAST if machine.static.case.films else THRESHOLD_TOLERANCE) if known else math.nan
     speeds, frequencies = [least * speed], [least * frequency]
     for others, share in other_eigenvalues(machine):
         apart = critical_eigenvalue(others) - own

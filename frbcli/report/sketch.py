@@ -9,12 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
-from frbcli.case.bearing import FilmBearing, FilmGeometry, SingleFilmBearing
+from frbcli.case.bearing import FilmBearing
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.places import node_at
 from frbcli.report.element_symbols import HIGH, height, support_symbol, symbol
 from frbcli.report.svg import box, curve, drawing, element, line, text
+from frbcli.scene.films import HOUSING as STILL
 from frbcli.scene.films import film_places
 from frbcli.scene.shafts.table import shaft_of
 
@@ -61,7 +64,10 @@ def rotor_sketch(case: Case) -> tuple[str, str]:
 def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
     """(name, drawing around the axis) of every film; clearances are magnified."""
     films = film_places(case)
-    return tuple((place.name or "the film", _around(place.geometry, place.name or "film")) for place in films)
+    return tuple(
+        (place.name or "the film", _around(place.geometry, place.name or "film", place.inside != STILL))
+        for place in films
+    )
 
 
 def _bearing_parts(case: Case, number: int, at: float, scale: _SketchScale) -> Iterator[str]:
@@ -69,20 +75,23 @@ def _bearing_parts(case: Case, number: int, at: float, scale: _SketchScale) -> I
     bearing = case.bearings[number]
     if bearing.support is not None:
         yield from support_symbol(scale.left + scale.per_m * at, scale.middle, scale.per_m * _shell_radius(bearing))
-    if isinstance(bearing, SingleFilmBearing):
-        yield from _shell(bearing, at, scale, "shell")
-        return
-    inner, outer = bearing.inner, bearing.outer
-    half = 0.5 * max(inner.width, outer.width)
-    yield scale.box(at - half, at + half, 0.5 * inner.diameter, 0.5 * outer.diameter, "ring")
-    yield from _supply(inner, at, 0.5 * outer.diameter, scale)
-    yield from _shell(outer, at, scale, "shell")
+    films = _films(bearing)
+    for inner, outer in pairwise(films):
+        half = 0.5 * max(inner.width, outer.width)
+        yield scale.box(at - half, at + half, 0.5 * inner.diameter, 0.5 * outer.diameter, "ring")
+        yield from _supply(inner, at, 0.5 * outer.diameter, scale)
+    yield from _shell(films[-1], at, scale)
 
 
-def _shell(film: FilmGeometry, at: float, scale: _SketchScale, kind: str) -> Iterator[str]:
+def _films(bearing: FilmBearing) -> tuple[FilmGeometry, ...]:
+    """The films of a bearing from the journal outwards, with that of its damper."""
+    return bearing.films if bearing.damper is None else (*bearing.films, bearing.damper)
+
+
+def _shell(film: FilmGeometry, at: float, scale: _SketchScale) -> Iterator[str]:
     inner, half = 0.5 * film.diameter + film.clearance, 0.5 * film.width
     outer = (1.0 + HOUSING) * inner
-    yield scale.box(at - half, at + half, inner, outer, kind)
+    yield scale.box(at - half, at + half, inner, outer, "shell")
     yield from _supply(film, at, outer, scale)
 
 
@@ -100,15 +109,15 @@ def _largest_radius(case: Case) -> float:
 
 
 def _shell_radius(bearing: FilmBearing) -> float:
-    """Outer radius of the shell of a bearing, m."""
-    film = bearing if isinstance(bearing, SingleFilmBearing) else bearing.outer
+    """Outer radius of what is around the films of a bearing, m."""
+    film = _films(bearing)[-1]
     return (1.0 + HOUSING) * (0.5 * film.diameter + film.clearance)
 
 
 def _with_supports(case: Case, half: float, per_m: float, shaft: float) -> float:
     """Half the height of a drawing that has room for its supports. shaft: largest radius of the elements, m."""
     shells = [per_m * _shell_radius(bearing) + HIGH for bearing in case.bearings if bearing.support is not None]
-    ends = [per_m * shaft + height(element) for element in case.elements if element.support is not None]
+    ends = [per_m * shaft + height(each) for each in case.elements if each.support is not None or each.damper]
     return max([half, *shells, *ends])
 
 
@@ -139,7 +148,7 @@ def _of_sections(case: Case) -> str:
         parts.append(_named(each.name, at, scale, half + 16.0))
     places = {f"disk_{disk.name or number}": disk.position for number, disk in enumerate(case.disks, start=1)}
     for given in case.given_bearings:
-        places |= {f"{body}_{given.name}": given.position or 0.0 for body in ("journal", "ring", "support")}
+        places |= {f"{body}_{given.name}": given.position or 0.0 for body in ("journal", "ring", "shell", "support")}
     parts += _forces(case, scale, lambda node: (places[node],))
     for disk, radius, _ in disks:
         parts.append(_named(f"{disk.name} {1e3 * disk.mass:.3g} g", disk.position, scale, -per_m * radius - 6.0))
@@ -191,8 +200,7 @@ def _journal(case: Case) -> tuple[float, float]:
     """Width and radius of a journal in m; of a machine without films, which has no dimensions, of any."""
     if not case.bearings:
         return NO_WIDTH, NO_RADIUS
-    bearing = case.bearings[0]
-    film = bearing if isinstance(bearing, SingleFilmBearing) else bearing.inner
+    film = case.bearings[0].films[0]
     return film.width, 0.5 * film.diameter
 
 
@@ -209,8 +217,7 @@ def _radius_at(case: Case, position: float) -> float:
 def _outer_width(case: Case) -> float:
     if not case.bearings:
         return NO_WIDTH
-    bearing = case.bearings[0]
-    return bearing.width if isinstance(bearing, SingleFilmBearing) else bearing.outer.width
+    return _films(case.bearings[0])[-1].width
 
 
 def _named(words: str, at: float, scale: _SketchScale, y: float) -> str:
@@ -247,8 +254,9 @@ def _cylinder(mass: float, polar: float, diametral: float) -> tuple[float, float
     return radius, max(math.sqrt(max(square, 0.0)), 0.08 * radius)
 
 
-def _around(film: FilmGeometry, name: str) -> str:
-    """Shell, journal in the middle, openings; phi = 0 at the top, counter-clockwise."""
+def _around(film: FilmGeometry, name: str, turns: bool) -> str:
+    """Shell, journal in the middle, openings; phi = 0 at the top, counter-clockwise. turns: whether its journal does,
+    which has an arrow then."""
     middle, radius = 0.5 * ROUND + 8.0, 0.34 * ROUND
     size = 2.0 * middle
 
@@ -269,7 +277,8 @@ def _around(film: FilmGeometry, name: str) -> str:
         parts.append(curve(rim + back, "oil", closed=True))
     journal = radius
     parts.append(element("circle", cx=middle, cy=middle, r=journal, kind="shaft"))
-    parts += _arrow([place(-0.5 + 1.0 * i / 20.0, 0.55 * radius) for i in range(21)])
+    if turns:
+        parts += _arrow([place(-0.5 + 1.0 * i / 20.0, 0.55 * radius) for i in range(21)])
     parts.append(text(middle, middle + 6.0, f"⌀ {1e3 * film.diameter:g} mm"))
     parts.append(text(middle, middle + 22.0, f"C {1e6 * film.clearance:.3g} µm"))
     return drawing(size, size, parts, f"{name}, cut across the axis")

@@ -150,7 +150,7 @@ def _missing_oil(case: Case) -> tuple[str, ...]:
 
 def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
     """Sentences on a run whose equations had no solution with the smallest step size, or without films had no bound."""
-    if not case.bearings:
+    if not case.films:
         grown = f"The motion grew beyond {UNBOUNDED:.0e} times the length of the plan at {end.speed_Hz:.4g} Hz"
         return (f"{grown}: given coefficients do not bound it. `frb stability` shows the speed from which one grows.",)
     step = f"{SMALLEST_STEP:.0e} s" if end.step_s is None or end.step_s < SMALLEST_STEP else f"{end.step_s:.1e} s"

@@ -7,24 +7,21 @@ the gap while it changes is left out.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TypeVar
 
-from frbcli.case.bearing import FilmBearing, FilmGeometry, FloatingRingBearing
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.scene.films import film_places
 
-Film = TypeVar("Film", bound=FilmGeometry)
-
 
 def step_times(case: Case) -> tuple[float, ...]:
     """Times in s at which a clearance changes, ascending."""
-    return tuple(sorted({step.time for film in _films(case) for step in film.clearance_steps}))
+    return tuple(sorted({step.time for film in case.films for step in film.clearance_steps}))
 
 
 def case_at(case: Case, time: float) -> Case:
     """The case with the clearances that it has at a time in s."""
-    return case.with_bearings([_bearing_at(bearing, time) for bearing in case.bearings])
+    return case.with_films([_film_at(film, time) for film in case.films])
 
 
 def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
@@ -37,17 +34,6 @@ def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
             yield f"clearance {place.name}".rstrip(), value, "set in the case; rotor and oil keep their state"
 
 
-def _films(case: Case) -> Iterator[FilmGeometry]:
-    return (place.geometry for place in film_places(case))
-
-
-def _bearing_at(bearing: FilmBearing, time: float) -> FilmBearing:
-    if isinstance(bearing, FloatingRingBearing):
-        both = {"inner": _film_at(bearing.inner, time), "outer": _film_at(bearing.outer, time)}
-        return altered(bearing, both)
-    return _film_at(bearing, time)
-
-
-def _film_at(film: Film, time: float) -> Film:
+def _film_at(film: FilmGeometry, time: float) -> FilmGeometry:
     passed = [step.clearance for step in film.clearance_steps if step.time <= time]
     return altered(film, {"given_clearance": passed[-1], "clearance_steps": ()}) if passed else film

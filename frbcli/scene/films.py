@@ -8,9 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.bearing import FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores
+from frbcli.elements.damper import DamperElement
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm
@@ -27,8 +29,8 @@ PUMPED = 0.3  # share of the pressure that the largest speed could build up: a g
 @dataclass(frozen=True)
 class FilmPlace:
     """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING,
-    which a blocked ring counts as; the body that its openings turn with; the name that results carry; the feed holes of
-    coupled channels that it has beside its own supply."""
+    which a blocked ring and a shell count as; the body that its openings turn with; the name that results carry; the
+    feed holes of coupled channels that it has beside its own supply."""
 
     geometry: FilmGeometry
     inside: int
@@ -39,7 +41,8 @@ class FilmPlace:
 
 
 def film_places(case: Case) -> tuple[FilmPlace, ...]:
-    """All films of a case: the inner before the outer one of a floating ring, the bearings in their order."""
+    """All films of a case, as `Case.films`: the inner before the outer one of a floating ring, the bearings in their
+    order, and behind them the dampers."""
     places, ring = [], 0
     for bearing in case.bearings:
         if isinstance(bearing, SingleFilmBearing):
@@ -53,6 +56,7 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
             body = _opening_body(bearing.outer, between, HOUSING) if feed_holes is None else between
             places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer, feed_holes))
             ring += between == ring
+    places += [FilmPlace(each.given, HOUSING, HOUSING, HOUSING, each.film) for each in DamperElement.of(case)]
     return tuple(places)
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from frbcli.case.bearing import FloatingRingBearing, RingFilm
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.elements import Element
+from frbcli.case.film_geometry import RingFilm
 from frbcli.case.schema import Case
+from frbcli.elements.damper import DamperElement
 
 
 def bearing_key(case: Case, index: int) -> str:
@@ -19,17 +21,12 @@ def film_keys(case: Case) -> tuple[str, ...]:
     for index, bearing in enumerate(case.bearings):
         key = bearing_key(case, index)
         keys += [f"{key}.inner", f"{key}.outer"] if isinstance(bearing, FloatingRingBearing) else [key]
-    return tuple(keys)
+    return (*keys, *(each.key for each in DamperElement.of(case)))
 
 
 def cavitation_keys(case: Case) -> tuple[tuple[str, str], ...]:
     """Where the cavitation model of each film is written, a key of its own or film.cavitation, and the model."""
-    films = [
-        film
-        for bearing in case.bearings
-        for film in ((bearing.inner, bearing.outer) if isinstance(bearing, FloatingRingBearing) else (bearing,))
-    ]
     return tuple(
         (f"{key}.cavitation" if isinstance(film, RingFilm) and film.cavitation else "film.cavitation", name)
-        for key, film, name in zip(film_keys(case), films, case.cavitations, strict=True)
+        for key, film, name in zip(film_keys(case), case.films, case.cavitations, strict=True)
     )

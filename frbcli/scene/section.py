@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frbcli.case.bearing import FilmGeometry
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores

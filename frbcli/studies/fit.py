@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from frbcli.analysis.signals import Values, bearing_clearance
 from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.spectra.spectrum import window_length
-from frbcli.case.machine_keys import machine_fault
 from frbcli.case.reading.listing import values as listed
+from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, FrbError, InputError

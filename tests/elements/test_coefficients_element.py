@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.machine_keys import machine_fault
 from frbcli.case.reading.load import case_from_dict, load_case_text
+from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError

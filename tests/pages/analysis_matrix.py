@@ -37,6 +37,10 @@ SLOTS = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", le
 HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
 OIL = "oil.viscosity={grade='SAE 10W-40'}"
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
+DAMPER = (
+    'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
+    'cavitation="sommerfeld"}'
+)
 SUPPORT = 'bearing.support={mass="2 kg", stiffness="1e7 N/m"}'
 THRUST = (
     'thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
@@ -72,6 +76,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "turbocharger on two bearings": ("turbocharger-heavy", ()),
     "coefficients alone": ("seal", ()),
     "bearings on supports": ("jeffcott", (SUPPORT,)),
+    "squeeze film damper that cavitates": ("jeffcott", (DAMPER, "bearing.damper.cavitation=half-sommerfeld")),
+    "squeeze film damper, Sommerfeld": ("jeffcott", (DAMPER,)),
     "forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
     "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearings alone": ("thrust", ()),
@@ -87,6 +93,7 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "heat and a bearing model of one's own": ("jeffcott", (OIL, HEAT, MODEL_THEORY)),
     "heat and co-simulation": ("jeffcott", (OIL, HEAT, APART)),
     "heat and floating rings": ("floating-ring-heat", ()),
+    "heat and squeeze film dampers": ("jeffcott", (OIL, HEAT, DAMPER)),
     "clearance steps and the published form": ("jeffcott", (STEP, *PUBLISHED)),
     "clearance steps and a bearing model of one's own": ("jeffcott", (STEP, MODEL_THEORY)),
     "clearance steps and co-simulation": ("jeffcott", (STEP, APART)),

@@ -53,6 +53,7 @@ TABLES = {
     '[bearing] kind = "coefficients"': "CoefficientsBearing",
     "[[thrust_bearing]]": "ThrustBearing",
     "over_speed = { ... }": "CoefficientsOverSpeed",
+    "[bearing.damper]": "Damper",
     "[bearing.support]": "Support",
     "[[force]]": "AppliedForce",
     "[bearing.ring]": "Ring",

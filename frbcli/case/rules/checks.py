@@ -44,6 +44,7 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
         for film_path, film in _films(path, bearing):
             yield from film_breaches(film_path, film, data)
         yield from _ring(path, bearing)
+        yield from _damper(path, bearing)
     yield from _names("bearing", bearings)
     yield from _names("thrust bearing", tables(data, "thrust_bearing"))
     yield from _names("disk", tables(data, "disk"))
@@ -90,6 +91,14 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach((*path, "ring", "mass"), "is missing.", remedy)
     if isinstance(ring, dict) and {"mass", "width"} <= ring.keys():
         yield Breach((*path, "ring", "width"), "has no effect: the mass is given.", "Remove one of the two.")
+
+
+def _damper(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    film = table(bearing, "outer") if bearing.get("kind") == "floating-ring" else bearing
+    inner, outer = number(film, "diameter", "m"), number(table(bearing, "damper"), "diameter", "m")
+    if inner and outer and inner >= outer:
+        problem = f"is {display(outer, 'm')}, not above that of the film in the shell, {display(inner, 'm')}."
+        yield Breach((*path, "damper", "diameter"), problem, "It is the outer diameter of the shell.")
 
 
 def _names(what: str, named: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
@@ -176,3 +185,5 @@ def _films(path: Path, bearing: dict[str, Any]) -> Iterator[tuple[Path, dict[str
     if bearing.get("kind") == "floating-ring":
         for side in ("inner", "outer"):
             yield (*path, side), table(bearing, side)
+    if isinstance(bearing.get("damper"), dict):
+        yield (*path, "damper"), table(bearing, "damper")

@@ -21,15 +21,16 @@ OF_FILMS = (
 def has_films(data: Mapping[str, Any]) -> bool:
     """Whether a bearing of the tables may have a film: true for tables that cannot be read."""
     found = tables(data, "bearing")
-    return not found or any(bearing.get("kind") != "coefficients" for _, bearing in found)
+    return not found or any(bearing.get("kind") != "coefficients" or "damper" in bearing for _, bearing in found)
 
 
 def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
-    """Every broken rule of elements without a film, and of supports."""
+    """Every broken rule of elements without a film, of dampers and of supports."""
     for path, bearing in tables(data, "bearing"):
         if bearing.get("kind") == "coefficients":
             yield from _coefficients(path, bearing)
-        yield from _support((*path, "support"), bearing.get("support"), data)
+        for body in ("damper", "support"):
+            yield from _body((*path, body), bearing.get(body), data)
     if has_films(data):
         return
     for place in OF_FILMS:
@@ -40,13 +41,14 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach(("motion",), "is a kinematic test of a film, and no bearing has one.", REMEDY)
 
 
-def _support(path: Path, support: object, data: Mapping[str, Any]) -> Iterator[Breach]:
-    if not isinstance(support, dict):
+def _body(path: Path, given: object, data: Mapping[str, Any]) -> Iterator[Breach]:
+    """What is wrong with the mass of a damper or a support."""
+    if not isinstance(given, dict):
         return
     if "rotor" not in data:
         problem = "has no effect: a kinematic test moves the journal against its shell."
         yield Breach(path, problem, "Remove it, or add [rotor] and [speed].")
-    if number(support, "mass", "kg") == 0.0:
+    if number(given, "mass", "kg") == 0.0:
         remedy = 'Write a small one, e.g. "1 g": it changes the stiffness by mass times the square of the frequency.'
         yield Breach((*path, "mass"), "is 0, and the shell is a body with an equation of motion.", remedy)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from frbcli.case.bearing import ColdClearance
+from frbcli.case.film_geometry import ColdClearance
 from frbcli.case.oil import ATMOSPHERE, Grade, Vogel
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables

@@ -73,6 +73,7 @@ def _doubts(data: Mapping[str, Any]) -> Iterator[_Doubt]:
         growths = _ring_growths(bearing, top) if ring else _journal_growth(bearing, top)
         for side, growth in growths.items():
             yield from _film((*path, side) if side else path, table(bearing, side) if side else bearing, growth, top)
+        yield from _film((*path, "damper"), table(bearing, "damper"), 0.0, top)
     if top is not None and fastest > FASTEST_SURFACE:
         problem = f"gives a surface speed of the journal of {fastest:.4g} m/s, above {FASTEST_SURFACE:g} m/s"
         yield _Doubt(top.path, "surface-speed", problem, SPEED)

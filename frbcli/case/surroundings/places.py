@@ -23,6 +23,8 @@ def places(case: Case) -> tuple[str, ...]:
     for bearing in case.given_bearings:
         if bearing.kind == "floating-ring":
             found.append(f"ring_{bearing.name}".rstrip("_"))
+        if bearing.damper is not None:
+            found.append(f"shell_{bearing.name}".rstrip("_"))
         if bearing.support is not None:
             found.append(f"support_{bearing.name}".rstrip("_"))
     return tuple(found)

@@ -63,7 +63,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     else:
         plan = make_plan(case)
         cost, error = expected_cost(case, plan, run_up_profile(case)), expected_error(plan)
-        decisions, lines = plan.decisions, _expectations(cost, error, compile_B(case), bool(case.bearings))
+        decisions, lines = plan.decisions, _expectations(cost, error, compile_B(case), bool(case.films))
         expected = {
             "eccentricity_error": error.eccentricity,
             "film_force_error_relative": error.film_force,

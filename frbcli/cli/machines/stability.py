@@ -130,7 +130,7 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
 
 
 def _on_supports(found: Stability) -> bool:
-    return any(bearing.support is not None for bearing in found.case.given_bearings)
+    return any(bearing.support is not None or bearing.damper is not None for bearing in found.case.given_bearings)
 
 
 def _sentence(found: Stability) -> str:

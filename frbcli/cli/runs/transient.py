@@ -192,7 +192,7 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
         terminal.remark("Interrupted before the end of the verification.")
         return {"status": "interrupted"}
     onset = "" if math.isnan(found.onset_Hz) else f", and the onset of whirl by {abs(found.onset_Hz):.2g} Hz"
-    what = "eccentricity changes" if case.bearings else "displacements change, over their length,"
+    what = "eccentricity changes" if case.films else "displacements change, over their length,"
     terminal.result(
         f"verified: with half the tolerance and step size the {what} by {found.eccentricity:.1e}\n"
         f"until {found.until_s:.3g} s{onset} ({found.status}, {found.cpu_s:.3g} s of CPU time)."

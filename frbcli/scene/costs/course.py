@@ -129,7 +129,7 @@ def _pressing_speed(case: Case) -> float:
     soft that its sag is larger than the clearance, which cannot press, for rotors without such a shaft or on rings,
     and for films that run nearly dry, which their fronts keep at short steps all along."""
     compliance = shaft_of(case).compliance
-    if not compliance or not case.bearings or rings(case) or runs_nearly_dry(case):
+    if not compliance or not case.films or rings(case) or runs_nearly_dry(case):
         return math.inf
     stiff = case.rotor.gravity * compliance < film_places(case)[0].geometry.clearance
     return 2.0 * NEAR / math.sqrt(compliance) if stiff else math.inf
@@ -151,7 +151,7 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
     The local error of a motion A cos(w t) is A (w h / SMOOTH)^p of a method with an embedded solution of order p - 1.
     """
     shaft, order = shaft_of(case), ERROR_ORDERS[plan.method]
-    clearance = film_places(case)[0].geometry.clearance if case.bearings else plan.length
+    clearance = film_places(case)[0].geometry.clearance if case.films else plan.length
 
     def steps(w: Array | float, size: Array | float) -> Array:
         return np.asarray(w / SMOOTH * (size / (plan.tolerance * clearance)) ** (1.0 / order), dtype=np.float64)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from frbcli.case.bearing import FilmGeometry
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.case.schema import Case
+from frbcli.elements.damper import DamperElement
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.scene.clearance_steps import step_times
@@ -63,6 +64,10 @@ def _on_rings(case: Case) -> str | None:
     return "floating-ring" if case.rotor.symmetric and rings(case) else None
 
 
+def _in_damper(case: Case) -> str | None:
+    return next((each.bearing for each in DamperElement.of(case)), None)
+
+
 def _turning_grid(case: Case) -> str | None:
     return case.film.grid if case.film.grid == "half-speed" else None
 
@@ -103,6 +108,10 @@ RULES = (
         (RUN,), "rotor.kind", _of_several_bearings, "has two bearings; the published form is for one film", REMEDY
     ),
     refusal((RUN,), "bearing.kind", _on_rings, "has two films; the published form is for one", REMEDY),
+    refusal(
+        (RUN,), "bearing.damper", _in_damper, "has a film that does not turn; the published form is for a journal",
+        REMEDY,
+    ),
     refusal(
         (RUN,), "film.grid", _turning_grid, "is for cells; the published form has elements", 'Write "auto".'
     ),

@@ -12,7 +12,7 @@ from functools import partial
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
-from frbcli.scene.gate import cycles, films, kinematic, runs, static
+from frbcli.scene.gate import cycles, dampers, films, kinematic, runs, static
 from frbcli.scene.gate.analysis import (
     ALL,
     BEARING,
@@ -39,7 +39,7 @@ from frbcli.scene.planning.film_choice import form_of
 
 def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:
     """A rule of films alone, which a machine without any does not break."""
-    return lambda case: of(case) if case.bearings else ()
+    return lambda case: of(case) if case.films else ()
 
 
 def _without_film(what: str) -> Callable[[Case], Faults]:
@@ -51,10 +51,11 @@ CONSTANT = "limit cycles follow it with a rotor of constant coefficients"
 RULES = (
     Rule(element_faults, ALL),
     Rule(films.heat_faults, ALL),
+    Rule(dampers.heat_faults, ALL),
     Rule(channel_faults, ALL),
     Rule(films.supply_faults, ALL),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
-    Rule(_without_film("a kinematic test is of one"), KINEMATIC),
+    Rule(kinematic.no_film_faults, KINEMATIC),
     Rule(_without_film("the sheet is of films"), SHEETS),
     Rule(_without_film("the comparison is of models of films"), (COMPARISON,)),
     Rule(_without_film("the ladder is of films"), (LADDER,)),
@@ -65,10 +66,13 @@ RULES = (
     Rule(_of_films(runs.form_faults), (RUN,)),
     Rule(_of_films(runs.signal_faults), (RUN,)),
     Rule(static.sheet_faults, SHEETS),
+    Rule(dampers.sheet_faults, SHEETS),
     Rule(static.loaded_heat_faults, (LOADED,)),
     Rule(static.chart_heat_faults, (CHART,)),
     Rule(static.missing_heat_faults, (HEAT,)),
     Rule(static.still_ring_faults, (BEARING, LOADED, STABILITY, *EVERY_CYCLE)),
+    Rule(dampers.rest_faults, (STABILITY, *EVERY_CYCLE)),
+    Rule(dampers.linear_faults, (STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),
     Rule(static.range_faults, (RANGE,)),
     Rule(lambda case: speed_dependent(case, CONSTANT), EVERY_CYCLE),

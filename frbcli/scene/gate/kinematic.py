@@ -9,6 +9,8 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.gate.analysis import ROTATION
 
+DAMPER_TEST = 'Write kind = "single-film", with the dimensions of its damper, and motion.speed = "0 Hz".'
+
 
 def motion_faults(case: Case, test: str) -> Iterator[Fault]:
     """What the motion of a case lacks for a test."""
@@ -36,6 +38,15 @@ def motion_faults(case: Case, test: str) -> Iterator[Fault]:
     if case.heat is not None and motion.periods < 1.0:
         problem = "is less than one period, over which the heat of the film balances."
         yield Fault("motion.periods", f"{motion.periods:g}", None, problem, "Write 1 or more.")
+
+
+def no_film_faults(case: Case) -> Iterator[Fault]:
+    """A test is of the film between a journal and its shell."""
+    if not case.bearings:
+        key, bearing = case.bearing_keys[0], case.given_bearings[0]
+        problem = "has no film between journal and shell, and a kinematic test is of one."
+        remedy = "Add a bearing with a film." if bearing.damper is None else DAMPER_TEST
+        yield Fault(f"{key}.kind", bearing.kind, None, problem, remedy)
 
 
 def bearing_faults(case: Case, test: str) -> Iterator[Fault]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.elements.coefficients import GivenCoefficients
+from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Line, Parts, Site
 from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of
@@ -21,10 +22,16 @@ from frbcli.scene.shafts.table import shaft_of
 def site_of(case: Case) -> Site:
     """The machine around the elements of a case."""
     shaft = shaft_of(case)
-    shells = {each.bearing: each.node for each in SupportElement.of(case)}
+    shells = {each.bearing: each.node for each in DamperElement.of(case)}
+    supports = {each.bearing: each.node for each in SupportElement.of(case)}
+
+    def seat(bearing: str) -> str:
+        return supports.get(bearing, GROUND)
+
     return Site(
         journal=shaft.journal,
-        shell=lambda bearing: shells.get(bearing, GROUND),
+        shell=lambda bearing: shells.get(bearing, seat(bearing)),
+        seat=seat,
         ground=lambda _: GROUND,
         count=float(shaft.equal_bearings),
         gravity=case.rotor.gravity,
@@ -87,7 +94,7 @@ def without_bearing(case: Case) -> list[Fault]:
 
 def without_film(case: Case, what: str) -> list[Fault]:
     """The fault of a case in which no bearing has a film, where `what` is of films alone."""
-    if case.bearings or not case.given_bearings:
+    if case.films or not case.given_bearings:
         return []
     problem = f"has no film, and {what}."
     first = next(GivenCoefficients.of(case))
@@ -95,10 +102,9 @@ def without_film(case: Case, what: str) -> list[Fault]:
 
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
-    """The faults of bearings on supports, where `what` is of bearings on the ground."""
-    return [
-        Fault(each.key, "", None, f"is a shell that moves, and {what}.", remedy) for each in SupportElement.of(case)
-    ]
+    """The faults of bearings in dampers and on supports, where `what` is of bearings on the ground."""
+    moving = (*DamperElement.of(case), *SupportElement.of(case))
+    return [Fault(each.key, "", None, f"is a shell that moves, and {what}.", remedy) for each in moving]
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:

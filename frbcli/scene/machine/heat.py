@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.bearing import ColdClearance, FilmBearing, FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.film_geometry import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
 from frbcli.film.grid import Array
@@ -217,4 +218,3 @@ def _concentric(case: Case, film: FilmGeometry) -> float:
     if share is None:
         share = supply.side_flow_factor
     return 2.0 * share * supply.land_share * math.pi * film.diameter * gauge / (6.0 * film.width)
-

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from frbcli.case.bearing import FilmGeometry
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.penalty import Penalty

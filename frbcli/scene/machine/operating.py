@@ -6,9 +6,11 @@ import math
 from dataclasses import dataclass
 from operator import attrgetter
 
-from frbcli.case.bearing import ColdClearance, FilmGeometry, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.film_geometry import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown
+from frbcli.elements.damper import DamperElement
 from frbcli.film.operating import (
     LAMINAR_BELOW,
     RING_SPEED,
@@ -65,6 +67,7 @@ def operating_points(case: Case) -> tuple[FilmOperation, ...]:
             found.append(_operation(case, bearing, bearing.name or "film", omega, -strain))
         else:
             found.extend(_floating(case, bearing, omega))
+    found += [_operation(case, each.given, each.film, 0.0, 0.0) for each in DamperElement.of(case)]
     return tuple(found)
 
 

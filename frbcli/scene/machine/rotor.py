@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
+from frbcli.elements.damper import DamperElement
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import point_mass, spin
 from frbcli.rotor.linear import LinearRotor
@@ -27,5 +28,6 @@ def make_rotor(case: Case) -> LinearRotor:
             films += [Link(journal, ring, count=count), Link(ring, shell, count=count)]
         else:
             films.append(Link(journal, shell, count=count))
+    films += [damper.link(site) for damper in DamperElement.of(case)]
     elements, spins = element_parts(case), [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
     return assembled([*bodies, *elements.bodies, *spins], films, elements.links, elements.forces)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.bearing import FilmGeometry
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films

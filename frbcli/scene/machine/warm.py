@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from frbcli.case.bearing import FloatingRingBearing, RingFilm, SingleFilmBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.film.grid import Array
@@ -32,15 +31,8 @@ def warm_system(case: Case, plan: Plan, system: System, viscosities: Array, clea
 
 def warm_case(case: Case, viscosities: Array, clearances: Array) -> Case:
     """The case without heat, its films with these viscosities in Pa s and clearances in m, (films,) each."""
-    values = iter(
+    values = (
         {"viscosity": float(eta), "given_clearance": float(c)} for eta, c in zip(viscosities, clearances, strict=True)
     )
-    bearings: list[SingleFilmBearing | FloatingRingBearing] = []
-    for bearing in case.bearings:
-        if isinstance(bearing, SingleFilmBearing):
-            bearings.append(altered(bearing, next(values)))
-        else:
-            inner: RingFilm = altered(bearing.inner, next(values))
-            outer: RingFilm = altered(bearing.outer, next(values))
-            bearings.append(altered(bearing, {"inner": inner, "outer": outer}))
-    return altered(case.with_bearings(bearings), {"thermal": None})
+    films = [altered(film, value) for film, value in zip(case.films, values, strict=True)]
+    return altered(case.with_films(films), {"thermal": None})

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from frbcli.case.bearing import FilmGeometry
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cavitation.two_phase import TwoPhase
@@ -60,7 +60,7 @@ class FilmChoice:
 
 def form_of(case: Case) -> FilmForm:
     """The form of the films of a case; TABLE for all gaps made of rectangles, whose forms follow from the target."""
-    if not case.bearings:
+    if not case.films:
         return NO_FILM
     if case.film.bearing_model:
         return GIVEN

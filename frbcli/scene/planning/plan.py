@@ -9,7 +9,8 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from frbcli.case.bearing import FilmGeometry, FloatingRingBearing
+from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
@@ -124,7 +125,7 @@ def _plan(case: Case, target: float) -> Plan:
     _decide_scene(case, decide)
     films = choose_films(case, target)
     model = chosen_model(case)
-    if not case.bearings:
+    if not case.films:
         return _without_films(case, films, target, decisions, decide)
     if model is not None:
         for decided in model_decisions(model):

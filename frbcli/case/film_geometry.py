@@ -1,0 +1,109 @@
+"""The geometry of one film: its gap, its ends and its supply.
+
+Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are those of the
+whole bearing, both symmetric halves.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from frbcli.case.laws import Cavitation
+from frbcli.case.model import Model
+from frbcli.case.quantities import (
+    Angle,
+    Clearance,
+    Count,
+    Duration,
+    Expansion,
+    Fraction,
+    Length,
+    Preload,
+    Ratio,
+    Temperature,
+    Viscosity,
+)
+from frbcli.case.supplies.none import NoSupply
+from frbcli.case.supplies.table import Supply
+from frbcli.case.thermal import ROOM_TEMPERATURE
+
+
+class ColdClearance(Model):
+    """A clearance at the reference temperature and its change by thermal expansion, equation (4.24)."""
+
+    cold: Clearance = Field(description="radial clearance at the reference temperature")
+    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="temperature of `cold`")
+    shell_temperature: Temperature = Field(description="in operation")
+    journal_temperature: Temperature = Field(description="in operation")
+    shell_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
+    journal_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
+
+    def warm(self, diameter: float) -> float:
+        """The warm radial clearance [m] of a bearing of `diameter` [m]."""
+        growth = self.shell_expansion * (self.shell_temperature - self.reference_temperature)
+        growth -= self.journal_expansion * (self.journal_temperature - self.reference_temperature)
+        return self.cold + 0.5 * diameter * growth
+
+
+class ClearanceStep(Model):
+    """A clearance from a given time of a run on: the gap changes suddenly, and the oil in it stays."""
+
+    time: Duration = Field(description="from the start of the run")
+    clearance: Clearance = Field(description="radial, warm, from this time on")
+
+
+def _clearance_form(given: object) -> str:
+    return "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"
+
+
+AnyClearance = Annotated[
+    Annotated[Clearance, Tag("(warm)")] | Annotated[ColdClearance, Tag("(cold)")], Discriminator(_clearance_form)
+]
+
+
+class Lobes(Model):
+    """Equal lobes of the shell, machined with a larger radius than the assembled clearance (preload)."""
+
+    count: Annotated[int, Count(2, 12, 3)] = Field(description="number of lobes")
+    preload: Preload = Field(
+        description="1 - c_b / c_p: `clearance` is c_b, the assembled clearance at the narrowest place of a lobe; "
+        "c_p is the machined clearance of a lobe"
+    )
+    position: Angle = Field(default=0.0, description="phi of the middle of the first lobe")
+    offset: Fraction = Field(
+        default=0.5, description="narrowest place of a lobe, as a share of its arc from its start, counter-clockwise"
+    )
+
+
+class FilmGeometry(Model):
+    """The geometry of one film, its supply and its ends."""
+
+    width: Length = Field(description="axial width of the whole bearing")
+    diameter: Length = Field(description="of the journal")
+    given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
+    clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
+    ends: Literal["free-to-air", "oil-bath"] = Field(
+        default="free-to-air", description="no oil comes in at the ends (4.36), or they lie in oil at ambient pressure"
+    )
+    supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
+    lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
+    viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
+    temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
+    side_flow_factor: Ratio | None = Field(
+        default=None,
+        description="beta of the flow of a concentric film, for thermal.side_flow; 1 for a groove around, else 0.6",
+    )
+
+    @property
+    def clearance(self) -> float:
+        """The warm radial clearance [m]."""
+        given = self.given_clearance
+        return given.warm(self.diameter) if isinstance(given, ColdClearance) else given
+
+
+class RingFilm(FilmGeometry):
+    """A film that may have a cavitation model of its own: inside or outside of a floating ring, of a damper."""
+
+    cavitation: Cavitation | None = Field(default=None, description="of this film, if not film.cavitation")
