@@ -14,10 +14,8 @@ from collections.abc import Sequence
 
 import click
 
-from frbcli.cli.common import Terminal
 from frbcli.cli.runs.memory import require_memory, reserve, shortage
 from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, printable
-from frbcli.nearest import did_you_mean
 from frbcli.version import __version__
 
 # name: (module of the command, with its name there where a module has several; one line of help; an example);
@@ -175,6 +173,8 @@ class LazyGroup(click.Group):
         """Find a command as click does; the error for an unknown name proposes the nearest ones."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
+            from frbcli.nearest import did_you_mean
+
             ctx.fail(f"No such command {name!r}. {did_you_mean(name, COMMANDS, '`frb --help` lists them.')}")
         return super().resolve_command(ctx, args)
 
@@ -242,6 +242,8 @@ def _emit_error(arguments: Sequence[str], error: FrbError) -> None:
     """With --json an error is one JSON document on stdout as well."""
     if "--json" not in arguments:
         return
+    from frbcli.cli.common import Terminal
+
     document: dict[str, object] = {"command": next((word for word in arguments if word in COMMANDS), None)}
     if isinstance(error, InputError):
         faults = [

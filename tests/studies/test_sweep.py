@@ -8,6 +8,7 @@ import math
 import os
 import sys
 import time
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,9 @@ import pytest
 
 from frbcli import Case, InputError, load_case, read_run, runup, stability, sweep
 from frbcli.cli.main import run as frb
+from frbcli.linear.stability import threshold_alone
 from frbcli.plot.studies.sweep import can_draw, sweep_figure
+from frbcli.studies.sweep import sweep as study
 from frbcli.studies.sweep.points import grid, product, read_list, split_values
 from frbcli.studies.sweep.sweep import LOG, SweepPoint, Workers, write_table
 from frbcli.studies.sweep.task import Task, solve
@@ -151,6 +154,36 @@ def test_thresholds_are_those_of_the_linear_stability(case: Case, tmp_path: Path
     # a wider clearance at the same load: a lower load parameter of the film, hence an earlier whirl
     narrow, wide = found.to_pandas()["threshold_speed_Hz"]
     assert narrow > wide
+
+
+def test_a_threshold_alone_is_that_of_the_stability_with_all_errors(case: Case) -> None:
+    alone, whole = threshold_alone(case), stability(case)
+    assert alone.note == whole.note
+    assert alone.threshold == whole.threshold
+    assert alone.threshold is not None
+    growths = [[point.growth for point in found.sweep] for found in (alone, whole)]
+    assert growths[0] == growths[1]
+    assert np.isnan(alone.points[0].films[0].error)
+    assert whole.points[0].films[0].error > 0.0
+
+
+def test_short_thresholds_start_no_processes(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unless a number of them is asked for; where the points take long, all cores work."""
+    asked: list[int] = []
+
+    def recorded(tasks: list[Task], workers: Workers) -> Iterator[SweepPoint]:
+        asked.append(workers.jobs)
+        yield from map(solve, tasks)
+
+    monkeypatch.setattr(study, "solved", recorded)
+    axes = {"bearing.clearance": ["30 um", "32 um", "35 um"]}
+    found = [sweep(case, axes, tmp_path / str(jobs), "stability", workers=Workers(jobs=jobs)) for jobs in (-1, 2)]
+    monkeypatch.setattr(study, "START_s", 0.0)
+    found.append(sweep(case, axes, tmp_path / "all", "stability"))
+    assert asked == [1, 2, -1]
+    events = [[point.events for point in each.points] for each in found]
+    assert events[0] == events[1] == events[2]
+    assert [point.number for point in found[0].points] == [1, 2, 3]
 
 
 def test_a_range_without_a_threshold_finishes_and_says_where_it_lies(case: Case, tmp_path: Path) -> None:

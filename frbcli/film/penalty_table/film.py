@@ -18,6 +18,7 @@ from frbcli.film.grid import Array, Mesh
 from frbcli.film.penalty_table.rows import LIMIT, row_forces
 from frbcli.film.penalty_table.table import PenaltyTableFilm, slow_speed, source_table, table_numbers
 from frbcli.film.rectangles.film_force import FilmData
+from frbcli.kept import kept_beside
 
 CENTRED = 1e-6  # eccentricity that stands for the centre
 
@@ -118,8 +119,17 @@ class SourceFilm:
 
     def film(self) -> FilmData:
         """The film, tabulated, for the time loop. Raises NotConverged."""
-        table = source_table(self.forces, self.numbers)
+        # A law derived from this one in Python may have other equations with the same numbers.
+        table = _kept_table(self) if type(self.law) is Penalty else penalty_table(self)
         return PenaltyTableFilm(force_scale(self.section), table, self.numbers)
+
+
+def penalty_table(film: SourceFilm) -> Array:
+    """The table of a film, see source_table. Raises NotConverged."""
+    return source_table(film.forces, film.numbers)
+
+
+_kept_table = kept_beside(row_forces)(penalty_table)
 
 
 def force_scale(section: Section) -> float:

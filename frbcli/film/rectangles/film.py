@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -15,12 +14,13 @@ from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
 from frbcli.film.rectangles.fields import FieldsFilm, field_grid, field_table
 from frbcli.film.rectangles.film_force import FilmData, film_force
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
-from frbcli.film.rectangles.table import TableFilm, force_table
+from frbcli.film.rectangles.table import TableFilm, force_table, table_force
+from frbcli.kept import kept_beside
 
 EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
 
 # Tables depend on the shape of the film alone: films of other clearances, viscosities and speeds share them.
-_force_table, _field_table = lru_cache(maxsize=8)(force_table), lru_cache(maxsize=8)(field_table)
+_force_table, _field_table = kept_beside(table_force)(force_table), kept_beside(table_force)(field_table)
 
 
 def make_film(section: Section, theory: str, cavitation: str, mesh: Mesh) -> FilmData:

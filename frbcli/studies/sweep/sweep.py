@@ -5,9 +5,10 @@ All results are in one directory: `sweep.jsonl`, from which an interrupted sweep
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -34,6 +35,7 @@ __all__ = ["Observer", "Sweep", "SweepPoint", "Workers", "check_table_format", "
 
 LOG, RUNS = "sweep.jsonl", "runs"
 TABLE_FORMATS = ("csv", "parquet")
+FIRST, START_s = 2, 3.0  # thresholds whose time is measured; CPU time in which two processes start
 
 Observer = Callable[[SweepPoint, int, int], None]  # a point, how many are done, how many there are
 
@@ -143,6 +145,8 @@ def _compute(tasks: Sequence[Task], workers: Workers, take: Callable[[SweepPoint
     try:
         if tasks and workers.backend == "loky":
             _compile(tasks)
+            if workers.jobs == -1 and tasks[0].method == "stability":
+                tasks, workers = _first_here(tasks, workers, take)
         with closing(solved(tasks, workers)) as points_solved:
             for point in points_solved:
                 take(point)
@@ -150,6 +154,20 @@ def _compute(tasks: Sequence[Task], workers: Workers, take: Callable[[SweepPoint
                     break
     except KeyboardInterrupt:
         pass
+
+
+def _first_here(
+    tasks: Sequence[Task], workers: Workers, take: Callable[[SweepPoint], None]
+) -> tuple[Sequence[Task], Workers]:
+    """Compute the first two thresholds in this process. Returns the other tasks, and who computes them: this process
+    too, where they take it less time than other processes take to start."""
+    spent = 0.0
+    for task in tasks[:FIRST]:
+        began = time.process_time()
+        take(solve(task))
+        spent = time.process_time() - began  # without what the first point has to load
+    others = tasks[FIRST:]
+    return others, replace(workers, jobs=1) if len(others) * spent < START_s else workers
 
 
 def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Path:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from frbcli.case.schema import Case
 from frbcli.errors import InputError, NotConverged
-from frbcli.linear.stability import stability
+from frbcli.linear.stability import threshold_alone
 from frbcli.runs.run import runup
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def _run_file(kept: Path | None) -> Iterator[Path]:
 
 def _threshold(task: Task) -> SweepPoint:
     cpu, wall = time.process_time(), time.perf_counter()
-    found = stability(task.case)
+    found = threshold_alone(task.case)
     cost = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
     at = found.threshold
     if at is None:

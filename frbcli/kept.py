@@ -1,0 +1,111 @@
+"""Arrays that take long to make, kept on disk beside the compiled kernels, so that later processes need not make them.
+
+An array is found by all that it follows from: the sources of the function that makes it, its arguments, the libraries.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import uuid
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from functools import lru_cache, wraps
+from pathlib import Path
+from typing import Any, ParamSpec
+
+import numba
+import numpy as np
+
+from frbcli.compiled import Array, sources_digest
+
+SUFFIX = ".table"
+MOST_KEPT = 64  # files in a folder; those that were used last
+MOST_HELD = 8  # arrays of one function in the memory of a process
+CHECKSUM = 32  # bytes before the content of a file
+
+Arguments = ParamSpec("Arguments")
+
+
+def kept_beside(kernel: Callable[..., object]) -> Callable[[Callable[Arguments, Array]], Callable[Arguments, Array]]:
+    """Decorates a function that makes an array; it is kept in the folder of a kernel.
+
+    Its arguments are numbers, texts, truth values, and tuples and frozen dataclasses of them; others raise TypeError.
+    Where nothing can be read or written, the array is made again: no error comes from the files.
+    """
+
+    def decorated(make: Callable[Arguments, Array]) -> Callable[Arguments, Array]:
+        source = Path(make.__code__.co_filename)
+
+        @lru_cache(maxsize=MOST_HELD)
+        @wraps(make)
+        def kept(*given: Arguments.args, **named: Arguments.kwargs) -> Array:
+            content = repr((_told(given), _told(tuple(named.items()))))
+            made_by = f"{make.__qualname__} {sources_digest(source)} {np.__version__} {numba.__version__}"
+            name = hashlib.sha256(f"{made_by} {content}".encode()).hexdigest()[:CHECKSUM]
+            with suppress(OSError):
+                folder = folder_of(kernel)
+                found = _read(folder / f"{make.__name__}-{name}{SUFFIX}")
+                if found is not None:
+                    return found
+            array = make(*given, **named)
+            with suppress(OSError):
+                _write(folder_of(kernel) / f"{make.__name__}-{name}{SUFFIX}", array)
+            return array
+
+        return kept  # type: ignore[return-value]  # the cache of functools loses the types of the arguments
+
+    return decorated
+
+
+def folder_of(kernel: Callable[..., object]) -> Path:
+    """The folder in which numba keeps a kernel."""
+    dispatcher: Any = kernel
+    return Path(dispatcher._cache.cache_path)
+
+
+def _told(value: object) -> object:
+    """A value with its exact digits, as its `repr` shows it. Raises TypeError for one whose `repr` may be less."""
+    if isinstance(value, tuple):
+        return tuple(map(_told, value))
+    if is_dataclass(value) and not isinstance(value, type):
+        return (type(value).__qualname__, *(_told(getattr(value, field.name)) for field in fields(value)))
+    if isinstance(value, np.generic):
+        return value.item()
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    raise TypeError(f"{type(value).__name__} cannot name what is kept on disk")
+
+
+def _read(path: Path) -> Array | None:
+    """The array of a file, None if there is none or it is damaged. Raises OSError."""
+    if not path.exists():
+        return None
+    stored = path.read_bytes()
+    content = stored[CHECKSUM:]
+    if hashlib.sha256(content).digest() != stored[:CHECKSUM]:
+        return None
+    with suppress(OSError):  # of another user
+        os.utime(path)
+    array: Array = np.load(io.BytesIO(content), allow_pickle=False)
+    return array
+
+
+def _write(path: Path, array: Array) -> None:
+    """Write a file at once, so that no process reads half of it, and remove those that were not used for the longest
+    time. Raises OSError."""
+    content = io.BytesIO()
+    np.save(content, array, allow_pickle=False)
+    stored = content.getvalue()
+    part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
+    try:
+        part.write_bytes(hashlib.sha256(stored).digest() + stored)
+        part.replace(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
+    others = sorted(path.parent.glob(f"*{SUFFIX}"), key=lambda other: other.stat().st_mtime)
+    for other in others[:-MOST_KEPT]:
+        other.unlink(missing_ok=True)
