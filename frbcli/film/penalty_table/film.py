@@ -15,10 +15,10 @@ from frbcli.film.cells.mesh.grid import VolumeGrid, axial_weights, fitted_grid
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.gap import Section, gap_rate
 from frbcli.film.grid import Array, Mesh
+from frbcli.film.kept import kept_beside
 from frbcli.film.penalty_table.rows import LIMIT, row_forces
 from frbcli.film.penalty_table.table import PenaltyTableFilm, slow_speed, source_table, table_numbers
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.kept import kept_beside
 
 CENTRED = 1e-6  # eccentricity that stands for the centre
 

@@ -10,12 +10,12 @@ from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section, groove_pressure
 from frbcli.film.grid import Array, Mesh
+from frbcli.film.kept import kept_beside
 from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
 from frbcli.film.rectangles.fields import FieldsFilm, field_grid, field_table
 from frbcli.film.rectangles.film_force import FilmData, film_force
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
 from frbcli.film.rectangles.table import TableFilm, force_table, table_force
-from frbcli.kept import kept_beside
 
 EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli import kept
 from frbcli.case.reading.load import load_case
+from frbcli.film import kept
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.penalty_table import film as penalty_film
