@@ -1,4 +1,4 @@
-"""How uncertain the events of a run are, from those of a second, coarser run of the same machine.
+"""How uncertain the events and the slow signals of a run are, from a second, coarser run of the same machine.
 
 Events of both runs belong together if they have the same kind, film and point, are near in time and in the same order.
 The second run is about twice as far from the truth, so that the difference of such a pair, times SAFETY, is the
@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.analysis.events import WHIRL_BEGINS, resolution
 from frbcli.analysis.orders.subsynchronous import BEGINS, SIDES
-from frbcli.analysis.signals import RunLike
+from frbcli.analysis.signals import RunLike, Values, piece
 
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
 NEAR_REVOLUTIONS = 40.0  # of the rotor, or as much: at the beginning of a run a whirl settles in as many
@@ -28,6 +29,10 @@ GIVEN = "clearance-step"  # its time stands in the case
 SAME = ("kind", "film", "point")
 OF_WHIRLS = ("onset", "lock-in", "offset")
 SPEED, FREQUENCY, AMPLITUDE = "speed_Hz", "frequency_Hz", "amplitude"
+
+WINDOWS = 100  # parts of a run in which means are taken: long against a whirl, short against what warms up
+SLOW = {"ring_speed": "ring_speed_uncertainty_Hz", "temperature": "temperature_uncertainty_K",
+        "power": "power_uncertainty_W", "oil_fraction": "oil_fraction_uncertainty"}  # fmt: skip
 
 Record = Mapping[str, Any]
 
@@ -75,6 +80,27 @@ class _Usual:
             _usual([_apart(*pair, key) / _size(pair[0], key) for pair in both]) for key in (SPEED, FREQUENCY)
         )
         return cls(speed, frequency, _usual([_apart(*pair, AMPLITUDE) for pair in both]))
+
+
+def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
+    """Uncertainties of ring speeds, temperatures, losses and oil fractions over a whole run, as keys of its error: the
+    largest difference of the means in WINDOWS parts of the run, times SAFETY, in the unit of the name. Of several
+    signals of a kind that of the least certain one; without such signals nothing."""
+    count = min(len(run), len(second))
+    edges = np.unique(np.linspace(0, count, WINDOWS + 1).astype(np.int64))
+    found = {}
+    for quantity, key in SLOW.items():
+        names = [name for name in run.signals if name.startswith(quantity)]
+        apart = [_means(run, name, edges) - _means(second, name, edges) for name in names]
+        if apart and count:
+            found[key] = SAFETY * float(np.abs(apart).max())
+    return found
+
+
+def _means(run: RunLike, name: str, edges: NDArray[np.int64]) -> Values:
+    """Means of a signal between samples (k + 1,)."""
+    values = piece(run, name, 0, int(edges[-1]))
+    return np.asarray(np.add.reduceat(values, edges[:-1]) / np.diff(edges))
 
 
 def partners(events: Sequence[Record], second: Sequence[Record]) -> list[Record | None]:

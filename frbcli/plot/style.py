@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -41,6 +42,7 @@ SYMBOL = re.compile(r"(?<!\w)([^\W\d_])_([^\W_]{1,2})(?!\w)")  # with its index
 LEGEND_ROW, FEW_COLUMNS = 0.2, 3  # inches; columns of a legend, of more the letters are smaller
 LABEL_ROWS, LABEL_HEIGHT_pt, LABEL_GAP_pt = 3, 24, 6  # of labels above a panel
 POINTS = 72.0  # of an inch
+BAND = 0.25  # opacity of a band of uncertainty
 MOST_MARKED = 50  # events in a picture, the first ones
 MOST_NAMED = 40  # curves in a legend
 
@@ -142,6 +144,15 @@ def mark_times(panels: Sequence[Axes], times_s: Sequence[float], labels: Sequenc
         free_from[row] = start + length + LABEL_GAP_pt
         text.set_position((start - at, 4 + LABEL_HEIGHT_pt * row))
     return left_out
+
+
+def draw_bands(axes: Axes, half: float | None) -> None:
+    """A band about each curve of a panel: its uncertainty in the unit of the panel, None for none."""
+    if half is None or not half > 0.0:
+        return
+    for line in list(axes.lines):
+        place, value = (np.asarray(values, dtype=np.float64) for values in line.get_data())
+        axes.fill_between(place, value - half, value + half, color=line.get_color(), alpha=BAND, linewidth=0.0)
 
 
 def legend_below(figure: Figure, *panels: Axes, columns: int = 3) -> None:

@@ -16,7 +16,7 @@ from frbcli.results.store import Header, Run, RunWriter, check_output
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.errors.error_budget import quiet_until
 from frbcli.runs.errors.fewer_cells import on_fewer_cells
-from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, uncertain_events
+from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, with_second_run
 from frbcli.runs.march import March, Progress
 from frbcli.runs.record.header import header
 from frbcli.runs.record.interrupt import held_back
@@ -186,11 +186,11 @@ def _run(command: str, case: Case, path: Path, wanted: Wanted, observe: Observer
 
 
 def _with_second_run(march: March, writer: RunWriter, run: Run, observe: Observer | None) -> Run:
-    """A run that has ended, with the uncertainties of its events, in its file."""
+    """A run that has ended, with its uncertainties, in its file."""
     began = time.process_time()
-    events = uncertain_events(march, run, observe)
+    events, error = with_second_run(march, run, observe)
     cost = {**run.cost, SECOND_RUN: time.process_time() - began}
-    return writer.finish(run.status, cost, run.error, events, run.t_end_s)
+    return writer.finish(run.status, cost, error, events, run.t_end_s)
 
 
 def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: float) -> Run:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from synthetic_run import Rotor, make_run
+from synthetic_run import Rotor, as_run, make_run
 
 from frbcli.analysis.events import WHIRL_BEGINS
-from frbcli.analysis.uncertainty import FAINT, NEAR, SAFETY, partners, with_uncertainties
+from frbcli.analysis.uncertainty import FAINT, NEAR, SAFETY, partners, slow_uncertainties, with_uncertainties
 from frbcli.results.store import Run
 
 RAMP = 30.0  # Hz/s of the synthetic run
@@ -112,3 +113,22 @@ def test_every_event_has_one_partner_at_most_and_all_are_in_order(own: list[floa
     matched = [(t, other["t_s"]) for t, other in zip(own, found, strict=True) if other is not None]
     assert [other for _, other in matched] == sorted({other for _, other in matched})
     assert all(abs(t - other) <= max(NEAR * t, 40.0 / (RAMP * t)) + 1e-12 for t, other in matched)
+
+
+def rings(speed_Hz: float, wave_Hz: float, warm_K: float) -> Run:
+    """A ring that turns and sways, and a film that becomes warm."""
+    time = np.linspace(0.0, 10.0, 20_001)
+    plain = {"time_s": time, "speed_Hz": 30.0 * time}
+    ring = speed_Hz + wave_Hz * np.sin(2.0 * np.pi * 50.0 * time)
+    return as_run(plain | {"ring_speed_Hz": ring, "temperature_inner_K": 300.0 + warm_K * time})
+
+
+def test_a_slow_signal_is_as_uncertain_as_its_means_differ() -> None:
+    """The sway of 50 Hz is not part of it; a temperature that rises 0.1 K/s faster is 1 K off at the end of 10 s, and
+    half of a hundredth less in the mean of the last part."""
+    found = slow_uncertainties(rings(40.0, 5.0, 2.0), rings(40.5, 1.0, 2.1))
+    assert found == {
+        "ring_speed_uncertainty_Hz": pytest.approx(SAFETY * 0.5, rel=1e-3),
+        "temperature_uncertainty_K": pytest.approx(SAFETY * 0.995, rel=1e-3),
+    }
+    assert slow_uncertainties(make_run(Rotor()), make_run(Rotor())) == {}

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from frbcli.columns import ZERO_CELSIUS
 from frbcli.plot.curves import Over, ScaledSignal, curves_figure, draw_curves
+from frbcli.plot.style import draw_bands
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
 
@@ -20,12 +21,16 @@ PANELS = (
     ("flow", "_m3_s", "side flow in ml/s", 1e6, 0.0),
 )
 
+UNCERTAINTIES = {"temperature": "temperature_uncertainty_K", "power": "power_uncertainty_W"}  # of the error of a run
+
 
 def heat_figure(
     runs: Sequence[Run], from_time: float | None = None, to_time: float | None = None, over: Over = "time"
 ) -> Figure:
     """Temperatures of films, rings and walls, viscosities, losses and flows of the films, the runs overlaid, from
-    from_time to to_time in s. Raises RunFileError if a run has no heat."""
+    from_time to to_time in s; of one run with bands of their uncertainties.
+
+    Raises RunFileError if a run has no heat."""
     for run in runs:
         if not _told(run, *PANELS[0][:2]) or set(_told(run, *PANELS[0][:2])) != set(_told(runs[0], *PANELS[0][:2])):
             raise refuse(run.path, "has no such heat.", "Draw a run of a case with [thermal].")
@@ -39,6 +44,7 @@ def heat_figure(
         draw_curves(axes, runs, curves, over, (from_time, to_time))
         if len(runs) == 1:  # several are distinguished by their lines
             _part(axes)
+            draw_bands(axes, runs[0].error.get(UNCERTAINTIES.get(quantity, "")))
         axes.set_ylabel(words)
 
     return curves_figure(runs, [partial(panel, *told) for told in PANELS], over, 9.0)

@@ -16,12 +16,23 @@ from frbcli.plot.run.eccentricity import draw_eccentricity
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import ends, events, heading, is_searchable, uncertain_times
 from frbcli.plot.spectra.waterfall import draw_levels, level_label, reading, run_spectra
-from frbcli.plot.style import BLACK, GREY, MOST_MARKED, SKY, legend_beside, mark_times, new_figure, set_title, styled
+from frbcli.plot.style import (
+    BAND,
+    BLACK,
+    GREY,
+    MOST_MARKED,
+    SKY,
+    draw_bands,
+    legend_beside,
+    mark_times,
+    new_figure,
+    set_title,
+    styled,
+)
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 
 SIGNAL = "journal"
-BAND = 0.25  # opacity of the times between which an event lies
 FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
 
 NAMES = {
@@ -82,11 +93,12 @@ def summary_figure(run: Run) -> Figure:
 
 
 def _draw_speed(axes: Axes, run: Run) -> None:
-    axes.plot(*curve(run, run.signal(SPEED)), color=BLACK, label="rotor")
     rings = [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
     for name, colour in zip(rings, itertools.cycle((GREY, SKY)), strict=False):
         label = ", ".join(word for word in ("ring", name) if word)
         axes.plot(*curve(run, run.signal(joined("ring_speed", name, "Hz"))), color=colour, label=label)
+    draw_bands(axes, run.error.get("ring_speed_uncertainty_Hz"))
+    axes.plot(*curve(run, run.signal(SPEED)), color=BLACK, label="rotor")
     legend_beside(axes)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("time in s")

@@ -10,6 +10,13 @@ from frbcli.results.store import Run
 from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED
 from frbcli.scene.costs.cost import clock
 
+SLOW_WORDS = (
+    ("ring_speed_uncertainty_Hz", "ring speeds", " Hz"),
+    ("temperature_uncertainty_K", "temperatures", " K"),
+    ("power_uncertainty_W", "losses", " W"),
+    ("oil_fraction_uncertainty", "oil fractions", ""),
+)
+
 
 def account(run: Run) -> list[tuple[str, str, str]]:
     """Rows of a table, what and how much and a remark: cost, oil that passed, stated errors."""
@@ -100,7 +107,11 @@ def _predicted(cost: dict[str, Any]) -> str:
 
 def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
     """The parts of the error that not every run has."""
-    rows = []
+    rows = [
+        (f"uncertainty, {words}", f"{error[key]:.2g}{unit}", "means of a hundredth of the run")
+        for key, words, unit in SLOW_WORDS
+        if error.get(key) is not None
+    ]
     if error.get("modal_reduction") is not None:
         rows.append(("error, modal reduction", f"{error['modal_reduction']:.1e}", "of the natural frequencies"))
     if error.get("eccentricity") is not None:

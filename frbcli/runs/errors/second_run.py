@@ -1,4 +1,5 @@
-"""The uncertainty of the events of a run, from a second run on fewer cells or elements and with a larger tolerance."""
+"""The uncertainties of a run after a whirl has grown, from a second run on fewer cells or elements and with a larger
+tolerance."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.signals import Values
-from frbcli.analysis.uncertainty import NEAR, with_uncertainties
+from frbcli.analysis.uncertainty import NEAR, slow_uncertainties, with_uncertainties
 from frbcli.errors import NotConverged
 from frbcli.results.store import Run
 from frbcli.runs.march import March, Progress
@@ -20,6 +21,7 @@ from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 SECOND_RUN, SECOND_RUN_PREDICTED = "second_run_cpu_s", "second_run_predicted_cpu_s"  # of the cost of a run
 
 Observer = Callable[[Progress], None]
+Record = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -57,10 +59,11 @@ def second_run(march: March, run: Run, observe: Observer | None = None) -> Secon
     return SecondRun(joined, run.references, ended.get(status, "not-converged"))
 
 
-def uncertain_events(march: March, run: Run, observe: Observer | None = None) -> list[dict[str, Any]]:
-    """The events of a run with their uncertainties, see `with_uncertainties`; as they are if the second run does not
-    begin."""
+def with_second_run(march: March, run: Run, observe: Observer | None = None) -> tuple[list[Record], Record]:
+    """The events of a run with their uncertainties, see `with_uncertainties`, and its error with `slow_uncertainties`;
+    both as they are if the second run does not begin."""
     second = second_run(march, run, observe)
     if second is None:
-        return run.events
-    return with_uncertainties(run, run.events, [asdict(event) for event in find_events(second)])
+        return run.events, run.error
+    events = with_uncertainties(run, run.events, [asdict(event) for event in find_events(second)])
+    return events, {**run.error, **slow_uncertainties(run, second)}
