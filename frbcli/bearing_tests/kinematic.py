@@ -63,7 +63,7 @@ class KinematicResult:
     @property
     def theory(self) -> str:
         """ "finite", or the name of a bearing model."""
-        return "finite" if self.plan.model is None else self.plan.model.name
+        return self.plan.theory
 
     @property
     def name(self) -> str:

@@ -75,7 +75,7 @@ class StaticFilms:
     @property
     def on_cells(self) -> bool:
         """Whether the films are on cells, the other meshes then being coarser ones."""
-        return bool(self.system.films.volumes)
+        return self.own.plan.form.by_cells
 
     def warm(self, viscosities: Array, clearances: Array) -> StaticFilms:
         """These films with viscosities in Pa s and clearances in m, (films,) each."""
@@ -86,10 +86,11 @@ class StaticFilms:
         case = warm_case(self.case, viscosities, clearances)
         return StaticFilms(case, warmed(self.own), lambda: tuple(map(warmed, self.others)), self.top_Hz)
 
-    def volumes(self) -> tuple[VolumeFilm, ...]:
+    def with_fields(self) -> tuple[VolumeFilm, ...]:
         """The films on CELLS, for the fields of pressure and flow."""
         places = film_places(self.case)
-        return self.system.films.volumes or tuple(volume_film(self.case, each, CELLS, self.top_Hz) for each in places)
+        own = self.system.films.with_fields
+        return own or tuple(volume_film(self.case, each, CELLS, self.top_Hz) for each in places)
 
 
 def static_films(case: Case, load: float | None = None, top_Hz: float | None = None) -> StaticFilms:

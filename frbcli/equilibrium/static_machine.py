@@ -105,9 +105,9 @@ class StaticMachines:
 
 def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:
     """The films of a machine at rest at omega rad/s with the memory of their oil. Raises NotConverged."""
-    places, totals = found.position.journals, found.totals.tolist()
+    films, places, totals = system.films.with_fields, found.position.journals, found.totals.tolist()
     return tuple(
-        dynamic_film(system.films.volumes[i], places[i], totals[i], omega) if keeps else constant_film(found.forces[i])
+        dynamic_film(films[i], places[i], totals[i], omega) if keeps else constant_film(found.forces[i])
         for i, keeps in enumerate(system.remembering)
     )
 

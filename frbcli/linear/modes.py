@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.columns import Table, named, table_of
 from frbcli.errors import Fault, InputError
@@ -22,6 +21,7 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.order import first_largest, ranks
 from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, whirl_modes
+from frbcli.scene.films import bearing_springs
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_springs, support_faults
 from frbcli.scene.shafts.table import shaft_of
@@ -157,11 +157,7 @@ def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
     sizes = [float(np.abs(film.stiffness).max()) for film in films]
     if any(mean <= NO_STIFFNESS * size for mean, size in zip(means, sizes, strict=True)):
         return ()
-    single = iter(means)
-    return tuple(
-        1 / (1 / next(single) + 1 / next(single)) if isinstance(bearing, FloatingRingBearing) else next(single)
-        for bearing in case.bearings
-    )
+    return bearing_springs(case, means)
 
 
 def _springs(case: Case, stiffness: float | Sequence[float] | None) -> Array:

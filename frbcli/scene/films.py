@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,6 +73,13 @@ def rings(case: Case) -> tuple[FloatingRingBearing, ...]:
 def turning_rings(case: Case) -> tuple[FloatingRingBearing, ...]:
     """The bearings with rings that turn, in the order of the rings' numbers."""
     return tuple(bearing for bearing in rings(case) if bearing.ring.spin == "free")
+
+
+def bearing_springs(case: Case, films: Iterable[float]) -> tuple[float, ...]:
+    """The stiffness of each bearing with a film out of that of its films, in their order: in series around a ring."""
+    single = iter(films)
+    found = ([next(single) for _ in bearing.films] for bearing in case.bearings)
+    return tuple(own[0] if len(own) == 1 else 1.0 / sum(1.0 / each for each in own) for own in found)
 
 
 def is_plain(film: FilmGeometry) -> bool:

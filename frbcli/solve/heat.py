@@ -18,11 +18,11 @@ from numba.extending import overload
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cells.balance.side_flow import side_flow
+from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import (
     GIVEN_PRESSURE,
     VolumeFilms,
 )
-from frbcli.film.kinds.cells import CellEnds
 from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.film.state import OIL, RATE
 from frbcli.solve.films.cell_steps import oil_fraction

@@ -296,7 +296,7 @@ def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
     up to an eccentricity of 0.6; and the derivatives are those of the force."""
     case = frbcli.load_case("floating-ring", ["film.cavitation=half-sommerfeld"])
     system = make_system(case, make_plan(case))
-    mean, volume = smooth_films(system)[film]._replace(drop=0.0), system.films.volumes[film]
+    mean, volume = smooth_films(system)[film]._replace(drop=0.0), system.films.with_fields[film]
     c, omega, bores = volume.section.clearance, 2000.0, len(volume.section.holes)
     for eccentricity, v in ((0.2, (0.0, 0.0)), (0.6, (100.0, 50.0))):
         d = (eccentricity * math.cos(0.3), eccentricity * math.sin(0.3))

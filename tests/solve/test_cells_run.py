@@ -49,7 +49,7 @@ def run(case: Case, plan: Plan, system: System, state: State | None = None, budg
     profile = run_up_profile(case)
     state = first_state(case.start, system, profile) if state is None else state
     rows, n = 4000, system.rotor.size
-    output = make_output(rows, n, len(system.films.volumes))
+    output = make_output(rows, n, len(system.films.with_fields))
     status, written = RUNNING, 0
     tableau, control, rotor = METHODS[plan.method].tableau, control_of(case, plan), rotor_data(system, profile)
     while status == RUNNING:
@@ -66,7 +66,7 @@ def run(case: Case, plan: Plan, system: System, state: State | None = None, budg
 def test_all_oil_is_accounted_for(settings: list[str]) -> None:
     case = case_of("jeffcott", "start.position=resting", *settings)
     plan, system = planned(case)
-    film = system.films.volumes[0]
+    film = system.films.with_fields[0]
     before = first_state(case.start, system, run_up_profile(case))
     _, after = run(case, plan, system)
     free = ~film.grid.fixed
@@ -147,7 +147,7 @@ def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str, grid:
         plan, system = planned(case, tolerance=tolerance)
         assert isinstance(system.films.loop, VolumeFilms)
         system.films.loop.films["settled"] = settled
-        film, first = system.films.volumes[0], first_state(case.start, system, run_up_profile(case))
+        film, first = system.films.with_fields[0], first_state(case.start, system, run_up_profile(case))
         q, last = run(case, plan, system)
         if system.remembers:
             gained = (film.grid.area * (last.wet[2, 0] - first.wet[2, 0]))[~film.grid.fixed].sum()
@@ -168,7 +168,7 @@ def test_films_of_rings_take_few_iterations(cavitation: str, most: float) -> Non
     _, state = run(case, plan, system)
     steps = state.numbers[STEPS] + state.numbers[REJECTED]
     assert state.numbers[REJECTED] < 0.05 * steps
-    assert state.numbers[SOLVES] / (steps * len(system.films.volumes) * STAGES[plan.method]) < most
+    assert state.numbers[SOLVES] / (steps * len(system.films.with_fields) * STAGES[plan.method]) < most
 
 
 def test_half_sommerfeld_on_cells_is_that_of_the_table() -> None:

@@ -57,9 +57,9 @@ def ringed(*settings: str) -> Case:
 def system_of(case: Case, change: Callable[[Channel], Channel] = lambda channel: channel) -> System:
     """The system of a case, its channels changed."""
     system = make_system(case, make_plan(case))
-    channels = [change(channel) for channel in coupled_channels(case, system.films.volumes)]
-    data = volume_films(system.films.volumes)
-    films = replace(system.films, data=with_channels(data, system.films.volumes, channels))
+    channels = [change(channel) for channel in coupled_channels(case, system.films.with_fields)]
+    data = volume_films(system.films.with_fields)
+    films = replace(system.films, data=with_channels(data, system.films.with_fields, channels))
     return replace(system, films=films)
 
 
@@ -83,7 +83,7 @@ def begin(films, work, wet, flows, weights, g):  # type: ignore[no-untyped-def]
 def feed_hole_pressures(system: System, state: State) -> tuple[float, float]:
     """Gauge pressures in Pa at the first feed holes of the inner and of the outer film."""
     means = []
-    for film, w in zip(system.films.volumes, state.wet[W], strict=True):
+    for film, w in zip(system.films.with_fields, state.wet[W], strict=True):
         pressure = film.law.cells(w, film.scales).pressure * film.section.pressure_scale
         first = np.argwhere(film.grid.fixed)[0]
         means.append(float(pressure[tuple(first)]))
@@ -100,13 +100,13 @@ def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> N
     first, last = run(case, system)
     feed_holes = system.films.loop.feed_holes  # type: ignore[union-attr]
     sizes = [film.section.copies * film.section.radius * film.section.width * film.section.clearance
-             for film in system.films.volumes]  # fmt: skip
+             for film in system.films.with_fields]  # fmt: skip
     assert feed_holes[0].flow_scale == sizes[0]
     brought = np.array(sizes) * last.flows[PASSED, :, CHANNELS_NET]
     if supply:
         assert brought[0] > 0.0
         assert brought.sum() == pytest.approx(0.0, abs=1e-10 * brought[0])
-    for i, film in enumerate(system.films.volumes):
+    for i, film in enumerate(system.films.with_fields):
         own = system.films.loop.cells[i, UNKNOWN] != 0.0  # type: ignore[union-attr]
         gained = (film.grid.area * (last.wet[OIL, i] - first.wet[OIL, i]))[own].sum()
         assert gained == pytest.approx(net_flow(last, i), abs=1e-10 * last.flows[PASSED, i].max())
@@ -138,7 +138,7 @@ def test_films_at_rest_are_a_network(resistance: float) -> None:
     """
     case = ringed(*STILL, *AT_END, "speed.duration=1e-3 s", "accuracy.mesh=[5,36]")  # as many cells under all holes
     system = system_of(case, lambda channel: replace(channel, resistance=resistance))
-    inner, outer = system.films.volumes
+    inner, outer = system.films.with_fields
     supplied = 1e5
     leak = _fed(inner, 1e5, 0.0) / 1e5
     through = 1.0 / (resistance / BORES + 1.0 / leak)  # flow through channels and inner film per pressure outside
@@ -157,7 +157,7 @@ def test_resistance_of_a_bore() -> None:
     """128 eta L / (pi d^4); for 2.5 mm through 7.5 mm of ring, with 12 mPa s."""
     assert channel_resistance(2.5e-3, 7.5e-3, 12e-3) == pytest.approx(9.387e7, rel=1e-4)
     case = ringed(*AT_END)
-    (first, *_) = coupled_channels(case, make_system(case, make_plan(case)).films.volumes)
+    (first, *_) = coupled_channels(case, make_system(case, make_plan(case)).films.with_fields)
     assert first.resistance == channel_resistance(2.5e-3, 7.5e-3, 12e-3)
     assert first.centrifugal == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2))
 

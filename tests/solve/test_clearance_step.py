@@ -104,7 +104,7 @@ def test_oil_stays_or_leaves_through_the_ends(model: str, clearance: str) -> Non
 
 def own_oil(segment: Segment, snapshot: dict[str, Array]) -> float:
     """m^3 in the free cells of the only film, less what has come in since the beginning."""
-    film, state = segment.system.films.volumes[0], State(*(snapshot[name] for name in State._fields))
+    film, state = segment.system.films.with_fields[0], State(*(snapshot[name] for name in State._fields))
     inside = float((film.grid.area * state.wet[OIL, 0])[~film.grid.fixed].sum())
     return film.section.radius * film.section.width * film.section.clearance * (inside - net_flow(state, 0))
 

@@ -45,7 +45,7 @@ def marched(case: Case, apart: bool, longest: float, tolerance: float) -> tuple[
     if apart:
         state = in_turn(system, state, float(profile.speeds[0]))
     rows = int(profile.end / control.output_step) + 10
-    output = make_output(rows, system.rotor.size, len(system.films.volumes))
+    output = make_output(rows, system.rotor.size, len(system.films.with_fields))
     step = advance_in_turn if apart else advance
     tableau = METHODS["esdirk4"].tableau
     status, written = step(rotor_data(system, profile), system.films.loop, tableau, control, state, 10**8, output)

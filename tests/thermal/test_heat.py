@@ -361,7 +361,7 @@ def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) ->
     """The same linear film on finite volumes, its outflow where the pressure falls towards the end."""
     cells = ["film.solution=cells", "accuracy.mesh=[40, 240]", "film.cavitation=sommerfeld", "bearing.ends=oil-bath"]
     case = load_case("jeffcott", [f"bearing.supply.pressure={pressure}", *cells])
-    (film,) = make_system(case, make_plan(case)).films.volumes
+    (film,) = make_system(case, make_plan(case)).films.with_fields
     omega, d = 900.0, np.array([0.6, -0.8]) * eccentricity
     motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
     solution = FilmSolver(film).steady(motion)
@@ -385,7 +385,7 @@ def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
 def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     settings = ["film.cavitation=sommerfeld", "bearing.ends=oil-bath", "film.solution=cells", "accuracy.mesh=[40, 240]"]
     case = load_case("axial-groove", settings)
-    (film,) = make_system(case, make_plan(case)).films.volumes
+    (film,) = make_system(case, make_plan(case)).films.with_fields
     plain = load_case("axial-groove")
     system = make_system(plain, make_plan(plain))
     flow = make_end_flow(system.films.sections[0], system.films.loop[0])
@@ -399,7 +399,7 @@ def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
 @pytest.mark.parametrize("cavitation", ["reynolds", "two-phase"])
 def test_side_flow_of_cells_balances_what_the_groove_feeds(cavitation: str) -> None:
     case = load_case("jeffcott", [f"film.cavitation={cavitation}", "bearing.supply.pressure=3 bar"])
-    (film,) = make_system(case, make_plan(case)).films.volumes
+    (film,) = make_system(case, make_plan(case)).films.with_fields
     motion = Motion((0.3, -0.4), (0.0, 0.0), 900.0)
     solution = FilmSolver(film).steady(motion)
     balance = loads(film, motion, solution).oil

@@ -40,7 +40,7 @@ def test_power_of_journal_shell_and_pump_is_the_dissipation(cavitation: str, ecc
     settings = [f"film.cavitation={cavitation}", "film.solution=cells", "accuracy.mesh=[24, 192]",
                 "bearing.ends=oil-bath", f"bearing.supply.pressure={supply} bar", "film.theory=auto"]  # fmt: skip
     case = load_case("jeffcott", settings)
-    (film,) = make_system(case, make_plan(case)).films.volumes
+    (film,) = make_system(case, make_plan(case)).films.with_fields
     omega, d = 900.0, (0.6 * eccentricity, -0.8 * eccentricity)
     motion = Motion(d, (20.0, 30.0), omega)
     solution = FilmSolver(film).steady(motion)

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from frbcli.cycles.method.equilibria import HopfPoint
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, film_loads
-from frbcli.film.rectangles.short import ShortFilm
+from frbcli.film.kinds.samples import have_closed_forms
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -54,7 +54,7 @@ class Lyapunov:
 
 def lyapunov_coefficient(machine: Machine, hopf: HopfPoint) -> Lyapunov:
     """That of a Hopf point."""
-    smooth = all(isinstance(film, ShortFilm) for film in machine.films)
+    smooth = have_closed_forms(machine.films)
     d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
     gap = 1.0 - float(np.max(np.hypot(d[:, 0], d[:, 1])))
     if not smooth:

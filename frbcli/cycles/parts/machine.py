@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.parts.film_samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
 from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.parts.rotor_parts import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
+from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.scene.films import ROTOR

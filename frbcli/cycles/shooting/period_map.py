@@ -20,7 +20,6 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SIN, UNKNOWN, VolumeFilms
-from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.state import OIL, RATE, W_BEFORE, WET, W
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
@@ -48,7 +47,6 @@ from frbcli.solve.time_loop import advance
 STEPS_PER_REVOLUTION = 100
 TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differences of the map
 FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
-SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
 SAMPLES = 256  # moments at which displacements are evaluated
 MOST_STEPS = 10**6
@@ -116,8 +114,7 @@ class PeriodMap:
         q[kept] = x[:m] * self.scale
         v = x[m : m + n] / self._slow(np.ones(n), omega)
         theta[self.held] = x[m + n :] * math.sqrt(np.count_nonzero(self.held))
-        w = [unknown_at(*each) for each in zip(self.system.films.volumes, theta, near.theta, near.w, strict=True)]
-        return replace(near, q=q, v=v, theta=theta, w=np.stack(w))
+        return replace(near, q=q, v=v, theta=theta, w=self.system.films.oil_unknowns(theta, near.theta, near.w))
 
     def lying(self, share: float) -> PeriodMap:
         """The same map with cells that lie a share of their length further on at the start."""
@@ -234,23 +231,6 @@ def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
         raise Unreachable from None
     theta = state.wet[OIL] / found._gaps(q, found.begun)[:, :, None]
     return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W])
-
-
-def unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:
-    """(m, k) unknown of cells that hold theta; w: that of cells which held `before`.
-
-    The first step asks for it: over so short a time the oil of a cell stays, and Newton's method leaps past the steep
-    part of a law from afar. In a full cell the pressure is not told by the oil, and the unknown stays."""
-    found = np.where(theta < 1.0, w, np.maximum(w, 0.0))
-    changed = (theta < 1.0) & (np.abs(theta - before) > SAME)
-    high = np.zeros(np.count_nonzero(changed))
-    low = high - 2.0 - (film.scales.cavitation + film.scales.ambient) / film.scales.reference
-    for _ in range(HALVES):
-        middle = 0.5 * (low + high)
-        more = film.law.cells(middle, film.scales).fraction > theta[changed]
-        low, high = np.where(more, low, middle), np.where(more, middle, high)
-    found[changed] = high
-    return found
 
 
 def turned_back(field: Array, angle: float) -> Array:

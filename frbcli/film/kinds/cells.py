@@ -6,15 +6,15 @@ import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from frbcli.compiled import Indices
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
-from frbcli.film.cells.data import GIVEN_PRESSURE, SHEARED, Records, VolumeFilms
+from frbcli.film.cells.cell_ends import CellEnds
+from frbcli.film.cells.data import GIVEN_PRESSURE, SHEARED, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm, refilled
 from frbcli.film.cells.loads import CavitationFactor, force, loads
 from frbcli.film.cells.mesh.grid import run_grid
@@ -29,22 +29,8 @@ from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.section_faults import is_unfed
 from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
 
+SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 AROUND = 360  # angles at which the gap of lobes is looked at
-
-
-class CellEnds(NamedTuple):
-    """Films on cells as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1 over
-    the clearance; films, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
-    (channels,) over the viscosity; exponents (F, p): by which the parameters of the laws follow the scale of the
-    pressures."""
-
-    far_open: Indices
-    units: Array
-    films: Records
-    given: Array
-    feed_holes: Records
-    resistance: Array
-    exponents: Array
 
 
 @dataclass(frozen=True)
@@ -73,9 +59,13 @@ class CellFilms(Films):
         return self.data
 
     @property
-    def volumes(self) -> tuple[VolumeFilm, ...]:
-        """See Films.volumes."""
+    def with_fields(self) -> tuple[VolumeFilm, ...]:
+        """See Films.with_fields."""
         return self.own
+
+    def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
+        """See Films.oil_unknowns."""
+        return np.stack([_unknown_at(*each) for each in zip(self.own, theta, near, w, strict=True)])
 
     @property
     def cavitation_factor(self) -> str:  # type: ignore[override]
@@ -141,7 +131,7 @@ class CellFilms(Films):
         """See Films.refill."""
         if not self.remembering[i]:
             return None
-        film, old = self.own[i], before.volumes[i]
+        film, old = self.own[i], before.with_fields[i]
         w, oil = refilled(old, film, d, wet[OIL, i], wet[W, i])
         wet[W, i] = wet[W_BEFORE, i] = w
         wet[OIL, i] = film.content(Motion(d, (0.0, 0.0), 0.0), w)
@@ -256,3 +246,20 @@ class CellFilms(Films):
                 drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
             found.append(mean_film(film, len(openings), drop))
         return tuple(found)
+
+
+def _unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:
+    """(m, k) unknown of cells that hold theta; w: that of cells which held `before`.
+
+    The first step asks for it: over so short a time the oil of a cell stays, and Newton's method leaps past the steep
+    part of a law from afar. In a full cell the pressure is not told by the oil, and the unknown stays."""
+    found = np.where(theta < 1.0, w, np.maximum(w, 0.0))
+    changed = (theta < 1.0) & (np.abs(theta - before) > SAME)
+    high = np.zeros(np.count_nonzero(changed))
+    low = high - 2.0 - (film.scales.cavitation + film.scales.ambient) / film.scales.reference
+    for _ in range(HALVES):
+        middle = 0.5 * (low + high)
+        more = film.law.cells(middle, film.scales).fraction > theta[changed]
+        low, high = np.where(more, low, middle), np.where(more, middle, high)
+    found[changed] = high
+    return found

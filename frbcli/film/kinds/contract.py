@@ -148,9 +148,13 @@ class Films(ABC):
         raise NotImplementedError
 
     @property
-    def volumes(self) -> tuple[VolumeFilm, ...]:
-        """The films as finite volumes; empty for films of other kinds."""
+    def with_fields(self) -> tuple[VolumeFilm, ...]:
+        """The films with their fields of pressure, flow and oil; empty where these are not kept."""
         return ()
+
+    def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
+        """(films, m, k) unknowns of films with oil theta, from unknowns w of films with the oil near."""
+        raise NotImplementedError
 
 
 def couette_power(place: Array, clearance: float, force: Array, total: float, slip: float, drag: float) -> float:

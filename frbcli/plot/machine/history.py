@@ -5,7 +5,6 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from frbcli.bearing_tests.kinematic import KinematicTest
-from frbcli.film.cavitation.table import label_of
 from frbcli.plot.machine.film import BAR, LINES
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
 
@@ -17,7 +16,7 @@ def history_figure(found: KinematicTest) -> Figure:
     below, the gap at phi = pi."""
     motion = found.case.motion
     assert motion is not None
-    pressures = found.test == "whirl" and all(result.plan.model is None for result in found.results)
+    pressures = found.test == "whirl" and all(result.plan.form.solved for result in found.results)
     with styled():
         words = f"{found.test} with {motion.frequency:g} Hz, eccentricity {motion.eccentricity:g}"
         if motion.speed:
@@ -29,8 +28,7 @@ def history_figure(found: KinematicTest) -> Figure:
             if history is None:
                 continue
             values = history.probe_pressure / BAR if pressures else history.force[:, 1]
-            model = result.plan.model
-            label = label_of(result.cavitation) if model is None else model.label
+            label = result.plan.label
             label += "" if result.status == "ok" else ", not converged"
             colour, line = COLOURS[number % len(COLOURS)], LINES[number % len(LINES)]
             above.plot(history.time_s, values, color=colour, linestyle=line, label=label)

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.film_error import film_force_errors
 from frbcli.runs.oil import oil_defect
 from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.films import bearing_springs
 from frbcli.scene.machine.elements import element_springs
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
@@ -151,15 +151,7 @@ def _springs(case: Case, system: System, sample: Array) -> Array:
         system.films.force(i, selection @ q, selection @ v, float(omegas[i]))
         for i, selection in enumerate(system.rotor.journals)
     )
-    single = (-0.5 * float(np.trace(force.by_displacement)) for force in forces)
-    return np.array(
-        [
-            1.0 / (1.0 / next(single) + 1.0 / next(single))
-            if isinstance(bearing, FloatingRingBearing)
-            else next(single)
-            for bearing in case.bearings
-        ]
-    )
+    return np.array(bearing_springs(case, (-0.5 * float(np.trace(force.by_displacement)) for force in forces)))
 
 
 def _journals(system: System) -> Iterable[tuple[Array, float]]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Array, Mesh
@@ -57,6 +58,8 @@ class FilmForm:
     turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
     same_in_tests: ClassVar[bool] = False  # whether kinematic tests have the same films
+    modal: ClassVar[bool] = False  # whether kinematic tests take the pressure from the modal film
+    parts: ClassVar[tuple[str, str]] = "cells", "around x along"  # of a film in kinematic tests, and what they count
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"
     creates_oil: ClassVar[bool] = False  # whether oil is part of the state, and some is created
@@ -127,6 +130,16 @@ class FilmForm:
     def remedies(self, case: Case) -> tuple[str, ...]:
         """Settings that the case does not have yet with which its films are easier to solve, best first."""
         return ()
+
+    def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
+        """Cells or elements (around, along) of a section in kinematic tests, and why; None where the tests choose
+        them."""
+        return None
+
+    def transport(self, case: Case) -> tuple[str, str, str] | None:
+        """The decision about the transport of oil: choice, value, reason."""
+        reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
+        return ("diffusion", "upwind", reason) if law_named(case.film.cavitation).published_form else None
 
     def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
         """How the film of a kinematic test is computed: value and reason of a decision."""

@@ -133,6 +133,7 @@ class PublishedForm(FilmForm):
     by_cells: ClassVar[bool] = True
     fine_when_static: ClassVar[bool] = True
     same_in_tests: ClassVar[bool] = True
+    parts: ClassVar[tuple[str, str]] = "elements", "around x along of a section"
     creates_oil: ClassVar[bool] = True
     compiling: ClassVar[tuple[float, float]] = COMPILING
     rules: ClassVar[tuple[Rule, ...]] = RULES
@@ -166,8 +167,17 @@ class PublishedForm(FilmForm):
         return (
             ("film", f"{around} x {along} elements", f"quadratic, around x along of a section; {films.mesh_why}"),
             ("form", "published", reason),
-            diffusion_decision(case),
+            *filter(None, [self.transport(case)]),
         )
+
+    def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
+        """See FilmForm."""
+        return published_elements(case)
+
+    def transport(self, case: Case) -> tuple[str, str, str] | None:
+        """See FilmForm: the artificial diffusion."""
+        kind = case.film.two_phase.diffusion
+        return "diffusion", kind, DIFFUSIONS[kind]
 
     def remedies(self, case: Case) -> tuple[str, ...]:
         """See FilmForm."""
@@ -195,12 +205,6 @@ class PublishedForm(FilmForm):
 PUBLISHED = PublishedForm(
     "quadratic elements, two-phase model as published", SolveCounts(1.5, 4.0, 4.0, (1.0, 1.0)), 1300.0
 )
-
-
-def diffusion_decision(case: Case) -> tuple[str, str, str]:
-    """The decision about the artificial diffusion: choice, value, reason."""
-    kind = case.film.two_phase.diffusion
-    return "diffusion", kind, DIFFUSIONS[kind]
 
 
 def published_elements(case: Case) -> tuple[tuple[int, int], str]:

@@ -55,6 +55,8 @@ class FieldsForm(TableForm):
 class ModalForm(FilmForm):
     """Modal films, of kinematic tests alone."""
 
+    modal: ClassVar[bool] = True
+
     def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
         """See FilmForm."""
         return self.name, f"{law.name} in a rectangular gap; it has no state"

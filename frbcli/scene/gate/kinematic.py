@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from frbcli.case.bearing import SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.gate.analysis import ROTATION
@@ -57,7 +57,7 @@ def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
     if len(case.bearings) != 1:
         return
     bearing = case.bearings[0]
-    if not isinstance(bearing, SingleFilmBearing):
+    if isinstance(bearing, FloatingRingBearing):
         problem = "has two films in series: a kinematic test moves the journal of one."
         remedy = 'Write kind = "single-film", with the dimensions of one of its films.'
         yield Fault("bearing.kind", bearing.kind, None, problem, remedy)

@@ -109,7 +109,7 @@ class _Builder:
 
     def _bearings(self) -> list[FilmBearing]:
         """The bearing of each film."""
-        return [b for b in self._case.bearings for _ in range(1 if isinstance(b, SingleFilmBearing) else 2)]
+        return [b for b in self._case.bearings for _ in b.films]
 
     def _inlets(self) -> list[int]:
         """The film that feeds each film: an outer film that coupled channels join to the inner one, unless they open to

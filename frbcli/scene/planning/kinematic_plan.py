@@ -6,20 +6,19 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.bearing import SingleFilmBearing
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.table import law_named, names
+from frbcli.film.cavitation.table import label_of, law_named, names
 from frbcli.film.gap import Section, ends_at_ambient
 from frbcli.nearest import did_you_mean
 from frbcli.scene.films import make_law
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.models import GIVEN, chosen_model, model_decisions
-from frbcli.scene.forms.published import PUBLISHED, diffusion_decision, published_elements
+from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.tables import MODAL
 from frbcli.scene.gate.analysis import KINEMATIC, ROTATION
 from frbcli.scene.gate.gate import require
@@ -69,17 +68,27 @@ class KinematicPlan:
     @property
     def remembers(self) -> bool:
         """Whether the film has a state of its own."""
-        return self.model is None and self.law.keeps_oil
+        return self.form.solved and self.law.keeps_oil
+
+    @property
+    def theory(self) -> str:
+        """Of the film, or the name of its bearing model."""
+        return "finite" if self.model is None else self.model.name
+
+    @property
+    def label(self) -> str:
+        """Of the cavitation law, or of the bearing model."""
+        return label_of(self.cavitation) if self.model is None else self.model.label
 
     @property
     def modal(self) -> bool:
         """Whether the pressure is that of the modal film."""
-        return self.form == MODAL
+        return self.form.modal
 
     @property
     def on_cells(self) -> bool:
         """Whether the force is that of a film on cells."""
-        return self.form == CELLS
+        return self.form.by_cells
 
 
 def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATION) -> KinematicPlan:
@@ -92,29 +101,26 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
     case = with_model(case, asked) if asked in names() and not model else case
     require(case, test, _name_faults(case, asked))
     bearing, motion = case.bearings[0], case.motion
-    assert isinstance(bearing, SingleFilmBearing)
     assert motion is not None
-    section = film_section(case, bearing)
+    film = bearing.films[0]
+    section = film_section(case, film)
     rectangle = film_rectangle(section)
     form = _form(case, rectangle)
     law = law_named(case.film.cavitation)
-    turning = TWO_PI * (motion.speed or 0.0) if bearing.supply.surface == "journal" else 0.0
-    if form == GIVEN:
-        cells, why = (0, 0), ""
-    elif form == PUBLISHED:
-        cells, why = published_elements(case)
-    else:
-        cells, why = _cells(case, test)
-        section = ends_at_ambient(section) if law.closed and bearing.ends == "free-to-air" else section
+    turning = TWO_PI * (motion.speed or 0.0) if film.supply.surface == "journal" else 0.0
+    own = form.parts_in_tests(case)
+    cells, why = own or _cells(case, test)
+    if own is None:
+        section = ends_at_ambient(section) if law.closed and film.ends == "free-to-air" else section
     steps = () if test == ROTATION else (Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"),)
     chosen = chosen_model(case)
     if chosen is not None:
         decisions = (*(Decision(*decided) for decided in model_decisions(chosen)), *steps)
     else:
-        decisions = (*_decisions(case, bearing, section, form, cells, why), *steps, *_transport(case, bearing, form))
+        decisions = (*_decisions(case, film, section, form, cells, why), *steps, *_transport(case, film, form))
     return KinematicPlan(
         test, asked, form, section, rectangle, cells, motion_omega(case), decisions,
-        turning=turning, ramp=bearing.supply.rise_time, model=chosen,
+        turning=turning, ramp=film.supply.rise_time, model=chosen,
     )  # fmt: skip
 
 
@@ -153,36 +159,31 @@ def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
 
 
 def _decisions(
-    case: Case, bearing: SingleFilmBearing, section: Section, form: FilmForm, cells: tuple[int, int], why: str
+    case: Case, bearing: FilmGeometry, section: Section, form: FilmForm, cells: tuple[int, int], why: str
 ) -> Iterator[Decision]:
     """Gap, form and cells of a film of the program."""
     law = law_named(case.film.cavitation)
     yield _gap_decision(section, bearing)
     yield from _lobe_decision(section)
     yield Decision("film", *form.told_in_tests(law))
-    if form != PUBLISHED and law.closed and bearing.ends == "free-to-air":
+    if law.closed and bearing.ends == "free-to-air":
         reason = f"{law.name} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
         yield Decision("ends", "ambient pressure", reason)
     for film in unfed_films(case):
         yield Decision("supply", "starves" if film.keeps else "missing", film.reason)
-    if form == PUBLISHED:
-        yield Decision("elements", f"{cells[0]} x {cells[1]}", f"around x along of a section; {why}")
-    else:
-        yield Decision("cells", f"{cells[0]} x {cells[1]}", f"around x along; {why}")
+    parts, counted = form.parts
+    yield Decision(parts, f"{cells[0]} x {cells[1]}", f"{counted}; {why}")
 
 
-def _transport(case: Case, bearing: SingleFilmBearing, form: FilmForm) -> Iterator[Decision]:
+def _transport(case: Case, bearing: FilmGeometry, form: FilmForm) -> Iterator[Decision]:
     """How oil is transported, and in which frame."""
-    if form == PUBLISHED:
-        yield Decision(*diffusion_decision(case))
-    elif law_named(case.film.cavitation).published_form:
-        reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
-        yield Decision("diffusion", "upwind", reason)
+    if (transport := form.transport(case)) is not None:
+        yield Decision(*transport)
     if bearing.supply.surface == "journal":
         yield Decision("frame", "of the journal", "the feed holes turn with it and are at rest there")
 
 
-def _gap_decision(section: Section, bearing: SingleFilmBearing) -> Decision:
+def _gap_decision(section: Section, bearing: FilmGeometry) -> Decision:
     if section.far == "groove" and section.copies == 2:
         return Decision("gap", "1 of 2 sections", "a central circumferential groove parts two equal films")
     if section.far == "symmetry":

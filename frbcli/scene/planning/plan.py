@@ -198,7 +198,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     decide("bearings", *shaft_of(case).bearings_modelled)
     for decided in element_decisions(case):
         decide(*decided)
-    if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
+    if rings(case):
         decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
     for bearing in rings(case):
         if computed := _computed(bearing):

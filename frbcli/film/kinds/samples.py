@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.mean_fields.table import MeanFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm
 from frbcli.film.rectangles.film_force import FilmData, film_force
+from frbcli.film.rectangles.short import ShortFilm
 
 # Columns of film_samples: force (x, y), derivatives by d (xx, xy, yx, yy), by v (xx, xy, yx, yy), by omega (x, y).
 FORCE, BY_D, BY_V, BY_OMEGA, COLUMNS = 0, 2, 6, 10, 12
@@ -34,6 +36,11 @@ def film_samples(film: FilmData, d: Array, v: Array, omega: Array) -> Array:
         _sample(film, d, v, omega - step, behind)
         found[:, BY_OMEGA:] = (ahead[:, :2] - behind[:, :2]) / (2.0 * step[:, None])
     return found
+
+
+def have_closed_forms(films: Sequence[FilmData]) -> bool:
+    """Whether the force of every film is a formula, without lines of a table or of a mesh."""
+    return all(isinstance(film, ShortFilm) for film in films)
 
 
 @compiled()
