@@ -11,6 +11,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import Link, NodeForce
 from frbcli.rotor.body import Body
+from frbcli.rotor.loads import Load
 from frbcli.rotor.over_speed import LinearPart
 
 Line = tuple[str, str, str]  # of a plan: choice, value, reason
@@ -33,11 +34,13 @@ class Site:
 
 @dataclass(frozen=True)
 class Parts:
-    """What elements add to a machine: bodies with nodes, linear parts between nodes, forces on nodes."""
+    """What elements add to a machine: bodies with nodes, linear parts between nodes, constant forces on nodes, and
+    loads on the x and y of nodes that change with the angle of the rotor or with time."""
 
     bodies: tuple[Body, ...] = ()
     links: tuple[tuple[Link, LinearPart], ...] = ()
     forces: tuple[NodeForce, ...] = ()
+    loads: tuple[tuple[str, Load], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,23 +1,30 @@
-"""Constant forces on places of a machine."""
+"""Forces on places of a machine: constant ones, and harmonic ones as their cosine and sine parts,
+F = Re(A exp(i (theta + phase))) with A = f in a direction and A = (f_x + i f_y, f_y - i f_x) rotating."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Self
+
+import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.places import node_at
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.rotor.assembly import NodeForce
+from frbcli.rotor.loads import Harmonic
 from frbcli.units import display
 
 
 @dataclass(frozen=True)
 class ForceElement(MachineElement):
-    """A force on a node. At equal bearings there are as many of it, since each has a node of its own."""
+    """A force on a node. At equal bearings there are as many of it, since each has a node of its own. name: of a load
+    that changes, by the number of the force."""
 
+    name: str
     node: str
     given: AppliedForce
 
@@ -25,7 +32,7 @@ class ForceElement(MachineElement):
     def of(cls, case: Case) -> Iterator[Self]:
         """See MachineElement."""
         for number, force in enumerate(case.forces):
-            yield cls(f"force.{number}", node_at(case, force.at), force)
+            yield cls(f"force.{number}", f"force {number + 1}", node_at(case, force.at), force)
 
     def count(self, site: Site) -> float:
         """Equal forces in the machine."""
@@ -33,13 +40,21 @@ class ForceElement(MachineElement):
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""
-        x, y = self.given.force
-        count = self.count(site)
-        return Parts(forces=(NodeForce(self.node, (count * x, count * y)),))
+        given = self.given
+        x, y = np.multiply(self.count(site), given.force).tolist()
+        if given.constant:
+            return Parts(forces=(NodeForce(self.node, (x, y)),))
+        order, frequency = given.turns
+        amplitude = np.array([x + 1j * y, y - 1j * x] if given.rotating else [x, y]) * np.exp(1j * given.phase)
+        # Re(A exp(i theta)) = Re A cos(theta) - Im A sin(theta)
+        columns = np.array([amplitude.real, -amplitude.imag])
+        return Parts(loads=((self.node, Harmonic(self.name, columns, order, 2.0 * math.pi * frequency)),))
 
     def told(self, site: Site) -> Line:
         """See MachineElement."""
         x, y = (display(each, "N") for each in self.given.force)
+        turning = f"{self.given.turning}, {'rotating, ' if self.given.rotating else ''}"
         where = "at each of both equal bearings" if self.count(site) > 1.0 else "at one place"
         value = f"{self.node.replace('_', ' ')}: {x} in x, {y} in y"
-        return "force", value, f"constant, {where}; beside unbalance and weight"
+        reason = f"{'constant, ' if self.given.constant else turning}{where}; beside unbalance and weight"
+        return "force", value, reason

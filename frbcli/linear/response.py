@@ -1,4 +1,4 @@
-"""Linear unbalance response: the synchronous motion of a rotor in its films about the resting position.
+"""Linear response to the unbalance, or to another load: the motion of a rotor in its films about the resting position.
 
 At each rotor speed Omega the films are the eight coefficients of stability.py, of films that keep oil those at the
 frequency Omega, and the motion q = Re(Q exp(i alpha))
@@ -7,6 +7,8 @@ with the angle alpha of the rotor follows from
     (K + P^T K_f P + i Omega (D + Omega G + P^T D_f P) - Omega^2 M) Q = Omega^2 (u_sin + i u_cos),
 
 what (2.3) is at a constant speed. Films of unlike stiffness in x and y, or cross-coupled, make ellipses of it.
+Loads of the case that turn or swing once in a revolution join the unbalance. The motion by a single harmonic load has
+the frequency of that load, and its phase counts from there.
 
 The motion is in proportion to the unbalance, whatever the gap: where a journal moves over more than DOUBTFUL of the gap
 that its resting position leaves, the coefficients are doubtful, and no journal moves beyond its clearance.
@@ -15,8 +17,9 @@ that its resting position leaves, the coefficients are doubtful, and no journal 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,15 +34,18 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import RESPONSE_POINTS
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
+from frbcli.nearest import did_you_mean
 from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.rotor.loads import Harmonic
 from frbcli.scene.gate.analysis import FILMS, RANGE
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import element_forces
+from frbcli.scene.machine.elements import element_forces, harmonics_of
 from frbcli.scene.speeds import default_speeds
 
 Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
 
+UNBALANCE = "unbalance"  # as excitation
 SPEEDS = 120  # of the default sweep
 ROUND_OFF = 1e-9  # relative: what stands out by less, as where a stiff rotor turns about its centre of mass, is no peak
 # Larger semi-axis over the gap that is left at rest, above which linear coefficients are doubtful. Against the
@@ -53,14 +59,15 @@ SOUND, DOUBTFUL_MOTION, BEYOND_GAP = "linear", "doubtful", "beyond-gap"
 
 @dataclass(frozen=True, repr=False)
 class Response(Tabular):
-    """The synchronous motion at n speeds.
+    """The motion at n speeds.
 
     speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex
     amplitudes of x and y in m; films: the names of the f films; elements: those of the e elements; forces: (n, f + e,
     2) those of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least damped whirl:
     where it is positive, the motion is not seen; critical_speeds_Hz: where the largest motion of any point has a peak;
     resting: the resting positions; in_films: (n, f, 2) complex amplitudes of the journals in their films, over the
-    clearance; clearances: (n, f) m, warm with heat.
+    clearance; clearances: (n, f) m, warm with heat. excitation: UNBALANCE, with all loads of order 1, or the name of
+    the one load that excites.
     """
 
     case: Case
@@ -75,6 +82,12 @@ class Response(Tabular):
     resting: tuple[StabilityPoint, ...]
     in_films: Amplitudes
     clearances: Array
+    excitation: str = UNBALANCE
+
+    @property
+    def what(self) -> str:
+        """What it is, in words."""
+        return "unbalance response" if self.excitation == UNBALANCE else f"response to {self.excitation}"
 
     @property
     def bearings(self) -> tuple[str, ...]:
@@ -140,9 +153,12 @@ class Response(Tabular):
 
 
 def response(
-    case: Case, speeds_Hz: Sequence[float] | None = None, observe: Callable[[int, int], None] | None = None
+    case: Case,
+    speeds_Hz: Sequence[float] | None = None,
+    observe: Callable[[int, int], None] | None = None,
+    excitation: str = UNBALANCE,
 ) -> Response:
-    """Compute the linear unbalance response of a case.
+    """Compute the linear response of a case to its unbalance, or to another of its loads.
 
     Parameters
     ----------
@@ -152,6 +168,9 @@ def response(
         Rotor speeds in Hz, above 0; by default a range up to the highest of the case.
     observe : callable, optional
         Called with each speed's number and their number.
+    excitation : str, optional
+        Load that excites alone, such as "force 2" for the second force of the case; by default the unbalance with all
+        loads of order 1.
 
     Returns
     -------
@@ -161,7 +180,8 @@ def response(
     Raises
     ------
     InputError
-        If the case cannot be modelled, has films that eight coefficients do not describe, or rests nowhere.
+        If the case cannot be modelled, has films that eight coefficients do not describe, or rests nowhere, or if there
+        is no such load or a constant one.
 
     Examples
     --------
@@ -171,15 +191,15 @@ def response(
     >>> len(found.points)
     2
     """
-    require(case, RANGE if speeds_Hz is None else FILMS)
+    require(case, RANGE if speeds_Hz is None else FILMS, _excitation_faults(case, excitation))
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
-    system, points = stability_points(case, asked, observe, synchronous=True)
+    system, points = stability_points(case, asked, observe, partial(_frequency, case, excitation))
     resting = [point for point in points if point.rests]
     if not resting:
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise InputError(case.name or "case", (Fault("speed", "", None, problem, "Choose other speeds."),))
     rotor = without_spins(system.rotor, system.ring_count)
-    motions, forces, journals = zip(*(_at(case, rotor, point) for point in resting), strict=True)
+    motions, forces, journals = zip(*(_at(case, rotor, point, excitation) for point in resting), strict=True)
     systems = (system if point.warm is None else point.warm.system for point in resting)
     clearances = np.array([each.clearances for each in systems])
     motion = np.array(motions)
@@ -197,14 +217,48 @@ def response(
         resting=tuple(resting),
         in_films=np.array(journals) / clearances[:, :, None],
         clearances=clearances,
+        excitation=excitation,
     )
+
+
+def _excitation_faults(case: Case, excitation: str) -> Iterator[Fault]:
+    if excitation == UNBALANCE:
+        return
+    known = (UNBALANCE, *(load.name for load in harmonics_of(case)))
+    if excitation not in known:
+        problem = "is no load of the case that changes with angle or time."
+        yield Fault("excitation", excitation, None, problem, did_you_mean(excitation, known))
+
+
+def _frequency(case: Case, excitation: str, omega: float) -> float:
+    """Frequency of the motion in rad/s of a rotor that turns with omega rad/s."""
+    named = {load.name: load for load in harmonics_of(case)}
+    return named[excitation].excitation(omega)[0] if excitation in named else omega
+
+
+def excited(rotor: LinearRotor, omega: float, excitation: str = UNBALANCE) -> tuple[float, Amplitudes]:
+    """Frequency in rad/s, not below 0, and (n,) complex amplitudes in N of what excites a rotor that turns with omega
+    rad/s, see Response."""
+    harmonics = {load.name: load for load in rotor.loads if isinstance(load, Harmonic)}
+    if excitation != UNBALANCE:
+        return harmonics[excitation].excitation(omega)
+    synchronous = (load.excitation(omega)[1] for load in harmonics.values() if load.synchronous)
+    return omega, sum(synchronous, omega**2 * rotor.unbalance)
+
+
+def forced_motion(
+    rotor: LinearRotor, omega: float, load: tuple[float, Amplitudes], stiffness: Array, damping: Array
+) -> Amplitudes:
+    """(n,) complex amplitudes of all degrees of freedom at omega rad/s, under a load of a frequency and amplitudes, on
+    bearings of stiffness and damping (films, 2, 2) in N/m and N s/m."""
+    (frequency, force), (mass, d, k) = load, linearised(rotor, omega, stiffness, damping)
+    return np.asarray(np.linalg.solve(k + 1j * frequency * d - frequency**2 * mass, force))
 
 
 def unbalance_motion(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Amplitudes:
     """(n,) complex amplitudes of all degrees of freedom at omega rad/s on bearings of stiffness and damping (films, 2,
     2) in N/m and N s/m."""
-    mass, d, k = linearised(rotor, omega, stiffness, damping)
-    return np.asarray(np.linalg.solve(k + 1j * omega * d - omega**2 * mass, omega**2 * rotor.unbalance))
+    return forced_motion(rotor, omega, (omega, omega**2 * rotor.unbalance), stiffness, damping)
 
 
 def larger_semi_axis(motion: Amplitudes) -> Array:
@@ -214,15 +268,18 @@ def larger_semi_axis(motion: Amplitudes) -> Array:
     return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
 
 
-def _at(case: Case, rotor: LinearRotor, point: StabilityPoint) -> tuple[Amplitudes, Amplitudes, Amplitudes]:
+def _at(
+    case: Case, rotor: LinearRotor, point: StabilityPoint, excitation: str
+) -> tuple[Amplitudes, Amplitudes, Amplitudes]:
     """Motion (p, 2) of the points, forces (films + elements, 2), and motion (films, 2) of the journals in their films
     at one speed."""
     omega = 2.0 * math.pi * point.speed_Hz
     stiffness, damping = coefficients_of(point.films)
-    q = unbalance_motion(rotor, omega, stiffness, damping)
+    frequency, load = excited(rotor, omega, excitation)
+    q = forced_motion(rotor, omega, (frequency, load), stiffness, damping)
     journals = rotor.journals @ q
-    forces = -np.einsum("fij,fj->fi", stiffness + 1j * omega * damping, journals)
-    forces = np.concatenate([forces, element_forces(case, rotor, omega, q)])
+    forces = -np.einsum("fij,fj->fi", stiffness + 1j * frequency * damping, journals)
+    forces = np.concatenate([forces, element_forces(case, rotor, omega, frequency, q)])
     return np.array([place @ q for _, place in rotor.points]), forces, journals
 
 

@@ -111,15 +111,16 @@ def stability_points(
     case: Case,
     speeds_Hz: Sequence[float],
     observe: Callable[[int, int], None] | None = None,
-    synchronous: bool = False,
+    frequency: Callable[[float], float] | None = None,
 ) -> tuple[System, tuple[StabilityPoint, ...]]:
     """The machine, and its points at speeds_Hz, ascending.
 
-    observe: called with each speed's number and their number; synchronous: see point_at_rest. Raises InputError if the
-    case cannot be modelled, a speed is not positive, or a film cannot be linearised.
+    observe: called with each speed's number and their number; frequency: that of the motion in
+    rad/s, by the speed of the rotor in rad/s, see point_at_rest. Raises InputError if the case cannot be modelled, a
+    speed is not positive, or a film cannot be linearised.
     """
     check_machine(case, speeds_Hz)
-    machines, points = _sweep(case, speeds_Hz, observe, synchronous)
+    machines, points = _sweep(case, speeds_Hz, observe, frequency)
     return machines.system, points
 
 
@@ -134,7 +135,7 @@ def _sweep(
     case: Case,
     speeds_Hz: Sequence[float],
     observe: Callable[[int, int], None] | None = None,
-    synchronous: bool = False,
+    frequency: Callable[[float], float] | None = None,
     with_error: bool = True,
 ) -> tuple[StaticMachines, tuple[StabilityPoint, ...]]:
     """As stability_points, with the machines at further speeds. with_error: whether errors of the coefficients are
@@ -143,7 +144,7 @@ def _sweep(
     points: list[StabilityPoint] = []
     near: MachineAtRest | None = None
     for speed in sorted(speeds_Hz, reverse=True):  # from near the centre, where a fast journal rests, outwards
-        point, near = _point(case, machines, speed, near, synchronous, with_error)
+        point, near = _point(case, machines, speed, near, frequency, with_error)
         points.append(point)
         if observe is not None:
             observe(len(points), len(speeds_Hz))
@@ -151,13 +152,18 @@ def _sweep(
 
 
 def _point(
-    case: Case, machines: StaticMachines, speed: float, near: MachineAtRest | None, synchronous: bool, with_error: bool
+    case: Case,
+    machines: StaticMachines,
+    speed: float,
+    near: MachineAtRest | None,
+    frequency: Callable[[float], float] | None,
+    with_error: bool,
 ) -> tuple[StabilityPoint, MachineAtRest | None]:
     """The point at a speed in Hz, sought from the machine `near`, and that from which to seek the next one."""
     try:
         with advised(case):
             machine = machines.at(2 * math.pi * speed, near, with_error)
-            return point_at_rest(machine, speed, synchronous), machine
+            return point_at_rest(machine, speed, frequency and frequency(machine.omega)), machine
     except NotConverged as error:
         return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), near
 

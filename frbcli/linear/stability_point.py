@@ -137,14 +137,15 @@ def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Eigenvalues, float]]
     return [(machine_eigenvalues(machine, films), share) for films, share in machine.others]
 
 
-def point_at_rest(machine: MachineAtRest, speed: float, synchronous: bool = False) -> StabilityPoint:
-    """The point at a speed in Hz of a machine that rests. synchronous: whether coefficients of films that keep oil are
-    those at the frequency of the rotor, else at that of the least damped whirl."""
+def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None = None) -> StabilityPoint:
+    """The point at a speed in Hz of a machine that rests. frequency: in rad/s, of the coefficients of films that keep
+    oil; by default that of the least damped whirl."""
     rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
     if machine.dynamic:
         values = _with_memory(machine)
         whirl = critical_eigenvalue(values).imag
-        frequency = machine.omega if synchronous else whirl if whirl > 0.0 else UNKNOWN_WHIRL * machine.omega
+        if frequency is None:
+            frequency = whirl if whirl > 0.0 else UNKNOWN_WHIRL * machine.omega
         pairs = zip(machine.films, machine.dynamic, strict=True)
         films = tuple(_at_frequency(film, dynamic, frequency) for film, dynamic in pairs)
         _check_known(films)

@@ -15,6 +15,7 @@ import numpy as np
 
 from frbcli.rotor.body import COORDINATES, Body
 from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.loads import Load
 from frbcli.rotor.over_speed import LinearPart
 
 GROUND = ""
@@ -44,10 +45,11 @@ def assembled(
     films: Sequence[Link] = (),
     parts: Sequence[tuple[Link, LinearPart]] = (),
     forces: Sequence[NodeForce] = (),
+    loads: Sequence[tuple[str, Load]] = (),
 ) -> LinearRotor:
     """The machine of bodies, whose degrees of freedom follow each other in their order, with films between nodes,
-    linear parts on the relative motion of nodes, and constant forces on nodes. Raises KeyError for a node that no body
-    has."""
+    linear parts on the relative motion of nodes, constant forces on nodes, and loads on the (x, y) of nodes. Raises
+    KeyError for a node that no body has."""
     size = sum(body.size for body in bodies)
     nodes = _nodes(bodies, size)
 
@@ -73,8 +75,9 @@ def assembled(
         points=tuple(nodes.items()),
     )
     machine = machine.with_parts([part.seen_by(relative(link), link.count) for link, part in parts])
-    loads = (nodes[each.node].T @ np.array(each.force) for each in forces)
-    return replace(machine, static_load=sum(loads, machine.static_load))
+    constant = (nodes[each.node].T @ np.array(each.force) for each in forces)
+    varying = tuple(load.seen_by(nodes[node]) for node, load in loads)
+    return replace(machine, static_load=sum(constant, machine.static_load), loads=varying)
 
 
 def _nodes(bodies: Sequence[Body], size: int) -> dict[str, Array]:

@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.rotor.loads import Load
 from frbcli.rotor.over_speed import LinearPart, summed
 
 Array = NDArray[np.float64]
@@ -31,6 +32,7 @@ class LinearRotor:
     multiplicity: (films,) how many equal bearings one film stands for (2 in a symmetric rotor).
     points: names and (2, n) maps of the points that a run records and whose error is controlled.
     over_speed: what elements add to mass, damping and stiffness at a speed, None where nothing depends on it.
+    loads: what else acts on it, and changes with the angle of the rotor or with time.
     """
 
     mass: Array
@@ -44,6 +46,7 @@ class LinearRotor:
     multiplicity: Array
     points: tuple[tuple[str, Array], ...]
     over_speed: LinearPart | None = None
+    loads: tuple[Load, ...] = ()
 
     @property
     def size(self) -> int:
@@ -108,4 +111,5 @@ def without_spins(rotor: LinearRotor, count: int) -> LinearRotor:
         journals=rotor.journals[:, :, :-count],
         points=tuple((name, place[:, :-count]) for name, place in rotor.points),
         over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(count),
+        loads=tuple(load.without(count) for load in rotor.loads),
     )

@@ -35,7 +35,7 @@ def with_clearances(before: System, after: System, profile: SpeedProfile, state:
         held = after.films.refill(i, before.films, turned(displacement(after, state, i), -turn), state.wet, state.flows)
         if held is not None:
             forces[i] = turned(held, turn)
-    state.a[:] = accelerations(after, rotation, state.q, state.v, forces)
+    state.a[:] = accelerations(after, float(numbers[TIME]), rotation, state.q, state.v, forces)
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
     numbers[ERROR_BEFORE] = numbers[STEP_BEFORE] = 0.0
     return in_turn(after, state, rotation[1]) if apart else state

@@ -12,10 +12,12 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import unbalance_shares
+from frbcli.rotor.loads import loads_at
 from frbcli.rotor.over_speed import no_part
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.machine.system import System
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
+from frbcli.solve.stage.loads import varying_loads
 from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
@@ -53,6 +55,7 @@ def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
         table_damping=table.damping,
         table_stiffness=table.stiffness,
         follows_speed=rotor.over_speed is not None or (not system.names and bool(np.any(rotor.gyroscopic))),
+        loads=varying_loads(rotor.loads),
     )
 
 
@@ -84,8 +87,9 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
     """The state at the start of a profile with displacements q (n,) in m and velocities v (n,) in m/s."""
     omegas = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
     wet, flows = system.films.first_state(system.rotor.journals @ q, omegas)
-    rotation = profile.rotation(float(profile.times[0]))
-    a = accelerations(system, rotation, q, v, settled_forces(system, rotation[1], q, v))
+    start = float(profile.times[0])
+    rotation = profile.rotation(start)
+    a = accelerations(system, start, rotation, q, v, settled_forces(system, rotation[1], q, v))
     numbers = np.zeros(NUMBERS)
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
     numbers[RUN_END] = profile.end
@@ -106,9 +110,9 @@ def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
 
 
 def accelerations(
-    system: System, rotation: tuple[float, float, float], q: Array, v: Array, film_forces: Array
+    system: System, t: float, rotation: tuple[float, float, float], q: Array, v: Array, film_forces: Array
 ) -> Array:
-    """(n,) m/s^2 of a rotor with displacements q, velocities v and forces (films, 2) of its films in N.
+    """(n,) m/s^2 of a rotor with displacements q, velocities v and forces (films, 2) of its films in N, at t in s.
 
     rotation: angular acceleration, speed and angle of the rotor, see SpeedProfile.
     """
@@ -117,6 +121,8 @@ def accelerations(
     forces = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
     forces = forces + along * rotor.unbalance_cos
     forces = forces + across * rotor.unbalance_sin
+    if rotor.loads:
+        forces = forces + loads_at(rotor.loads, rotor.size, np.array([t]), np.array([angle]))[0]
     for selection, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
         forces = forces + count * selection.T @ force
     return np.asarray(np.linalg.solve(rotor.mass, forces), dtype=np.float64)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,7 @@ class RotorData(NamedTuple):
     table_damping: Array
     table_stiffness: Array
     follows_speed: bool  # whether the inverse is renewed at every change of the speed
+    loads: Any = ()  # that change with the angle of the rotor or with time, see stage/loads.py
 
 
 class Control(NamedTuple):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from frbcli.compiled import Array, compiled
-from frbcli.rotor.excitation import rotation
+from frbcli.solve.rotation import rotation
 from frbcli.solve.state import (
     CONTACT,
     ERROR_BEFORE,

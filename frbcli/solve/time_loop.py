@@ -12,15 +12,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.rotor.excitation import rotation
 from frbcli.solve.films.forces import left_over
 from frbcli.solve.films.steps import accept_films, begin_stage, make_work, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
+from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage.equations import U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.stage.inverse import outdated, prepare
 from frbcli.solve.stage.journal_newton import correct, forces
+from frbcli.solve.stage.loads import add_loads, prepare_loads
 from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, LoopOutput, RotorData, State
 from frbcli.solve.step import (
     UNSOLVED,
@@ -126,8 +127,10 @@ def _solve_stage(
     )
     if outdated(numbers, g, speed, rotor.has_gyroscopic, rotor.follows_speed):
         prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
+        prepare_loads(rotor.loads, rotor, g, speed)
     predict(weights, s, step, q, v, stage_v, stage_a, at)
     start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, journal)
+    add_loads(rotor.loads, t_s, angle, g, selection, at, journal)
     guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), journal)
     guess_speeds(spins, s, g, speed, angle, at, stage_a, rings.bodies, rings.angles)
     set_speeds(turning, rings.bodies, rings.angles, journal, grids)

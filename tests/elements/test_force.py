@@ -1,8 +1,9 @@
-"""Constant forces on places of a machine: equal ways to say the same, places, and faults."""
+"""Forces on places of a machine: closed forms, equal ways to say the same, runs against the response, and faults."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,12 @@ import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
+from frbcli.linear.response import response
 from frbcli.linear.stability import stability
+from frbcli.plot.spectra.waterfall import orders, run_spectra
 from frbcli.report.sketch import rotor_sketch
+from frbcli.rotor.loads import loads_at
+from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.plan import make_plan
 
@@ -34,6 +39,58 @@ def push(at: str = "journal", x: float = 10.0, y: float = 0.0, **keys: object) -
     return {"at": at, "force": [f"{x!r} N", f"{y!r} N"]} | keys
 
 
+def rigid_compliance(omega: Any) -> Any:
+    """Motion of the rigid rotor over the force on it."""
+    return 1.0 / (2.0 * K + 2j * omega * C - M * omega**2)
+
+
+@pytest.mark.parametrize(
+    ("keys", "frequency"),
+    [({"order": 2.0}, lambda s: 2.0 * s), ({"frequency": "35 Hz"}, lambda s: 35.0 + 0.0 * s),
+     ({"order": 1.0}, lambda s: s)],
+    ids=["order", "frequency", "order 1"],
+)  # fmt: skip
+def test_the_response_to_a_force_in_a_direction_is_the_closed_form(keys: dict[str, Any], frequency: Any) -> None:
+    """With amplitude and phase; there is one at each of both journals."""
+    found = response(machine(RIGID, push(y=4.0, phase="30 deg", **keys)), [20.0, 90.0, 150.0], excitation="force 1")
+    omega = TURN * frequency(found.speeds_Hz)
+    for axis, size in enumerate((10.0, 4.0)):
+        expected = 2.0 * size * np.exp(1j * math.pi / 6.0) * rigid_compliance(omega)
+        np.testing.assert_allclose(found.motion[:, 0, axis], expected, rtol=1e-9)
+        np.testing.assert_allclose(
+            found.forces[:, 0, axis], -(K + 1j * omega * C) * found.motion[:, 0, axis], rtol=1e-9
+        )
+
+
+def test_a_force_on_the_disk_bends_the_shaft_as_the_closed_form() -> None:
+    found = response(machine(JEFFCOTT, push("disk", order=3.0)), [40.0], excitation="force 1")
+    s = 2j * math.pi * 120.0
+    journal = 2.0 * (K + C * s) + 0.1 * s**2
+    disk = 10.0 / (6.0 * s**2 + 5e6 * journal / (5e6 + journal))
+    named = dict(zip(found.points, found.motion[0, :, 0], strict=True))
+    assert abs(named["disk"] - disk) < 1e-9 * abs(disk)
+    assert abs(named["journal"] - disk * 5e6 / (5e6 + journal)) < 1e-9 * abs(disk)
+
+
+@pytest.mark.parametrize(("order", "sense"), [(1.0, 1), (-1.0, -1), (2.5, 1), (-2.5, -1)])
+def test_a_rotating_force_moves_the_rotor_on_a_circle_in_its_sense(order: float, sense: int) -> None:
+    found = response(machine(RIGID, push(rotating=True, order=order)), [90.0], excitation="force 1")
+    along, against = (found.forward, found.backward) if sense > 0 else (found.backward, found.forward)
+    size = 20.0 * abs(rigid_compliance(abs(order) * TURN * 90.0))
+    assert abs(abs(along[0, 0]) - size) < 1e-9 * size
+    assert abs(against[0, 0]) < 1e-12 * size
+
+
+def test_a_rotating_force_of_the_size_of_the_unbalance_is_the_unbalance() -> None:
+    """At one speed; the unbalance of phase 0 points to y at angle 0."""
+    pull = 0.5 * (TURN * 80.0) ** 2 * U
+    forced = response(machine(RIGID, push(x=0.0, y=pull, rotating=True)), [80.0])
+    unbalanced = response(machine(RIGID | {"unbalance": f"{U!r} kg*m"}), [80.0])
+    np.testing.assert_allclose(forced.motion, unbalanced.motion, rtol=1e-9)
+    both = response(machine(RIGID | {"unbalance": f"{U!r} kg*m"}, push(x=0.0, y=pull, rotating=True)), [80.0])
+    np.testing.assert_allclose(both.motion, 2.0 * unbalanced.motion, rtol=1e-9)
+
+
 def test_a_constant_force_is_a_weight() -> None:
     """Half the weight of the rotor, lifted at both journals, leaves what a rotor under half the gravity has."""
     film = load_case("rigid", ["film.theory=short"])
@@ -46,13 +103,75 @@ def test_a_constant_force_is_a_weight() -> None:
     assert abs(hopf[0] - hopf[1]) < 1e-6 * hopf[1]
 
 
+def test_harmonics_at_a_moment_are_what_the_case_says() -> None:
+    rotor = make_rotor(machine(RIGID, push(y=4.0, order=2.0, phase="90 deg"), push(frequency="10 Hz", rotating=True)))
+    angle, t = 0.3, 0.013
+    total = loads_at(rotor.loads, rotor.size, np.array([t]), np.array([angle]))[0]
+    swings = np.cos(2.0 * angle + 0.5 * math.pi) * np.array([20.0, 8.0])
+    turns = 20.0 * np.array([np.cos(TURN * 10.0 * t), np.sin(TURN * 10.0 * t)])
+    np.testing.assert_allclose(total, swings + turns, rtol=1e-12)
+
+
+RUN = {"speed.from": "40 Hz", "speed.to": "40 Hz", "speed.duration": "600 ms", "accuracy.tolerance": 1e-7}
+
+
+@pytest.mark.parametrize(
+    ("keys", "frequency"),
+    [({"order": 0.5, "phase": "40 deg"}, 20.0), ({"frequency": "130 Hz"}, 130.0),
+     ({"order": -1.5, "rotating": True}, 60.0)],
+)  # fmt: skip
+def test_a_run_at_constant_speed_has_the_motion_of_the_response(
+    keys: dict[str, Any], frequency: float, tmp_path: Path
+) -> None:
+    """With amplitude and phase, of a force on the support of a Jeffcott rotor."""
+    support = {"mass": "1 kg", "stiffness": ["4e6 N/m", "7e6 N/m"], "damping": "2000 N*s/m"}
+    shaft = JEFFCOTT | {"gravity": 0.0, "external_damping": "500 N*s/m"}
+    case = machine(shaft, push("support", y=5.0, **keys), bearing=BEARING | {"support": support}).with_settings(RUN)
+    found, run = response(case, [40.0], excitation="force 1"), runup(case, tmp_path / "run.h5")
+    late = run["time_s"] >= run.t_end_s - 0.2
+    turn = np.exp(2j * math.pi * frequency * run["time_s"][late])
+    columns = np.column_stack([np.ones(len(turn)), turn.real, -turn.imag])
+    for number, name in enumerate(found.points):
+        for axis, letter in enumerate("xy"):
+            _, real, imaginary = np.linalg.lstsq(columns, run[f"{name}_{letter}_m"][late])[0]
+            expected = found.motion[0, number, axis]
+            assert abs(real + 1j * imaginary - expected) < 1e-4 * abs(expected), name
+
+
+def test_the_force_of_a_film_carries_what_acts_on_the_rotor(tmp_path: Path) -> None:
+    """The signal of the film's force is what the equation of motion leaves for it."""
+    settings = {"force": [push(x=40.0, order=2.0)], "output.signals": ["force"], "start.position": "resting",
+                "speed.from": "50 Hz", "speed.to": "50 Hz", "speed.duration": "40 ms",
+                "accuracy.tolerance": 1e-8}  # fmt: skip
+    case = load_case("rigid", ["film.theory=short"]).with_settings(settings)
+    run = runup(case, tmp_path / "run.h5")
+    x, t = run["journal_x_m"], run["time_s"]
+    acceleration = np.gradient(np.gradient(x, t), t)[50:-50]
+    applied = 80.0 * np.cos(2.0 * TURN * 50.0 * t)[50:-50]
+    left = case.rotor.mass * acceleration - applied
+    np.testing.assert_allclose(2.0 * run["film_force_x_N"][50:-50], left, atol=2e-3 * 80.0)
+
+
+def test_a_waterfall_has_a_line_for_each_frequency_beside_the_rotor_speed(tmp_path: Path) -> None:
+    """Order 2 twice is one line; an order of 1 is the rotor speed itself."""
+    forces = (push(order=2.0), push(y=4.0, order=-2.0), push(rotating=True), push(frequency="35 Hz"))
+    case = machine(RIGID, *forces).with_settings({"speed.from": "40 Hz", "speed.to": "50 Hz", "speed.duration": "1 s"})
+    run = runup(case, tmp_path / "run.h5")
+    found = run_spectra(run, "journal", None, "x")
+    lines = dict(orders(run, "journal", found))
+    assert list(lines) == ["ω", "2 ω", "35 Hz", "ω/2"]
+    np.testing.assert_allclose(lines["2 ω"], 2.0 * found.speed_Hz)
+    assert np.all(lines["35 Hz"] == 35.0)
+    assert found.frequency_Hz[-1] >= 100.0  # order 2 at the highest speed
+
+
 def test_the_text_gives_the_case_again_and_plan_and_sketch_show_forces() -> None:
-    case = machine(JEFFCOTT, push("disk"), push("journal", y=2.0))
+    case = machine(JEFFCOTT, push("disk", order=2.0), push("journal", rotating=True))
     assert load_case_text(case.source_text, name="forced") == case
     told = [each.value for each in make_plan(case).decisions if each.choice == "force"]
     assert rotor_sketch(case)[0].count(">F1<") == 1  # at the disk
     assert rotor_sketch(case)[0].count(">F2<") == 2  # at both journals
-    assert told == ["disk: 10 N in x, 0 N in y", "journal: 10 N in x, 2 N in y"]
+    assert told == ["disk: 10 N in x, 0 N in y", "journal: 10 N in x, 0 N in y"]
 
 
 def test_places_of_a_turbocharger_are_bearings_and_disks() -> None:
@@ -69,8 +188,11 @@ def test_places_of_a_turbocharger_are_bearings_and_disks() -> None:
 
 FAULTS = {
     "no such place": (push("compresor"), "force.0.at", "no place"),
+    "both": (push(order=2.0, frequency="50 Hz"), "force.0.frequency", "beside order"),
+    "order 0": (push(order=0.0), "force.0.order", "is 0"),
+    "frequency 0": (push(frequency="0 Hz"), "force.0.frequency", "is 0"),
+    "phase": (push(phase="10 deg"), "force.0.phase", "constant"),
     "one entry": ({"at": "journal", "force": ["10 N"]}, "force.0.force.1", "missing"),
-    "unknown": (push(order=2.0), "force.0.order", "not known"),
     "no force": ({"at": "journal"}, "force.0.force", "missing"),
 }
 
@@ -89,8 +211,13 @@ def test_the_nearest_place_is_the_remedy() -> None:
         machine(JEFFCOTT, push("dsk"))
 
 
-
-
-def test_a_kinematic_test_refuses_forces() -> None:
+def test_analyses_without_harmonic_forces_refuse_them() -> None:
+    film = load_case("rigid", ["film.theory=short"]).with_settings({"force": [push(order=2.0)]})
+    with pytest.raises(InputError, match="changes with the angle of the rotor"):
+        limit_cycles(film)
+    with pytest.raises(InputError, match="changes with the angle of the rotor"):
+        make_plan(film.with_settings({"film.coupling": "co-simulation", "film.theory": "finite"}))
+    with pytest.raises(InputError, match="is no load of the case"):
+        response(film, [50.0], excitation="force 2")
     with pytest.raises(InputError, match="has no effect"):
         load_case("bearing").with_settings({"force": [push()]})

@@ -309,8 +309,8 @@ def test_rotor_that_becomes_stable_again_is_told_beside_its_threshold(monkeypatc
 
     real = module.point_at_rest
 
-    def calms_down(machine: MachineAtRest, speed: float, synchronous: bool = False) -> StabilityPoint:
-        point = real(machine, speed, synchronous)
+    def calms_down(machine: MachineAtRest, speed: float, frequency: float | None = None) -> StabilityPoint:
+        point = real(machine, speed, frequency)
         return point if speed < 250.0 else replace(point, eigenvalues=-np.abs(point.eigenvalues.real) + 1j)
 
     monkeypatch.setattr(module, "point_at_rest", calms_down)

@@ -36,6 +36,7 @@ POCKET = 'bearing.supply={kind="pocket", position="90 deg", opening_angle="30 de
 SLOTS = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", length="8 mm", pressure="2 bar"}'
 HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
 OIL = "oil.viscosity={grade='SAE 10W-40'}"
+HARMONIC = 'force=[{at="disk", force=["10 N", "0 N"], order=2}]'
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
 DAMPER = (
     'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
@@ -78,7 +79,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "bearings on supports": ("jeffcott", (SUPPORT,)),
     "squeeze film damper that cavitates": ("jeffcott", (DAMPER, "bearing.damper.cavitation=half-sommerfeld")),
     "squeeze film damper, Sommerfeld": ("jeffcott", (DAMPER,)),
-    "forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
+    "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
+    "harmonic forces": ("jeffcott", (HARMONIC,)),
     "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearings alone": ("thrust", ()),
 }
@@ -106,6 +108,7 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "co-simulation and the published form": ("jeffcott", (*PUBLISHED, APART)),
     "co-simulation and a bearing model of one's own": ("jeffcott", (APART, MODEL_THEORY)),
+    "co-simulation and harmonic forces": ("jeffcott", (HARMONIC, APART)),
     "co-simulation and rings that turn": ("floating-ring", (APART,)),
     "co-simulation and several bearings": ("turbocharger-heavy", (APART,)),
 }  # fmt: skip

@@ -120,7 +120,7 @@ def _value(entry: dict[str, Any]) -> str:
         return "number" if unit == "without unit" else unit
     if forms:
         return " or ".join(dict.fromkeys(_value(form) for form in forms))
-    names = {"integer": "whole number", "string": "text", "array": "tables"}
+    names = {"integer": "whole number", "string": "text", "array": "tables", "boolean": "`true` or `false`"}
     return "table" if "$ref" in entry else names.get(entry.get("type", ""), "table")
 
 
@@ -132,6 +132,8 @@ def _default(entry: dict[str, Any], required: bool) -> str:
         return ""
     if isinstance(default, dict):
         return "as its table"
+    if isinstance(default, bool):
+        return f"`{str(default).lower()}`"
     return f"`{default:g}`" if isinstance(default, float) else f"`{default}`"
 
 

@@ -51,3 +51,10 @@ def force_breaches(case: Case) -> Iterator[Breach]:
             both = f"journal_{force.at}" in places(case)
             problem = "is both a bearing and a disk." if both else "is no place of the machine."
             yield Breach((*path, "at"), problem, did_you_mean(force.at, places(case)))
+        if force.order is not None and force.frequency is not None:
+            yield Breach((*path, "frequency"), "is given beside order.", "Keep one of the two.")
+        for key in ("order", "frequency"):
+            if getattr(force, key) == 0.0:
+                yield Breach((*path, key), "is 0.", "Leave it out: the force is then constant.")
+        if force.phase and force.constant:
+            yield Breach((*path, "phase"), "has no effect: the force is constant.", "Remove it, or give an order.")

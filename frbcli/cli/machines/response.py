@@ -39,6 +39,8 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
               help="Draw the synchronous motion of a run of CASE over the response.")  # fmt: skip
 @click.option("--map", "as_map", is_flag=True,
               help="Draw the undamped critical speed map, over the stiffness of the bearings.")  # fmt: skip
+@click.option("--excitation", default="unbalance", metavar="LOAD",
+              help='The one load that excites, as "force 2"; else the unbalance with all of order 1.')  # fmt: skip
 @outputs_options("CASE-response.png, here")
 @output_options
 def command(
@@ -46,19 +48,25 @@ def command(
     speeds: tuple[float, ...],
     run_file: Path | None,
     as_map: bool,
+    excitation: str,
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
-    """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping."""
+    """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping.
+
+    Loads of order 1 join the unbalance; --excitation takes any harmonic load alone.
+    """
     from frbcli.columns import documents, spread_table
     from frbcli.linear.columns import RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
     from frbcli.linear.response import response
     from frbcli.results.store import read_run
 
+    if excitation != "unbalance" and run_file is not None:
+        raise click.UsageError("--excitation and --run exclude each other: --run is for the synchronous motion.")
     places = outputs.check(here(case.name, "-critical-map.png" if as_map else "-response.png"))
     run = None if run_file is None else read_run(run_file)
     with computing(terminal, case) as shown:
-        found = response(case, speeds or None, shown.counting())
+        found = response(case, speeds or None, shown.counting(), excitation)
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     _tell(terminal, found, bool(speeds))
     films = ((point, film) for point in found.resting for film in point.films)
@@ -66,6 +74,7 @@ def command(
         {
             "command": "response",
             "case": case.name,
+            "excitation": excitation,
             "points": found.table().documents(),
             "forces": spread_table(RESPONSE_FORCES, found).documents(),
             "films": spread_table(RESPONSE_FILMS, found).documents(),
@@ -121,11 +130,24 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
         rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
     terminal.result(EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + ".")
+    for sentence in _excitation(found):
+        terminal.sentence(sentence)
     for sentence in _doubts(found):
         terminal.sentence(sentence)
     peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)
     terminal.result(f"Peaks at {peaks} Hz." if peaks else "No peak in the range.")
     tell_coefficient_error(terminal, found.resting)
+
+
+def _excitation(found: Response) -> list[str]:
+    """Sentences on the loads of the case, which do not excite together."""
+    from frbcli.scene.machine.elements import harmonics_of
+
+    loads = {load.name: load for load in harmonics_of(found.case)}
+    if found.excitation in loads:
+        return [f"Excited by {found.excitation} alone, {loads[found.excitation].turning}; deg counts from its angle."]
+    others = ", ".join(name for name, load in loads.items() if not load.synchronous)
+    return [f"Not excited by {others}, of another frequency: --excitation shows the motion by it."] if others else []
 
 
 def _doubts(found: Response) -> list[str]:

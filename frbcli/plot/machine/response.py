@@ -32,7 +32,7 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
     case = found.case
     with styled():
         grows = ", dotted where a whirl grows and hides it" if (found.growth > 0.0).any() else ""
-        figure = new_figure(case.heading, f"linear unbalance response about the resting position{grows}", 9.6, 10.8)
+        figure = new_figure(case.heading, f"linear {found.what} about the resting position{grows}", 9.6, 10.8)
         amplitude, phase, polar, force, first, second = figure.subplots(3, 2).ravel()
         draw_amplitude(amplitude, found)
         for number in range(len(found.points)):

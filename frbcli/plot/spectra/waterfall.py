@@ -20,6 +20,7 @@ from frbcli.analysis.spectra.spectrum import waterfall as spectra
 from frbcli.plot.run.envelope import at_times, extremes
 from frbcli.plot.signals import MICRO, bearing_of, clearance, ends, heading, motion
 from frbcli.plot.spectra.cascade import draw_cascade
+from frbcli.plot.spectra.load_lines import load_lines
 from frbcli.plot.style import LEVEL_MAP, new_figure, styled
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
@@ -119,7 +120,8 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
     if window_s > MOST_IN_WINDOW * (end - begin) / (len(run) - 1):
         raise refuse(run.path, f"has more than {MOST_IN_WINDOW} samples in a window.", "Shorten --window.")
     fastest = max(map(abs, extremes(speed, 0, len(run))))
-    highest = max(ABOVE_SYNCHRONOUS * fastest, FEWEST_LINES / window_s)
+    loads = (float(line.along(np.array(fastest))) for line in load_lines(run))
+    highest = max(ABOVE_SYNCHRONOUS * max([fastest, *loads]), FEWEST_LINES / window_s)
     most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * window_s))))
     length = clearance(run, bearing_of(run, signal)) if run.references else UNKNOWN_m
     return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)
@@ -189,10 +191,10 @@ def draw_levels(
 def orders(
     run: Run, signal: str, found: Spectrogram, chosen: Sequence[float] | None = None
 ) -> list[tuple[str, Values]]:
-    """The synchronous line, and the frequencies of free whirls; or lines of chosen orders."""
+    """The synchronous line, those of harmonic loads, and the frequencies of free whirls; or lines of chosen orders."""
     if chosen is not None:
         return [("ω" if order == 1.0 else f"{order:g} ω", order * found.speed_Hz) for order in chosen]
-    lines = [("ω", found.speed_Hz)]
+    lines = [("ω", found.speed_Hz), *((line.name, line.along(found.speed_Hz)) for line in load_lines(run))]
     bearing = bearing_of(run, signal)
     if bearing not in points(run.signals, "ring"):
         return [*lines, ("ω/2", found.speed_Hz / 2)]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.rotor.linear import LinearRotor, unbalance_shares
+from frbcli.rotor.loads import loads_at
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
@@ -85,6 +86,8 @@ def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> 
     left = left + omega[:, None] * (samples.v @ rotor.gyroscopic.T)
     left = left - along[:, None] * rotor.unbalance_cos
     left = left - across[:, None] * rotor.unbalance_sin
+    if rotor.loads:
+        left = left - loads_at(rotor.loads, rotor.size, np.asarray(samples.times), angle)
     rows = rotor.journals.reshape(-1, rotor.size) * np.repeat(rotor.multiplicity, 2)[:, None]
     return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
 

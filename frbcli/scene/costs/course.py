@@ -24,6 +24,7 @@ from frbcli.film.section_faults import no_inflow
 from frbcli.rotor.speed_profile import Array, SpeedProfile
 from frbcli.scene.coupling import APART, SEMI
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
+from frbcli.scene.machine.elements import harmonics_of
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.section import film_section
@@ -73,7 +74,7 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
     turns = omega / (2.0 * math.pi)
     work, whirls = plan.form.work, omega >= whirl_speed(case)
     presses = whirls & (omega >= _pressing_speed(case))
-    rate = np.maximum(1.0 / longest_step(case, plan), work.crowded * plan.steps_per_revolution * turns)
+    rate = np.maximum(1.0 / longest_step(case, plan), work.crowded * steps_of_a_turn(case, plan) * turns)
     rate = np.maximum(rate, _resolving(case, plan, times, omega, whirls))
     pressed = work.pressed[0] * (ELASTIC if case.contact.policy == "elastic" else 1.0)
     rate = np.where(presses, pressed * rate, rate)
@@ -87,9 +88,18 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
 
 
 def longest_step(case: Case, plan: Plan) -> float:
-    """Longest step of a run, s; limited also by the samples that are held in memory until they are written."""
+    """Longest step of a run, s; limited by the periods of loads, and by the samples that are held in memory until they
+    are written."""
     longest = LONGEST_STEP_s if plan.macro_step is None else min(LONGEST_STEP_s, plan.macro_step)
+    fastest = max((abs(load.frequency) for load in harmonics_of(case)), default=0.0)
+    if fastest > 0.0:
+        longest = min(longest, 2.0 * math.pi / (plan.steps_per_revolution * fastest))
     return min(longest, MOST_SAMPLES * case.output.step)
+
+
+def steps_of_a_turn(case: Case, plan: Plan) -> float:
+    """Least steps per revolution: as many in a period of the highest order of the loads, too."""
+    return plan.steps_per_revolution * max([1.0, *(abs(load.order) for load in harmonics_of(case))])
 
 
 def whirl_speed(case: Case) -> float:

@@ -33,7 +33,7 @@ from frbcli.scene.gate.analysis import (
     WHIRLS,
 )
 from frbcli.scene.gate.rule import Faults, Rule
-from frbcli.scene.machine.elements import element_faults, speed_dependent, without_bearing, without_film
+from frbcli.scene.machine.elements import element_faults, load_faults, speed_dependent, without_bearing, without_film
 from frbcli.scene.planning.film_choice import form_of
 
 
@@ -46,6 +46,7 @@ def _without_film(what: str) -> Callable[[Case], Faults]:
     return lambda case: without_film(case, what)
 
 
+OWN_PERIOD = "limit cycles have a period of their own"
 CONSTANT = "limit cycles follow it with a rotor of constant coefficients"
 
 RULES = (
@@ -77,6 +78,7 @@ RULES = (
     Rule(static.range_faults, (RANGE,)),
     Rule(lambda case: speed_dependent(case, CONSTANT), EVERY_CYCLE),
     Rule(cycles.cycle_heat_faults, EVERY_CYCLE),
+    Rule(lambda case: load_faults(case, OWN_PERIOD, "Remove it, or take a run-up."), EVERY_CYCLE),
     Rule(cycles.smooth_faults, (CYCLES,)),
     Rule(cycles.speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
     Rule(cycles.unbalance_faults, (WHIRLS,)),

@@ -10,7 +10,7 @@ from frbcli.scene.coupling import APART, chosen_coupling, coupling_fault
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.solutions import solution_fault
 from frbcli.scene.gate.rule import run_omega
-from frbcli.scene.machine.elements import changes_with_speed
+from frbcli.scene.machine.elements import changes_with_speed, load_faults
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 
 
@@ -37,6 +37,9 @@ def form_faults(case: Case) -> Iterator[Fault]:
     if _coupling(case) == APART and changes_with_speed(case):
         problem = "has a rotor of constant coefficients, and those of a bearing depend on the speed."
         yield Fault("film.coupling", APART, None, problem, "Write auto.")
+    if _coupling(case) == APART:
+        what = "the co-simulation of rotor and films has no load that changes but the unbalance"
+        yield from load_faults(case, what, "Write auto for film.coupling.")
     may_turn = cells and all(is_plain(place.geometry) for place in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
         yield _missing("film.grid", "half-speed", "auto; it is for films on cells without openings and lobes")

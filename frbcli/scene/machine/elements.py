@@ -16,6 +16,7 @@ from frbcli.elements.table import elements_of
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND
 from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.loads import Harmonic
 from frbcli.scene.shafts.table import shaft_of
 
 
@@ -46,18 +47,35 @@ def element_parts(case: Case) -> Parts:
         bodies=tuple(body for parts in found for body in parts.bodies),
         links=tuple(link for parts in found for link in parts.links),
         forces=tuple(force for parts in found for force in parts.forces),
+        loads=tuple(load for parts in found for load in parts.loads),
     )
 
 
-def element_forces(case: Case, rotor: LinearRotor, omega: float, q: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def harmonics_of(case: Case) -> tuple[Harmonic, ...]:
+    """The harmonic loads of a case beside the unbalance, each on the x and y of its place."""
+    return tuple(load for _, load in element_parts(case).loads if isinstance(load, Harmonic))
+
+
+def load_faults(case: Case, what: str, remedy: str) -> Iterator[Fault]:
+    """The faults of loads that change with the angle of the rotor or with time, where `what` has none."""
+    site = site_of(case)
+    for element in elements_of(case):
+        for node, load in element.parts(site).loads:
+            problem = f"changes with {load.changes_with}, and {what}."
+            yield Fault(element.key, node.replace("_", " "), None, problem, remedy)
+
+
+def element_forces(
+    case: Case, rotor: LinearRotor, omega: float, frequency: float, q: NDArray[np.complex128]
+) -> NDArray[np.complex128]:
     """(e, 2) complex amplitudes in N of the forces of the bearings without a film on the shaft, of one each. rotor: of
-    the case; q: (n,) complex amplitudes of its motion with omega rad/s."""
+    the case, at omega rad/s; q: (n,) complex amplitudes of its motion with a frequency in rad/s."""
     site, nodes, forces = site_of(case), dict(rotor.points), np.zeros((len(case.elements), 2), dtype=np.complex128)
     for force, element in zip(forces, GivenCoefficients.of(case), strict=True):
         for link, part in element.parts(site).links:
             stiffness, damping, mass = part.at(omega)
             motion = nodes[link.inside] @ q - (0.0 if link.outside == GROUND else nodes[link.outside] @ q)
-            force[:] = -(stiffness + 1j * omega * damping - omega**2 * mass) @ motion
+            force[:] = -(stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion
     return forces
 
 

@@ -30,4 +30,4 @@ def make_rotor(case: Case) -> LinearRotor:
             films.append(Link(journal, shell, count=count))
     films += [damper.link(site) for damper in DamperElement.of(case)]
     elements, spins = element_parts(case), [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
-    return assembled([*bodies, *elements.bodies, *spins], films, elements.links, elements.forces)
+    return assembled([*bodies, *elements.bodies, *spins], films, elements.links, elements.forces, elements.loads)

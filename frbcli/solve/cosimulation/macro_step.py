@@ -15,10 +15,10 @@ import numpy as np
 
 from frbcli.compiled import Indices, compiled
 from frbcli.dense import solve_dense
-from frbcli.rotor.excitation import rotation
 from frbcli.solve.cosimulation.micro_step import Told, films_follow, parabola
 from frbcli.solve.films.steps import make_work, write_oil
 from frbcli.solve.ring_spin import Rings, make_rings, spin_up
+from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
 from frbcli.solve.stage.equations import (
     FORCE,

@@ -9,10 +9,10 @@ import math
 from typing import Any, NamedTuple
 
 from frbcli.compiled import Array, compiled
-from frbcli.rotor.excitation import rotation
 from frbcli.solve.films.forces import move_film
 from frbcli.solve.films.steps import NEWTON_LIMIT, accept_films, begin_stage
 from frbcli.solve.ring_spin import Rings, set_speeds
+from frbcli.solve.rotation import rotation
 from frbcli.solve.stage.equations import FORCE, X_0, U, lagrange
 from frbcli.solve.stage.journal_newton import forces
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE, Control, RotorData, State

@@ -1,0 +1,104 @@
+"""Loads on a machine that change with the angle of its rotor or with time, beside those of the unbalance.
+
+A load is two columns of forces on all degrees of freedom, each times a factor that is a function of time and angle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Load:
+    """name: which load of the case it is; columns: (2, n) N, or N of each unit of the factors."""
+
+    name: str
+    columns: Array
+
+    @property
+    def changes_with(self) -> str:
+        """What it changes with, in words."""
+        return "time"
+
+    def factors(self, t: Array, angle: Array) -> Array:
+        """(k, 2) factors of the columns at times (k,) in s and angles (k,) of the rotor in rad."""
+        raise NotImplementedError
+
+    def seen_by(self, place: Array) -> Self:
+        """A load with columns (2, 2) on a place, on all degrees of freedom; place: (2, n) its x and y by them."""
+        return replace(self, columns=self.columns @ place)
+
+    def without(self, count: int) -> Self:
+        """The load without the last `count` degrees of freedom."""
+        return replace(self, columns=self.columns[:, :-count])
+
+
+@dataclass(frozen=True)
+class Harmonic(Load):
+    """The factors cos(theta) and sin(theta) with theta = order alpha + frequency t, alpha the angle of the rotor.
+
+    frequency: rad/s.
+    """
+
+    order: float
+    frequency: float
+
+    def factors(self, t: Array, angle: Array) -> Array:
+        """See Load."""
+        theta = self.order * angle + self.frequency * t
+        return np.column_stack([np.cos(theta), np.sin(theta)])
+
+    @property
+    def synchronous(self) -> bool:
+        """Whether it turns or swings once in a revolution of the rotor."""
+        return abs(self.order) == 1.0 and self.frequency == 0.0
+
+    @property
+    def changes_with(self) -> str:
+        """See Load."""
+        return "the angle of the rotor" if self.order else "time"
+
+    @property
+    def turning(self) -> str:
+        """Its order or its frequency in words."""
+        return f"order {self.order:g}" if self.order else f"{self.frequency / (2.0 * math.pi):g} Hz"
+
+    def excitation(self, omega: float) -> tuple[float, NDArray[np.complex128]]:
+        """Frequency in rad/s, not below 0, and (n,) complex amplitudes A in N of the load Re(A exp(i frequency t)) of a
+        rotor that turns with omega rad/s."""
+        frequency, load = self.order * omega + self.frequency, self.columns[0] - 1j * self.columns[1]
+        return (frequency, load) if frequency >= 0.0 else (-frequency, np.conj(load))
+
+
+@dataclass(frozen=True)
+class Tabulated(Load):
+    """Factors that are cubics of time between the times of a table, and end with it.
+
+    times: (k,) s, ascending; cubics: (k - 1, 2, 4) coefficients of both factors, of powers 0 to 3 of the time since the
+    start of a piece.
+    """
+
+    times: Array
+    cubics: Array
+
+    def factors(self, t: Array, angle: Array) -> Array:  # noqa: ARG002
+        """See Load."""
+        piece = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.cubics) - 1)
+        powers = (t - self.times[piece])[:, None] ** np.arange(4)
+        return np.asarray(np.einsum("kcp,kp->kc", self.cubics[piece], powers))
+
+
+def loads_at(loads: Sequence[Load], size: int, t: Array, angle: Array) -> Array:
+    """(k, size) N of all loads at times (k,) in s and angles (k,) of the rotor in rad then."""
+    total = np.zeros((len(t), size))
+    for load in loads:
+        total += load.factors(t, angle) @ load.columns
+    return total
