@@ -17,6 +17,7 @@ SPEED_COLUMN = Column("speed", "Hz", "rotor speed")
 FREQUENCY = Column("frequency", "Hz", "frequency of the cycle")
 STABLE = Column("stable", "", "whether all disturbances decay; none where it is not known")
 VALUE = Column("value", "", "value of the number that is varied", flat=False)
+TEMPERATURE = "temperature of a film, with heat"
 RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
@@ -32,8 +33,14 @@ def _largest(films: Sequence[str]) -> Column:
                   lambda point: by_film(films, point.eccentricity_max), flat=False)  # fmt: skip
 
 
-def equilibrium_columns(films: Sequence[str]) -> tuple[Column, ...]:
-    """The columns of a RestingPoint in JSON."""
+def _temperatures(films: Sequence[str], heat: bool) -> tuple[Column, ...]:
+    column = Column("temperatures", "K", "temperatures of the films, with heat, by film",
+                    lambda point: by_film(films, point.temperatures_K), flat=False)  # fmt: skip
+    return (column,) if heat else ()
+
+
+def equilibrium_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...]:
+    """The columns of a RestingPoint in JSON. heat: whether films have temperatures."""
     return (
         VALUE,
         SPEED_COLUMN,
@@ -42,11 +49,12 @@ def equilibrium_columns(films: Sequence[str]) -> tuple[Column, ...]:
         STABLE,
         Column("films", "", "displacements, by film", lambda point: by_film(films, point.displacement), flat=False),
         RINGS,
+        *_temperatures(films, heat),
     )  # fmt: skip
 
 
-def cycle_columns(films: Sequence[str]) -> tuple[Column, ...]:
-    """The columns of a CyclePoint in JSON."""
+def cycle_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...]:
+    """The columns of a CyclePoint in JSON. heat: whether films have temperatures."""
     return (
         VALUE,
         SPEED_COLUMN,
@@ -57,6 +65,7 @@ def cycle_columns(films: Sequence[str]) -> tuple[Column, ...]:
                lambda point: [[value.real, value.imag] for value in point.multipliers[:MULTIPLIERS].tolist()],
                flat=False),
         RINGS,
+        *_temperatures(films, heat),
         Column("torque", "N m", "mean torque that turns the rotor against its films"),
         Column("kind", "", "kind of a special point, `asked` at a speed that was asked for", lambda p: p.kind or None),
     )  # fmt: skip
@@ -161,12 +170,12 @@ def map_columns(over: str, over_unit: str, key: str, unit: str) -> tuple[Column,
 
 
 def diagram_columns(
-    over: str, films: Sequence[str], rings: int, lines: Sequence[str], unbalance: bool
+    over: str, films: Sequence[str], rings: int, lines: Sequence[str], unbalance: bool, heat: bool = False
 ) -> tuple[Column, ...]:
     """The columns of a diagram in pandas: of the number of a branch, -1 for none, and one of its points.
 
     over: the number that is varied; films: their names; rings: their number; lines: names of those of whirls with
-    unbalance; unbalance: whether there are any.
+    unbalance; unbalance: whether there are any; heat: whether films have temperatures.
     """
 
     def of_point(*columns: Column, film: str = "") -> tuple[Column, ...]:
@@ -189,6 +198,9 @@ def diagram_columns(
         *(column for film, name in enumerate(films)
           for column in of_point(Column("eccentricity_max", "", "largest eccentricity", _eccentricity(film)),
                                  film=name if several else "")),
+        *(column for film, name in enumerate(films if heat else ())
+          for column in of_point(Column("temperature", "K", TEMPERATURE, _temperature(film)),
+                                 film=name if several else "")),
         *of_point(
             *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _ring_speed(ring)) for ring in range(rings)),
             Column("torque", "N m", "mean torque of a cycle that turns the rotor against its films",
@@ -210,6 +222,10 @@ def _eccentricity(film: int) -> Callable[[Any], float]:
     return lambda point: float(
         point.eccentricity[film] if isinstance(point, RestingPoint) else point.eccentricity_max[film]
     )
+
+
+def _temperature(film: int) -> Callable[[Any], float]:
+    return lambda point: float(point.temperatures_K[film])
 
 
 def _ring_speed(ring: int) -> Callable[[Any], float]:

@@ -160,6 +160,7 @@ def _resting(walk: Walk, point: Equilibrium) -> RestingPoint:
         ring_speeds_Hz=hertz(machine.pace) * point.u[films:],
         eigenvalues=point.eigenvalues,
         stable=point.stable,
+        temperatures_K=machine.temperatures,
     )
 
 
@@ -178,6 +179,7 @@ def _cycle(walk: Walk, cycle: Cycle) -> CyclePoint:
         stable=cycle.multipliers.stable,
         multipliers=cycle.multipliers.values,
         harmonics=motion[:, :films].reshape(len(motion), -1, 2),
+        temperatures_K=machine.temperatures,
         kind=cycle.kind,
     )
 

@@ -11,16 +11,17 @@ from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
 from frbcli.cycles.faults import check
+from frbcli.cycles.heat import warm_walk
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
-from frbcli.cycles.parts.machine import make_machine
+from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.result import SPEED, LimitCycles, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.scene.gate.cycles import by_shooting
-from frbcli.scene.machine.system import make_system
+from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
 
@@ -73,30 +74,38 @@ def limit_cycles(
         raise InputError(case.name or "case", faults)
     if by_shooting(case):
         return _with_missing(limit_cycles_by_shooting(case, slowest, fastest, asked, observe), speeds_Hz)
-    system = make_system(case, make_plan(case))
+    plan = make_plan(case)
+    system = make_system(case, plan)
     machine = make_machine(system, fastest)
     try:
         with advised(case):
-            resting = resting_curve(system, machine, slowest, fastest)
+            if case.heat is not None:
+                walk = warm_walk(case, plan, system, slowest, fastest, asked)
+            else:
+                walk = _walk(system, machine, slowest, fastest, asked)
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
-    walk = Walk(
+    found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
+    if case.heat is not None or not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
+        return found
+    response = synchronous_response(machine, walk.resting.points[-1], slowest)
+    if with_unbalance:
+        found = whirls_with_unbalance(found, machine, observe)
+    return with_response(found, walk, response, time.process_time() - begun)
+
+
+def _walk(system: System, machine: Machine, slowest: float, fastest: float, asked: Sequence[float]) -> Walk:
+    """What the diagram of a machine goes over, between two speeds in rad/s."""
+    return Walk(
         over=SPEED,
         unit="Hz",
         films=system.names,
         course=OverSpeed(machine),
-        resting=resting,
+        resting=resting_curve(system, machine, slowest, fastest),
         scale=1.0 / (2.0 * math.pi),
         follower=Follower(machine, slowest, fastest, asked),
         branch_scale=machine.pace / (2.0 * math.pi),
     )
-    found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
-    if not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
-        return found
-    response = synchronous_response(machine, resting.points[-1], slowest)
-    if with_unbalance:
-        found = whirls_with_unbalance(found, machine, observe)
-    return with_response(found, walk, response, time.process_time() - begun)
 
 
 def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ def hertz(omega: float) -> float:
 class RestingPoint:
     """A resting position. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over
     the clearance; ring_speeds_Hz: (R,); eigenvalues:
-    (N,) 1/s; stable: whether all of them decay."""
+    (N,) 1/s; stable: whether all of them decay; temperatures_K: (F,) of the films, empty without heat."""
 
     value: float
     speed_Hz: float
@@ -37,6 +37,7 @@ class RestingPoint:
     ring_speeds_Hz: Array
     eigenvalues: Complex
     stable: bool
+    temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def eccentricity(self) -> Array:
@@ -50,7 +51,7 @@ class CyclePoint:
     cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; torque_N_m: mean, that turns the rotor against its films;
     stable: whether all disturbances decay; multipliers: (N,) the trivial one first, then by falling size; harmonics:
     (H + 1, F, 2) complex, of the displacements over the clearance; kind: "", that of a special point, or "asked" at a
-    speed that was asked for.
+    speed that was asked for; temperatures_K: (F,) of the films, empty without heat.
     """
 
     value: float
@@ -63,6 +64,7 @@ class CyclePoint:
     multipliers: Complex
     harmonics: Complex
     kind: str = ""
+    temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
 
     def orbit(self, film: int = 0, count: int = 360) -> Array:
         """(count, 2) displacements of a journal over the clearance, at equal moments of a period."""
@@ -166,4 +168,5 @@ class LimitCycles(Tabular):
         rows += [(number, point) for number, branch in numbered for point in branch.points]
         rings = max((len(point.ring_speeds_Hz) for point in self.equilibria), default=0)
         lines = list(dict.fromkeys(line.name for _, whirl in whirls for line in whirl.lines))
-        return table_of(diagram_columns(self.over, self.films, rings, lines, bool(whirls)), [*rows, *whirls])
+        heat = self.case.heat is not None
+        return table_of(diagram_columns(self.over, self.films, rings, lines, bool(whirls), heat), [*rows, *whirls])

@@ -274,7 +274,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
         "case": found.case.name,
         "over": found.over,
         "unit": found.unit,
-        "equilibria": documents(equilibrium_columns(films), found.equilibria),
+        "equilibria": documents(equilibrium_columns(films, found.case.heat is not None), found.equilibria),
         "branches": [
             {
                 "from": None if branch.start is None else special[branch.start],
@@ -296,7 +296,8 @@ def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
     from frbcli.cycles.columns import cycle_columns
 
     orbits = {name: point.orbit(film) for film, name in enumerate(found.films)} if point.kind == ASKED else None
-    return document(cycle_columns(found.films), point) | ({} if orbits is None else {"orbits": orbits})
+    told = document(cycle_columns(found.films, found.case.heat is not None), point)
+    return told | ({} if orbits is None else {"orbits": orbits})
 
 
 def _whirl(films: tuple[str, ...], whirl: UnbalancedWhirl) -> dict[str, object]:

@@ -51,7 +51,7 @@ class Balance:
         passing = transfer(machine, nu * orders[:, 0], omega)
         kappa = added * passing.kappa
         loads, rate = loads_along(machine, motion, nu, omega)
-        values, slope = _harmonics(loads.values, h), _derivative(loads, h, nu)
+        values, slope = harmonics_of(loads.values, h), _derivative(loads, h, nu)
         inner = values + kappa * motion
         out = motion - through(passing.values, inner)
         out[0] -= machine.rest
@@ -59,12 +59,12 @@ class Balance:
         by_motion = -np.einsum("kij,kjlm->kilm", passing.values, slope)
         by_motion[np.arange(h + 1), :, h + np.arange(h + 1), :] += np.eye(c)
         with_nu = (
-            _harmonics(np.einsum("nij,nj->ni", loads.by_v, rate), h)
+            harmonics_of(np.einsum("nij,nj->ni", loads.by_v, rate), h)
             + added * orders * passing.kappa_by_frequency * motion
         )
         by_nu = -orders * through(passing.by_frequency, inner) - through(passing.values, with_nu)
         if self.omega is None:
-            last = -through(passing.by_speed, inner) - through(passing.values, _harmonics(loads.by_speed, h))
+            last = -through(passing.by_speed, inner) - through(passing.values, harmonics_of(loads.by_speed, h))
             last *= machine.pace
         else:
             last = through(passing.values, (np.arange(c) < 2 * machine.film_count) * passing.kappa * motion)
@@ -130,10 +130,10 @@ def left_out(machine: Machine, y: Array) -> float:
     motion = unpacked(y[:-2], c)
     loads, _ = loads_along(machine, motion, nu, omega)
     beyond = transfer(machine, nu * np.arange(h + 1.0, h + 5.0), omega).values
-    return float(np.abs(through(beyond, _harmonics(loads.values, h + 4)[h + 1 :])).max())
+    return float(np.abs(through(beyond, harmonics_of(loads.values, h + 4)[h + 1 :])).max())
 
 
-def _harmonics(samples: Array, h: int) -> Complex:
+def harmonics_of(samples: Array, h: int) -> Complex:
     """(h + 1, ...) of samples (n, ...) over a period."""
     return np.asarray(np.fft.rfft(samples, axis=0)[: h + 1] / len(samples))
 
@@ -154,7 +154,7 @@ def _derivative(loads: Loads, h: int, nu: float) -> Complex:
 
 def _both_signs(samples: Array, h: int) -> Complex:
     """(2 h + 1, ...): the harmonics -h ... h."""
-    one = _harmonics(samples, h)
+    one = harmonics_of(samples, h)
     return np.concatenate([np.conj(one[:0:-1]), one])
 
 

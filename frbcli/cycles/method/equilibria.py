@@ -6,14 +6,24 @@ As in frbcli/linear, but with the rings' speeds as unknowns of their own, and as
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.method.continuation import Place, Strides, Unreachable, corrected, follow, oriented, unit_vector
+from frbcli.cycles.method.continuation import (
+    Equations,
+    Place,
+    Strides,
+    Unreachable,
+    corrected,
+    follow,
+    oriented,
+    unit_vector,
+)
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
 from frbcli.equilibrium import hopf
@@ -71,14 +81,46 @@ class EquilibriumCourse(Protocol):
         """The resting position at a value between two. Raises Unreachable."""
 
 
+class SpeedCourse(EquilibriumCourse, Protocol):
+    """What resting positions are followed over, if it is the speed of the rotor in rad/s."""
+
+    @property
+    def pace(self) -> float:
+        """Of its machines."""
+
+    def equations(self, y: Array) -> tuple[Array, Array]:
+        """Those of a resting position y = (u, Omega / pace), see continuation.py."""
+
+    def equilibrium(self, place: Place) -> Equilibrium:
+        """The resting position at a place of their curve."""
+
+
 @dataclass(frozen=True)
 class OverSpeed:
-    """The course over the speed of the rotor in rad/s."""
+    """The course of one machine over the speed of the rotor in rad/s."""
 
     only: Machine
 
+    @property
+    def pace(self) -> float:
+        """As SpeedCourse says."""
+        return self.only.pace
+
+    @cached_property
+    def _space(self) -> StateSpace:
+        return state_space(self.only)
+
+    @cached_property
+    def equations(self) -> Equations:
+        """As SpeedCourse says."""
+        return equations(self.only)
+
+    def equilibrium(self, place: Place) -> Equilibrium:
+        """As SpeedCourse says."""
+        return equilibrium(self.only, self._space, place)
+
     def machine(self, _value: float) -> Machine:
-        """The one machine, at every speed."""
+        """The same at each speed."""
         return self.only
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
@@ -96,7 +138,7 @@ class Resting:
     note: str
 
 
-def equations(machine: Machine) -> Callable[[Array], tuple[Array, Array]]:
+def equations(machine: Machine) -> Equations:
     """Those of a resting position y = (u, Omega / pace), see continuation.py."""
     passing = transfer(machine, np.zeros(1), machine.pace)  # at rest nothing depends on the speed but the films
     through, kappa = passing.values[0].real, passing.kappa[0].real
@@ -113,27 +155,32 @@ def equations(machine: Machine) -> Callable[[Array], tuple[Array, Array]]:
 
 def resting_curve(system: System, machine: Machine, slowest: float, fastest: float) -> Resting:
     """Resting positions between two speeds in rad/s, from the fastest on downwards. Raises NotConverged without one."""
-    ask = equations(machine)
-    start = first_place(system, machine, ask, fastest)
+    course = OverSpeed(machine)
+    start = first_place(course.equations, at_rest(machine, resting_position(system, fastest)), fastest / machine.pace)
+    return resting_along(course, start, slowest, fastest)
+
+
+def resting_along(course: SpeedCourse, start: Place, slowest: float, fastest: float) -> Resting:
+    """The same of a course, from the place of the fastest speed on."""
     places = [start]
-    for place, _ in follow(ask, start, STRIDES):
+    for place, _ in follow(course.equations, start, STRIDES):
         places.append(place)
-        if not slowest < place.y[-1] * machine.pace < 1.000001 * fastest:
+        if not slowest < place.y[-1] * course.pace < 1.000001 * fastest:
             break
     note = ""
-    if places[-1].y[-1] * machine.pace <= slowest < places[-2].y[-1] * machine.pace:
-        places[-1] = at_speed(ask, places[-2], slowest / machine.pace)
+    if places[-1].y[-1] * course.pace <= slowest < places[-2].y[-1] * course.pace:
+        places[-1] = at_speed(course.equations, places[-2], slowest / course.pace)
     else:
-        lost = places[-1].y[-1] * machine.pace / (2.0 * math.pi)
+        lost = places[-1].y[-1] * course.pace / (2.0 * math.pi)
         note = f"The resting positions could not be followed below {lost:.4g} Hz."
-    space = state_space(machine)
-    points = tuple(_equilibrium(machine, space, place) for place in reversed(places))
-    return Resting(points, hopf_points(OverSpeed(machine), points), note)
+    points = tuple(course.equilibrium(place) for place in reversed(places))
+    return Resting(points, hopf_points(course, points), note)
 
 
-def first_place(system: System, machine: Machine, ask: Callable[[Array], tuple[Array, Array]], omega: float) -> Place:
-    """The resting position at omega rad/s as a place of the curve that goes down in speed."""
-    guess = np.append(at_rest(machine, resting_position(system, omega)), omega / machine.pace)
+def first_place(ask: Equations, near: Array, speed: float) -> Place:
+    """The resting position near to u (c,) at a speed over the pace, as a place of the curve that goes down in speed.
+    Raises Unreachable."""
+    guess = np.append(near, speed)
     along = -unit_vector(len(guess))
     found = corrected(ask, guess, along)
     if found is None:
@@ -147,7 +194,7 @@ def at_rest(machine: Machine, position: RestingPosition) -> Array:
     return np.concatenate([places, position.ring_speeds / machine.pace])
 
 
-def at_speed(ask: Callable[[Array], tuple[Array, Array]], near: Place, speed: float) -> Place:
+def at_speed(ask: Equations, near: Place, speed: float) -> Place:
     """The place at a speed over the pace. Raises Unreachable."""
     guess = near.y + (speed - near.y[-1]) / near.tangent[-1] * near.tangent
     guess[-1] = speed
@@ -157,7 +204,8 @@ def at_speed(ask: Callable[[Array], tuple[Array, Array]], near: Place, speed: fl
     return oriented(found, near.tangent)
 
 
-def _equilibrium(machine: Machine, space: StateSpace, place: Place) -> Equilibrium:
+def equilibrium(machine: Machine, space: StateSpace, place: Place) -> Equilibrium:
+    """The resting position of a machine at a place of its curve. space: its states."""
     u, omega = place.y[:-1], float(place.y[-1] * machine.pace)
     loads = film_loads(machine, u[None], np.zeros((1, len(u))), omega)
     values = np.linalg.eigvals(space.matrix(omega, loads.by_u[0], loads.by_v[0])).astype(complex)
@@ -176,7 +224,7 @@ def settled(machine: Machine, near: Array, omega: float, value: float) -> Equili
     found = corrected(equations(machine), guess, unit_vector(len(guess)))
     if found is None:
         raise Unreachable
-    return replace(_equilibrium(machine, state_space(machine), found), value=value)
+    return replace(equilibrium(machine, state_space(machine), found), value=value)
 
 
 def hopf_at(machine: Machine, here: Equilibrium, rising: bool, nu: float | None = None) -> HopfPoint:

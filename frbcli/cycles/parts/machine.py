@@ -49,7 +49,8 @@ class Machine:
     shares of the speeds of rotor and rings in omega_J + omega_S and omega_J - omega_S; bodies: see System; drags: (F,)
     N m s; moment: 1 if the moments of the film forces turn the rings, else 0; inertia: (R,) s, of the rings over the
     Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
-    rotor as transfer takes it, see rotor_parts.py.
+    rotor as transfer takes it, see rotor_parts.py; scales: (F,) viscosity of each film over that which it was made
+    with; temperatures: (F,) K of the films, empty without heat.
     """
 
     rotor: LinearRotor
@@ -66,6 +67,8 @@ class Machine:
     inertia: Array
     held: Array
     parts: tuple[Part, ...]
+    scales: Array
+    temperatures: Array
 
     @property
     def film_count(self) -> int:
@@ -150,6 +153,8 @@ def make_machine(system: System, top: float) -> Machine:
         inertia=inertia / held,
         held=held,
         parts=(),
+        scales=np.ones(len(films)),
+        temperatures=np.zeros(0),
     )
     return replace(machine, parts=_parts(machine))
 
@@ -175,13 +180,14 @@ def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
     values, by_u, by_v = np.zeros((n, c)), np.zeros((n, c, c)), np.zeros((n, c, c))
     by_speed, drive = np.zeros((n, c)), np.zeros(n)
     for f, film in enumerate(machine.films):
-        own = slice(2 * f, 2 * f + 2)
+        own, scale = slice(2 * f, 2 * f + 2), float(machine.scales[f])
         shares = machine.turning[f, 0]
-        found = film_samples(film, np.ascontiguousarray(d[:, f]), np.ascontiguousarray(v[:, own]), speeds @ shares)
-        by_omega = found[:, BY_OMEGA:]
+        rate = scale * np.ascontiguousarray(v[:, own])  # s times the viscosity has the force of s times the velocities
+        found = film_samples(film, np.ascontiguousarray(d[:, f]), rate, scale * (speeds @ shares))
+        by_omega = scale * found[:, BY_OMEGA:]
         values[:, own] = found[:, FORCE:BY_D]
         by_u[:, own, own] = found[:, BY_D:BY_V].reshape(n, 2, 2)
-        by_v[:, own, own] = found[:, BY_V:BY_OMEGA].reshape(n, 2, 2)
+        by_v[:, own, own] = scale * found[:, BY_V:BY_OMEGA].reshape(n, 2, 2)
         by_u[:, own, 2 * films :] = machine.pace * by_omega[:, :, None] * shares[1:]
         by_speed[:, own] = by_omega * shares[0]
     loads = Loads(values, by_u, by_v, by_speed, drive)
@@ -200,8 +206,8 @@ def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> Non
             continue
         shares = machine.turning[f, 1]
         factor, by_d = drag_factor(d[:, f])
-        slip = speeds @ shares
-        couette = -machine.drags[f] * factor * slip
+        slip, drag = speeds @ shares, machine.scales[f] * machine.drags[f]
+        couette = -drag * factor * slip
         force = loads.values[:, own]
         x, y = d[:, f, 0], d[:, f, 1]
         half = -0.5 * machine.moment * c
@@ -216,9 +222,9 @@ def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> Non
             for column, by in ((loads.by_u[:, row], loads.by_u), (loads.by_v[:, row], loads.by_v)):
                 column += scale * half * (x[:, None] * by[:, own.start + 1] - y[:, None] * by[:, own.start])
             loads.by_u[:, row, own] += scale * (
-                -sign * machine.drags[f] * slip[:, None] * by_d + half * np.column_stack([force[:, 1], -force[:, 0]])
+                -sign * drag * slip[:, None] * by_d + half * np.column_stack([force[:, 1], -force[:, 0]])
             )
-            rate = -scale * sign * machine.drags[f] * factor
+            rate = -scale * sign * drag * factor
             loads.by_u[:, row, first:] += machine.pace * rate[:, None] * shares[1:]
             by_speed = loads.by_speed[:, own]
             loads.by_speed[:, row] += rate * shares[0] + scale * half * (x * by_speed[:, 1] - y * by_speed[:, 0])

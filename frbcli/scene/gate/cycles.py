@@ -14,13 +14,31 @@ from frbcli.scene.planning.film_choice import all_clipped, form_of
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
+HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
+
 
 def cycle_heat_faults(case: Case) -> Iterator[Fault]:
-    """Heat has no steady state along a limit cycle that belongs to the rest that it grows from."""
+    """Cycles over the speed have temperatures that stay over a period, of films whose force follows from the motion."""
+    if case.heat is None:
+        return
+    problem = ""
+    if by_shooting(case):
+        problem = "settles over many periods, and a film on cells has its cycle by one period of a run."
+    elif needs_cells(case):
+        problem = "changes the viscosity, and the mean over the angle of openings that turn is tabulated for one."
+    if problem:
+        yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
+    for key in ("clearance", "centrifugal_growth"):
+        if getattr(case.heat, key) == "follows":
+            problem = "changes the clearances over which the motions of a branch are measured."
+            yield Fault(f"thermal.{key}", "follows", None, problem, 'Write "fixed".')
+
+
+def other_cycle_heat_faults(case: Case) -> Iterator[Fault]:
+    """Cycles over other numbers than the speed, and motions of two frequencies, are computed at given temperatures."""
     if case.heat is not None:
-        problem = "is not modelled in limit cycles: each of them dissipates something else, and has other viscosities."
-        remedy = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
-        yield Fault("thermal.model", "lumped", None, problem, remedy)
+        problem = "balances over the period of a cycle over the speed: a motion of two frequencies has no period."
+        yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
 
 
 def smooth_faults(case: Case) -> Iterator[Fault]:

@@ -1,0 +1,279 @@
+"""Limit cycles of a machine with heat: its temperatures are those at which the means over a period balance.
+
+Temperatures are slow: over a period they stay, and the heat that the films dissipate on the mean leaves with the oil
+and through the walls. So they follow from a motion y: T(y), by H(T, P(y, T), Q(y, T)) = 0. The equations of cycles are
+those of the machine at T(y), and how they change with y has the part of T(y) in it. Whether a cycle is stable is asked
+twice: of the motion while the temperatures stay, and of the temperatures while the motion follows them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.case.schema import Case
+from frbcli.cycles.branch import Follower
+from frbcli.cycles.diagram import Walk
+from frbcli.cycles.method.balance import Balance, harmonics_of, packed, through, unpacked
+from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, unit_vector
+from frbcli.cycles.method.equilibria import (
+    Equilibrium,
+    at_rest,
+    equations,
+    equilibrium,
+    first_place,
+    resting_along,
+)
+from frbcli.cycles.method.floquet import TRIVIAL, Multipliers, multipliers
+from frbcli.cycles.parts.film_heat import FilmHeats, film_heats
+from frbcli.cycles.parts.linearised import state_space
+from frbcli.cycles.parts.machine import Machine, make_machine, transfer
+from frbcli.cycles.result import SPEED
+from frbcli.equilibrium.warm_machine import WarmMachines
+from frbcli.film.rectangles.end_flow import EndFlow
+from frbcli.rotor.order import largest_first
+from frbcli.scene.films import film_places
+from frbcli.scene.machine.heat import heat_of
+from frbcli.scene.machine.system import System
+from frbcli.scene.planning.planned import Plan
+from frbcli.thermal.model import HeatModel, rates, viscosities_at
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+# Of Newton's method; the longest of its steps and the last one, K: behind it 1e-11 K are left, for steps become shorter
+# as their squares.
+ITERATIONS, LONGEST, SETTLED = 50, 30.0, 1e-5
+DIFFERENCE = 1e-4  # K
+MOST_GROWTH = 50.0  # logarithm of a multiplier that counts as infinite
+
+
+@dataclass(frozen=True)
+class WarmMotion:
+    """A motion with its temperatures. machine: at these; by_motion: (F, N) derivatives of the logarithms of its
+    viscosities by the motion, nu / pace and Omega / pace; pushed: (F, n, c) of the loads by these logarithms;
+    temperatures: (n,) K of all nodes. Of the nodes that are free: gain_by: (free, free) W/K that they gain by their
+    temperatures while the motion stays, gain_by_motion: (free, N); slopes: (F, free) of the logarithms by them."""
+
+    machine: Machine
+    by_motion: Array
+    pushed: Array
+    temperatures: Array
+    gain_by: Array
+    gain_by_motion: Array
+    slopes: Array
+
+
+@dataclass(frozen=True)
+class HeatOfMotions:
+    """The heat of one machine in periodic motions. base: the machine as its films were made, with viscosities made (F,)
+    Pa s; ends: the flows through the ends of its films; start: (n,) K from which temperatures are sought."""
+
+    base: Machine
+    model: HeatModel
+    made: Array
+    ends: tuple[EndFlow, ...]
+    concentric: Array | None
+    start: Array
+
+    @property
+    def free(self) -> NDArray[np.int64]:
+        """The nodes whose temperatures are not given."""
+        return np.flatnonzero(np.isfinite(self.model.capacity))
+
+    def machine(self, temperatures: Array) -> Machine:
+        """The machine at temperatures (n,) in K."""
+        scales = viscosities_at(self.model, temperatures) / self.made
+        return replace(self.base, scales=scales, temperatures=temperatures[: len(scales)].copy())
+
+    def warm(self, motion: Complex, nu: float, omega: float, near: Array | None = None) -> WarmMotion:
+        """A motion (H + 1, c) at its temperatures; frequency nu and rotor speed omega in rad/s; near: (n,) K from which
+        they are sought. Raises Unreachable where a film boils, and OutOfGap."""
+        t, free = (self.start if near is None else near).copy(), self.free
+        for _ in range(ITERATIONS):
+            machine = self.machine(t)
+            found = self._heats(machine, motion, nu, omega)
+            gain, by_heat, slopes = self._gain(t, found)
+            by_own = by_heat[0] * found.power_by_scale + by_heat[1] * found.flow_by_scale
+            gain_by = self._gain_by_temperature(t, found) + by_own @ slopes
+            step = np.linalg.solve(gain_by, -gain[free])
+            step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-300))
+            t[free] += step
+            if not np.isfinite(t).all() or t[: len(slopes)].max() >= self.model.hottest:
+                raise Unreachable
+            if float(np.abs(step).max()) < SETTLED:
+                by_motion = by_heat[0] @ found.power_by + by_heat[1] @ found.flow_by
+                warmer = np.linalg.solve(gain_by, -by_motion)
+                machine = self.machine(t)
+                return WarmMotion(machine, slopes @ warmer, found.loads_by_scale, t, gain_by, by_motion, slopes)
+        raise Unreachable
+
+    def _heats(self, machine: Machine, motion: Complex, nu: float, omega: float) -> FilmHeats:
+        found = film_heats(machine, self.ends, motion, nu, omega)
+        if self.concentric is None:
+            return found
+        flow = self.concentric * machine.clearances**3 / (machine.scales * self.made)
+        return replace(found, flow=flow, flow_by=np.zeros_like(found.flow_by), flow_by_scale=-flow)
+
+    def _rates(self, t: Array, power: Array, flow: Array) -> Array:
+        return rates(self.model, t, power, flow, self.base.clearances)
+
+    def _gain(self, t: Array, found: FilmHeats) -> tuple[Array, tuple[Array, Array], Array]:
+        """W that all nodes gain (n,); derivatives of that of the free ones by power and flow (free, F) of each film;
+        slopes of WarmMotion."""
+        count, free = len(found.power), self.free
+        gain = self._rates(t, found.power, found.flow)
+        by_power = np.column_stack([self._rates(t, found.power + one, found.flow) - gain for one in np.eye(count)])
+        unit = 1e-6  # m^3/s: the gain is linear in the flows
+        by_flow = np.column_stack([self._rates(t, found.power, found.flow + unit * one) for one in np.eye(count)])
+        slopes = np.zeros((count, len(t)))
+        _, a, c = self.model.viscosity
+        slopes[:, :count] = np.diag(-a / (t[:count] + c) ** 2)
+        return gain, (by_power[free], (by_flow - gain[:, None])[free] / unit), slopes[:, free]
+
+    def _gain_by_temperature(self, t: Array, found: FilmHeats) -> Array:
+        """(free, free) W/K while power and flow stay."""
+        free = self.free
+        ahead, behind = (
+            np.column_stack([
+                self._rates(t + sign * DIFFERENCE * one, found.power, found.flow) for one in np.eye(len(t))[free]
+            ])
+            for sign in (1.0, -1.0)
+        )
+        return np.asarray((ahead - behind)[free] / (2.0 * DIFFERENCE))
+
+
+class WarmSpeed:
+    """The course of a machine with heat over the speed of the rotor in rad/s, see SpeedCourse."""
+
+    def __init__(self, heat: HeatOfMotions) -> None:
+        self._heat = heat
+        self._made: dict[float, Machine] = {}
+        self._space = state_space(heat.base)
+        passing = transfer(heat.base, np.zeros(1), heat.base.pace)
+        self._through = passing.values[0].real
+
+    @property
+    def pace(self) -> float:
+        """As SpeedCourse says."""
+        return self._heat.base.pace
+
+    def equations(self, y: Array) -> tuple[Array, Array]:
+        """As SpeedCourse says."""
+        warm = self._warm(y)
+        residual, slope = equations(warm.machine)(y)
+        pushed = -self._through @ warm.pushed[:, 0].T
+        slope += pushed @ np.delete(warm.by_motion, -2, axis=1)  # at rest nothing has a frequency
+        return residual, slope
+
+    def _warm(self, y: Array) -> WarmMotion:
+        return self._heat.warm(y[None, :-1].astype(complex), 0.0, float(y[-1] * self.pace))
+
+    def equilibrium(self, place: Place) -> Equilibrium:
+        """As SpeedCourse says."""
+        machine = self._warm(place.y).machine
+        found = equilibrium(machine, self._space, place)
+        self._made[found.value] = machine
+        return found
+
+    def machine(self, value: float) -> Machine:
+        """At the temperatures of a resting position that was found."""
+        return self._made[value]
+
+    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
+        """As EquilibriumCourse says."""
+        share = (value - low.value) / (high.value - low.value)
+        guess = np.append(low.u + share * (high.u - low.u), value / self.pace)
+        found = corrected(self.equations, guess, unit_vector(len(guess)))
+        if found is None:
+            raise Unreachable
+        settled = replace(self.equilibrium(found), omega=value, value=value)
+        self._made[value] = self._warm(found.y).machine
+        return settled
+
+
+class WarmFollower(Follower):
+    """Follows branches of cycles with their temperatures."""
+
+    def __init__(self, heat: HeatOfMotions, slowest: float, fastest: float, asked: Sequence[float] = ()) -> None:
+        super().__init__(heat.base, slowest, fastest, asked)
+        self._heat = heat
+
+    def _warm(self, y: Array, near: Array | None = None) -> WarmMotion:
+        pace = self.machine.pace
+        return self._heat.warm(unpacked(y[:-2], self.machine.size), float(y[-2] * pace), float(y[-1] * pace), near)
+
+    def machine_at(self, y: Array) -> Machine:
+        """The machine at the temperatures of the cycle y."""
+        return self._warm(y).machine
+
+    def equations(self, place: Place) -> Equations:
+        """Those of the cycles about a place, with temperatures that follow."""
+        moving = place.y if self.moves(place.y) else place.tangent
+        reference = unpacked(moving[:-2], self.machine.size)
+        near = self._warm(place.y).temperatures
+
+        def at(y: Array) -> tuple[Array, Array]:
+            warm = self._warm(y, near)
+            residual, slope = Balance(warm.machine, reference)(y)
+            slope[:-1] += self._pushed(warm, y) @ warm.by_motion
+            return residual, slope
+
+        return at
+
+    def _pushed(self, warm: WarmMotion, y: Array) -> Array:
+        """(N - 2, F): the derivative of the balance of a motion by the logarithms of the viscosities."""
+        machine, h = warm.machine, (len(y) - 2) // self.machine.size // 2
+        nu, omega = float(y[-2] * machine.pace), float(y[-1] * machine.pace)
+        passing = transfer(machine, nu * np.arange(h + 1.0), omega).values
+        return np.column_stack([-packed(through(passing, harmonics_of(loads, h))) for loads in warm.pushed])
+
+    def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
+        """Those of the motion while the temperatures stay, and of the temperatures while the motion follows."""
+        y = place.y
+        warm = self._warm(y)
+        found = multipliers(warm.machine, self.space_at(y), y, near, max(TRIVIAL, enough))
+        if not self.moves(y):
+            return found
+        slope = Balance(warm.machine, unpacked(y[:-2], self.machine.size))(y)[1][:, :-1]
+        pushed = np.vstack([self._pushed(warm, y), np.zeros((1, len(warm.pushed)))])
+        follows = np.linalg.solve(slope, -pushed @ warm.slopes)  # of the motion, by the temperatures
+        capacity = self._heat.model.capacity[self._heat.free]
+        growth = np.linalg.eigvals((warm.gain_by + warm.gain_by_motion[:, :-1] @ follows) / capacity[:, None])
+        period = 2.0 * np.pi / (y[-2] * self.machine.pace)
+        slow = np.exp(np.clip((growth * period).real, None, MOST_GROWTH) + 1j * (growth * period).imag)
+        others = np.concatenate([found.others, slow])
+        return replace(found, values=np.concatenate([found.values[:1], others[largest_first(others)]]))
+
+
+def warm_walk(
+    case: Case, plan: Plan, system: System, slowest: float, fastest: float, asked: Sequence[float] = ()
+) -> Walk:
+    """What the diagram of a case with heat goes over, between two speeds in rad/s. Raises NotConverged without a
+    resting position at the fastest one, and Unreachable."""
+    assert case.heat is not None
+    heat, machine = heat_of(case), make_machine(system, fastest)
+    top = WarmMachines(case, plan, system).at(fastest)
+    motions = HeatOfMotions(
+        base=machine,
+        model=heat.model,
+        made=np.array([case.viscosity(place.geometry) for place in film_places(case)]),
+        ends=system.films.end_flows,
+        concentric=heat.concentric if case.heat.side_flow == "concentric" else None,
+        start=top.steady.temperatures,
+    )
+    course = WarmSpeed(motions)
+    start = first_place(course.equations, at_rest(machine, top.resting), fastest / machine.pace)
+    return Walk(
+        over=SPEED,
+        unit="Hz",
+        films=system.names,
+        course=course,
+        resting=resting_along(course, start, slowest, fastest),
+        scale=1.0 / (2.0 * np.pi),
+        follower=WarmFollower(motions, slowest, fastest, asked),
+        branch_scale=machine.pace / (2.0 * np.pi),
+    )

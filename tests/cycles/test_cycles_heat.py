@@ -1,0 +1,108 @@
+"""Limit cycles with heat: derivatives, the limit of much oil, and a run, whose temperature is a state."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cycles.faults import check
+from frbcli.cycles.heat import WarmFollower, warm_walk
+from frbcli.cycles.limit_cycles import limit_cycles
+from frbcli.cycles.method.balance import packed
+from frbcli.cycles.method.continuation import Place
+from frbcli.errors import InputError
+from frbcli.runs.run import runup
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+
+OIL = ["oil.viscosity={grade='SAE 10W-40'}", "film.theory=short", "bearing.supply.pressure=2 bar"]
+HEAT = ["thermal.model=lumped", "thermal.supply_temperature=70 degC"]
+
+GROOVES = [f"bearing.{film}.supply={{kind='circumferential-groove', pressure='2 bar'}}" for film in ("inner", "outer")]
+
+
+def jeffcott(*settings: str) -> Case:
+    return load_case("jeffcott", [*OIL, *settings])
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("jeffcott", [*OIL, *HEAT, "thermal.housing=60 degC"]),
+        ("floating-ring-heat", ["film.cavitation=half-sommerfeld", "thermal.clearance=fixed", *GROOVES]),
+    ],
+)
+def test_equations_change_with_the_motion_as_their_derivatives_say(name: str, settings: list[str]) -> None:
+    """The temperatures of films and rings follow from the motion, and so do their parts of the derivatives."""
+    case = load_case(name, [*settings, "speed.from=90 Hz", "speed.to=100 Hz"])
+    plan = make_plan(case)
+    walk = warm_walk(case, plan, make_system(case, plan), *check(case, shooting=True))
+    follower, c = walk.follower, walk.follower.machine.size
+    assert isinstance(follower, WarmFollower)
+    motion = np.zeros((3, c), dtype=complex)
+    motion[0] = walk.resting.points[-1].u
+    motion[1, : 2 * follower.machine.film_count] = np.tile([0.1 + 0.05j, 0.05 - 0.1j], follower.machine.film_count)
+    motion[2] = 0.01
+    y = np.concatenate([packed(motion), [0.5, 0.9]])
+    equations, found = follower.equations(Place(y, np.ones(len(y)))), follower._warm(y)
+    _, slope = equations(y)
+    for i in (0, c - 1, c, 3 * c - 1, len(y) - 2, len(y) - 1):
+        step = 1e-6 * np.eye(len(y))[i]
+        ahead, behind = (follower._warm(y + sign * step).machine.scales for sign in (1.0, -1.0))
+        warmer = np.log(ahead / behind) / 2e-6
+        assert found.by_motion[:, i] == pytest.approx(warmer, rel=1e-4, abs=1e-5)
+        if i >= len(y) - 2:  # the forces of tables have derivatives by displacement that are not exact
+            changed = (equations(y + step)[0] - equations(y - step)[0]) / 2e-6
+            assert slope[:, i] == pytest.approx(changed, abs=1e-5 * float(np.abs(changed).max()))
+    assert np.abs(found.by_motion).max() > 1e-2
+
+
+def test_oil_of_endless_capacity_keeps_its_temperature() -> None:
+    course = ["speed.to=116 Hz", "speed.from=105 Hz"]
+    warm = limit_cycles(jeffcott(*HEAT, "oil.heat_capacity=2e9 J/(kg*K)", *course), [114.0])
+    cold = limit_cycles(jeffcott("oil.temperature=70 degC", *course), [114.0])
+    (one,), (other,) = warm.of("hopf"), cold.of("hopf")
+    assert one.speed_Hz == pytest.approx(other.speed_Hz, rel=1e-5)
+    at_114 = [next(p for p in found.branches[0].points if p.kind == "asked") for found in (warm, cold)]
+    assert at_114[0].frequency_Hz == pytest.approx(at_114[1].frequency_Hz, rel=1e-5)
+    assert at_114[0].eccentricity_max == pytest.approx(at_114[1].eccentricity_max, rel=1e-3)
+    assert at_114[0].temperatures_K == pytest.approx([343.15], abs=1e-3)
+    assert not len(at_114[1].temperatures_K)
+
+
+def test_cycle_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
+    """The temperature of a run swings with the whirl by 0.1 K; its mean, power, size and frequency are the cycle's."""
+    found = limit_cycles(jeffcott(*HEAT, "speed.from=105 Hz", "speed.to=116 Hz"), [115.0])
+    cycle = next(p for p in found.branches[0].points if p.kind == "asked")
+    assert cycle.stable
+    displacement = cycle.orbit()[0]
+    start = f"start.displacement=[{displacement[0]}, {displacement[1]}]"
+    steady = ["speed.from=115 Hz", "speed.to=115 Hz", "speed.duration=1 s", "rotor.unbalance=0", "output.step=0.2 ms"]
+    run = runup(jeffcott(*HEAT, *steady, start), tmp_path / "run.h5")
+    later = run["time_s"] > 0.7
+    x, y = (run[f"journal_{axis}_m"][later] for axis in "xy")
+    angle = np.unwrap(np.arctan2(y - y.mean(), x - x.mean()))
+    turns = (angle[-1] - angle[0]) / (2.0 * math.pi * (run["time_s"][later][-1] - run["time_s"][later][0]))
+    assert cycle.frequency_Hz == pytest.approx(turns, rel=2e-3)
+    assert cycle.eccentricity_max[0] == pytest.approx(run["eccentricity"][later].max(), rel=5e-3)
+    assert cycle.temperatures_K[0] == pytest.approx(run["temperature_K"][later].mean(), abs=0.05)
+    assert cycle.torque_N_m * 2.0 * math.pi * 115.0 == pytest.approx(run["power_W"][later].mean(), rel=5e-3)
+    assert cycle.temperatures_K[0] > 343.15 + 10.0
+
+
+@pytest.mark.parametrize(
+    ("settings", "whirls", "said"),
+    [
+        (["thermal.clearance=follows"], False, "over which the motions of a branch are measured"),
+        (["film.theory=auto", "film.cavitation=two-phase"], False, "settles over many periods"),
+        ([], True, "has no period"),
+    ],
+)
+def test_what_has_no_cycle_with_heat(settings: list[str], whirls: bool, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        limit_cycles(jeffcott(*HEAT, *settings), with_unbalance=whirls)
