@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from frbcli.compiled import compiled
 from frbcli.cycles.method.balance import loads_along, motion_along
-from frbcli.cycles.parts.film_samples import drag_factor
 from frbcli.cycles.parts.machine import Loads, Machine
+from frbcli.film.kinds.samples import drag_factor
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow
 
 Array = NDArray[np.float64]

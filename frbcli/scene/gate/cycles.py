@@ -24,7 +24,7 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
     problem = ""
     if by_shooting(case):
         problem = "settles over many periods, and a film on cells has its cycle by one period of a run."
-    elif needs_cells(case):
+    elif form_of(case).by_cells:
         problem = "changes the viscosity, and the mean over the angle of openings that turn is tabulated for one."
     if problem:
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
