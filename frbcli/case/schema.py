@@ -41,6 +41,7 @@ from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
 from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.force import AppliedForce
+from frbcli.case.surroundings.housing import Housing
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.theories import Theory, adopt_models, check_model
 from frbcli.case.thermal import Thermal
@@ -221,6 +222,9 @@ class Case(Model):
     )
     thrust_bearings: ThrustBearings = Field(
         default=(), alias="thrust_bearing", description="pads beside a collar; must be given without a bearing"
+    )
+    housing: Housing | None = Field(
+        default=None, description="what all bearings stand in; they are fixed to the ground if not given"
     )
     given_oil: Oil | None = Field(
         default=None, alias="oil", description="the lubricant; must be given where a bearing has a film"

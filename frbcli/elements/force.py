@@ -36,7 +36,7 @@ class ForceElement(MachineElement):
 
     def count(self, site: Site) -> float:
         """Equal forces in the machine."""
-        return 1.0 if self.node.startswith("disk") else site.count
+        return 1.0 if self.node.startswith(("disk", "housing")) else site.count
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""

@@ -9,11 +9,12 @@ from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import MachineElement
 from frbcli.elements.force import ForceElement
+from frbcli.elements.housing import HousingElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.thrust import ThrustElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
-    GivenCoefficients, DamperElement, SupportElement, ThrustElement, ForceElement
+    GivenCoefficients, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement
 )  # fmt: skip
 
 

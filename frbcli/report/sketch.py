@@ -15,7 +15,7 @@ from frbcli.case.bearing import FilmBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.places import node_at
-from frbcli.report.element_symbols import HIGH, height, support_symbol, symbol
+from frbcli.report.element_symbols import FLAT, HIGH, height, support_symbol, symbol
 from frbcli.report.svg import box, curve, drawing, element, line, text
 from frbcli.scene.films import HOUSING as STILL
 from frbcli.scene.films import film_places
@@ -121,6 +121,24 @@ def _with_supports(case: Case, half: float, per_m: float, shaft: float) -> float
     return max([half, *shells, *ends])
 
 
+def _housing(case: Case, scale: _SketchScale, inner: float, bearings: list[float]) -> Iterator[str]:
+    """The housing as a bar above and below the axis, `inner` from it, with its mounts; nothing without one. bearings:
+    their positions in m, to which the bar is joined."""
+    if case.housing is None:
+        return
+    mounts = [mount.position for mount in case.housing.mounts if mount.position is not None]
+    mounts = mounts or (bearings if case.housing.mounts else [])
+    ends = [scale.left + scale.per_m * place for place in (min(bearings + mounts), max(bearings + mounts))]
+    for sign in (-1.0, 1.0):
+        top = scale.middle + sign * inner - (FLAT if sign < 0.0 else 0.0)
+        yield box(ends[0], top, ends[1] - ends[0], FLAT, "shell")
+        for place in bearings:
+            x = scale.left + scale.per_m * place
+            yield line(x, scale.middle, x, scale.middle + sign * inner, "spring")
+    for place in mounts:
+        yield from support_symbol(scale.left + scale.per_m * place, scale.middle, inner + FLAT)
+
+
 def _of_sections(case: Case) -> str:
     length = sum(section.length for section in case.shaft)
     disks = [(disk, *_cylinder(disk.mass, disk.polar_inertia, disk.diametral_inertia)) for disk in case.disks]
@@ -129,14 +147,15 @@ def _of_sections(case: Case) -> str:
     right = max([length, *(disk.position + 0.5 * width for disk, _, width in disks)])
     per_m = min((WIDTH - 2.0 * MARGIN) / (right - left), HIGHEST / reach)
     thickest = max(0.5 * section.diameter for section in case.shaft)
-    half = _with_supports(case, per_m * reach, per_m, thickest)
+    inner = _with_supports(case, per_m * reach, per_m, thickest)
+    half = inner if case.housing is None else inner + FLAT + HIGH
     scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * (right + left)), half + 30.0)
-    parts, z = [], 0.0
+    parts, z = [*_housing(case, scale, inner, [bearing.position or 0.0 for bearing in case.given_bearings])], 0.0
     for disk, radius, width in disks:
         parts.append(scale.box(disk.position - 0.5 * width, disk.position + 0.5 * width, 0.0, radius, "disk"))
     for section in case.shaft:
-        inner = 0.5 * section.inner_diameter
-        parts.append(scale.box(z, z + section.length, inner, 0.5 * section.diameter, "shaft"))
+        bore = 0.5 * section.inner_diameter
+        parts.append(scale.box(z, z + section.length, bore, 0.5 * section.diameter, "shaft"))
         z += section.length
     for number, bearing in enumerate(case.bearings):
         if bearing.position is not None:
@@ -161,11 +180,13 @@ def _symmetric(case: Case) -> str:
     disk = max(DISK * journal, 1.1 * _largest_radius(case))
     half_width = 0.5 * max(width, _outer_width(case))
     per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
-    half = _with_supports(case, per_m * disk, per_m, journal)
+    inner = _with_supports(case, per_m * disk, per_m, journal)
+    half = inner if case.housing is None else inner + FLAT + HIGH
     scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
     thin = 0.45 * journal if shaft_of(case).elastic else journal
     parts = [scale.box(0.0, span, 0.0, thin, "vague")]
     parts.append(scale.box(0.5 * span - 0.3 * width, 0.5 * span + 0.3 * width, 0.0, disk, "vague"))
+    parts += _housing(case, scale, inner, [0.0, span])
     for at in (0.0, span):
         parts.append(scale.box(at - half_width, at + half_width, 0.0, journal, "shaft"))
         if case.bearings:

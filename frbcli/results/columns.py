@@ -68,6 +68,7 @@ PART_SIGNALS = (
     Column("disk", "m", "displacement of a disk", shape=(2,)),
     Column("shell", "m", "displacement of the shell of a bearing in its damper", shape=(2,)),
     Column("support", "m", "displacement of the shell of a bearing on its support", shape=(2,)),
+    Column("housing", "m", "displacement of the housing, at its centre of mass or at a bearing", shape=(2,)),
     Column("ring", "m", "displacement of a ring", shape=(2,)),
     Column("ring_speed", "Hz", "speed of a ring"),
     Column("temperature", "K", "temperature of a film, a ring or a wall"),

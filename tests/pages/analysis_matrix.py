@@ -79,6 +79,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "bearings on supports": ("jeffcott", (SUPPORT,)),
     "squeeze film damper that cavitates": ("jeffcott", (DAMPER, "bearing.damper.cavitation=half-sommerfeld")),
     "squeeze film damper, Sommerfeld": ("jeffcott", (DAMPER,)),
+    "rigid housing": ("jeffcott", ('housing={mass="40 kg", mounts=[{stiffness="1e8 N/m"}]}',)),
     "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
     "harmonic forces": ("jeffcott", (HARMONIC,)),
     "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),

@@ -20,6 +20,7 @@ from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import objections, with_nearest_kinds
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.housing_rules import housing_breaches
 from frbcli.case.surroundings.places import force_breaches
 from frbcli.errors import Fault, InputError
 
@@ -190,7 +191,7 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data, unknown = with_coefficient_files(data, Path(folder))
     case, found = _validate(data)
     if case is not None and not found:
-        found = list(force_breaches(case))
+        found = [*force_breaches(case), *housing_breaches(case)]
     if unread:  # what the file would have completed is no fault of the case
         found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
     return case, data, [*unknown, *found]

@@ -27,6 +27,9 @@ def places(case: Case) -> tuple[str, ...]:
             found.append(f"shell_{bearing.name}".rstrip("_"))
         if bearing.support is not None:
             found.append(f"support_{bearing.name}".rstrip("_"))
+    if case.housing is not None:
+        found += () if case.housing.modes and not rotor.symmetric else ("housing",)
+        found += () if rotor.symmetric else [f"housing_{bearing.name}" for bearing in case.given_bearings]
     return tuple(found)
 
 

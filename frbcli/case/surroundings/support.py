@@ -29,17 +29,17 @@ class _OneOrTwo:
         return {"anyOf": [both["prefixItems"][0], both]}
 
 
-_Directions = (BeforeValidator(_both_directions), _OneOrTwo())
-Stiffnesses = Annotated[tuple[Stiffness, Stiffness], *_Directions]
-Dampings = Annotated[tuple[Damping, Damping], *_Directions]
+DIRECTIONS = (BeforeValidator(_both_directions), _OneOrTwo())
+Stiffnesses = Annotated[tuple[Stiffness, Stiffness], *DIRECTIONS]
+Dampings = Annotated[tuple[Damping, Damping], *DIRECTIONS]
 
 
 class Support(Model):
-    """The shell of a bearing as a body on springs and dampers; without a support it is fixed to the ground. It moves in
+    """The shell of a bearing as a body on springs and dampers; without a support it is fixed to ground or housing. It moves in
     x and y and does not turn. Each of both equal bearings of a symmetric rotor has such a support."""
 
     mass: ShellMass = Field(description="of the shell and what moves with it, of one bearing; above 0")
-    stiffness: Stiffnesses = Field(description="of its springs to the ground: of both directions, or [x, y]")
+    stiffness: Stiffnesses = Field(description="of its springs to ground or housing: of both directions, or [x, y]")
     damping: Dampings = Field(
-        default=(0.0, 0.0), description="of its dampers to the ground: of both directions, or [x, y]"
+        default=(0.0, 0.0), description="of its dampers to ground or housing: of both directions, or [x, y]"
     )

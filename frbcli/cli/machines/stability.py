@@ -130,7 +130,9 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
 
 
 def _on_supports(found: Stability) -> bool:
-    return any(bearing.support is not None or bearing.damper is not None for bearing in found.case.given_bearings)
+    from frbcli.scene.machine.elements import moving_carriers
+
+    return bool(moving_carriers(found.case))
 
 
 def _sentence(found: Stability) -> str:

@@ -60,4 +60,5 @@ def cavitates_at_once(case: Case, damper: Damper) -> bool:
 
 
 def _loaded(case: Case) -> bool:
-    return case.given_rotor is not None and (case.rotor.gravity > 0.0 or bool(case.forces))
+    pushed = any(force.constant for force in case.forces)
+    return case.given_rotor is not None and (case.rotor.gravity > 0.0 or pushed)

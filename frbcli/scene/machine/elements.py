@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.damper import DamperElement
-from frbcli.elements.element import Line, Parts, Site
+from frbcli.elements.element import Line, MachineElement, Parts, Site
+from frbcli.elements.housing import HousingElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of
 from frbcli.errors import Fault
@@ -25,15 +26,19 @@ def site_of(case: Case) -> Site:
     shaft = shaft_of(case)
     shells = {each.bearing: each.node for each in DamperElement.of(case)}
     supports = {each.bearing: each.node for each in SupportElement.of(case)}
+    housing = next(HousingElement.of(case), None)
+
+    def ground(bearing: str) -> str:
+        return GROUND if housing is None else housing.node(bearing)
 
     def seat(bearing: str) -> str:
-        return supports.get(bearing, GROUND)
+        return supports.get(bearing, ground(bearing))
 
     return Site(
         journal=shaft.journal,
         shell=lambda bearing: shells.get(bearing, seat(bearing)),
         seat=seat,
-        ground=lambda _: GROUND,
+        ground=ground,
         count=float(shaft.equal_bearings),
         gravity=case.rotor.gravity,
     )
@@ -120,9 +125,14 @@ def without_film(case: Case, what: str) -> list[Fault]:
 
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
-    """The faults of bearings in dampers and on supports, where `what` is of bearings on the ground."""
-    moving = (*DamperElement.of(case), *SupportElement.of(case))
-    return [Fault(each.key, "", None, f"is a shell that moves, and {what}.", remedy) for each in moving]
+    """The faults of what lets shells move, where `what` is of bearings on the ground."""
+    problem = f"moves with the shells of bearings, and {what}."
+    return [Fault(each.key, "", None, problem, remedy) for each in moving_carriers(case)]
+
+
+def moving_carriers(case: Case) -> tuple[MachineElement, ...]:
+    """What lets the shells of bearings move."""
+    return (*DamperElement.of(case), *SupportElement.of(case), *HousingElement.of(case))
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:

@@ -1,0 +1,102 @@
+"""The housing that all bearings stand in: a rigid body on mounts, or the modes of an elastic one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import Fraction, Identifier, Position, Quantity, RingInertia, ShellMass
+from frbcli.case.surroundings.support import DIRECTIONS, Dampings, Stiffnesses
+from frbcli.units import NUMBER, SPEED
+
+Entry = Annotated[float, Quantity(NUMBER, "0.3")]
+Inertias = Annotated[tuple[RingInertia, RingInertia], *DIRECTIONS]
+
+
+class Mount(Model):
+    """Springs and dampers between the housing and the ground."""
+
+    position: Position | None = Field(default=None, description="along the shaft; must be given for a turbocharger")
+    stiffness: Stiffnesses = Field(description="of both directions, or [x, y]")
+    damping: Dampings = Field(default=(0.0, 0.0), description="of both directions, or [x, y]")
+
+
+class ModeAt(Model):
+    """The displacement of a mode at a place."""
+
+    place: Identifier = Field(description="a bearing by its name, `bearing` of a symmetric rotor, or a key of `masses`")
+    displacement: tuple[Entry, Entry] = Field(description="[x, y] in 1/sqrt(kg), of the mode with a modal mass of 1 kg")
+
+
+class MassAt(Model):
+    """A mass of the housing at a place."""
+
+    place: Identifier = Field(description="as in `at` of the modes")
+    mass: ShellMass = Field(description="of the housing there")
+
+
+class _ByPlace:
+    """The schema of a table by places, or of a list of tables with their place, for editors."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return handler(source)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "object"}, handler(schema)]}
+
+
+def _listed(value: str) -> BeforeValidator:
+    """Reads { left = ..., right = ... } as a list of tables with `place` and `value`."""
+
+    def listed(given: object) -> object:
+        return [{"place": place, value: each} for place, each in given.items()] if isinstance(given, dict) else given
+
+    return BeforeValidator(listed)
+
+
+class HousingMode(Model):
+    """A mode of the housing with all that is fixed to it, without rotor and bearings."""
+
+    frequency: Annotated[float, Quantity(SPEED, "120 Hz", above=0)] = Field(description="undamped natural frequency")
+    damping: Fraction = Field(default=0.0, description="ratio to the critical damping")
+    at: Annotated[tuple[ModeAt, ...], _listed("displacement"), _ByPlace()] = Field(
+        description="displacements at all bearings in 1/sqrt(kg), e.g. { left = [0.3, 0], right = [-0.2, 0] }"
+    )
+
+
+class Housing(Model):
+    """What all bearings stand in, in place of the ground: a rigid body with mass, inertia and mounts, or modes."""
+
+    mass: ShellMass | None = Field(default=None, description="of a rigid housing; above 0")
+    inertia: Inertias | None = Field(
+        default=None,
+        description="of a rigid housing that tilts, about its centre of mass: of both planes, or [x z, y z]; must be "
+        "given for a turbocharger, and has no effect on a symmetric rotor, whose ends move alike",
+    )
+    position: Position | None = Field(default=None, description="of its centre of mass along the shaft, as `inertia`")
+    mounts: tuple[Mount, ...] = Field(default=(), description="what holds a rigid housing")
+    modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing, in place of all these keys")
+    masses: Annotated[tuple[MassAt, ...], _listed("mass"), _ByPlace()] = Field(
+        default=(),
+        description="all masses of an elastic housing by their places, each with a unit: modes are then "
+        "checked to be orthonormal, and the housing has its weight",
+    )
+
+
+def shape(mode: HousingMode) -> Mapping[str, tuple[float, float]]:
+    """Displacements of a mode by places, 1/sqrt(kg)."""
+    return {each.place: each.displacement for each in mode.at}
+
+
+def modal_products(housing: Housing) -> Iterator[tuple[int, int, float]]:
+    """Numbers of two modes and the sum of mass times their displacements, 1 for a mode with itself and else 0."""
+    masses = {each.place: each.mass for each in housing.masses}
+    shapes = [shape(mode) for mode in housing.modes]
+    for j, one in enumerate(shapes):
+        for k, other in enumerate(shapes[: j + 1]):
+            shared = one.keys() & other.keys() & masses.keys()
+            yield j, k, sum(masses[p] * sum(a * b for a, b in zip(one[p], other[p], strict=True)) for p in shared)

@@ -1,0 +1,105 @@
+"""The housing that all bearings stand in: a rigid body on mounts, or the modes of an elastic one.
+
+A rigid housing moves by q = [x, y, a, b]: its centre of mass, and the slopes of its axis in the planes x z and y z; a
+bearing at a distance l of the centre moves by (x + l a, y + l b). Both ends of a symmetric rotor move alike, and so its
+housing by q = [x, y]. An elastic housing moves by its modes of unit modal mass,
+
+    q_k'' + 2 zeta_k omega_k q_k' + omega_k^2 q_k = sum over bearings of u_k . F
+
+and a bearing by the sum over k of u_k q_k.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.case.surroundings.housing import Housing, shape
+from frbcli.case.surroundings.housing_rules import KEY, SYMMETRIC_PLACE
+from frbcli.elements.element import Line, MachineElement, Parts, Site
+from frbcli.rotor.body import Array, Body
+from frbcli.units import display
+
+NODE = "housing"  # the centre of mass, or all of the housing of a symmetric rotor
+
+
+@dataclass(frozen=True)
+class HousingElement(MachineElement):
+    """The housing. bearings: names and positions of what it carries, none of a symmetric rotor."""
+
+    given: Housing
+    bearings: tuple[tuple[str, float], ...]
+
+    @classmethod
+    def of(cls, case: Case) -> Iterator[Self]:
+        """See MachineElement."""
+        if case.housing is not None:
+            places = () if case.rotor.symmetric else case.given_bearings
+            yield cls(KEY, case.housing, tuple((bearing.name, bearing.position or 0.0) for bearing in places))
+
+    def node(self, bearing: str) -> str:
+        """The node that a bearing stands on, by its name."""
+        return f"{NODE}_{bearing}" if self.bearings else NODE
+
+    def parts(self, site: Site) -> Parts:
+        """See MachineElement."""
+        return Parts(bodies=(self._modal(site.gravity) if self.given.modes else self._rigid(site.gravity),))
+
+    def told(self, site: Site) -> Line:
+        """See MachineElement."""
+        if self.given.modes:
+            frequencies = ", ".join(f"{mode.frequency:.4g}" for mode in self.given.modes)
+            weight = "its weight at its masses" if self.given.masses else "without its weight, for no masses are given"
+            return "housing", f"{len(self.given.modes)} modes", f"{frequencies} Hz; all bearings stand in it; {weight}"
+        mass, count = display(self.given.mass or 0.0, "kg"), len(self.given.mounts)
+        tilts = "moves and tilts" if self.bearings else "moves, and does not tilt with a symmetric rotor"
+        mounts = f"{count} mounts" if count > 1 else "one mount"
+        return "housing", f"{mass} on {mounts}", f"a rigid body that {tilts}, with its weight; all bearings stand in it"
+
+    def _rigid(self, gravity: float) -> Body:
+        given = self.given
+        mass, inertia = given.mass or 0.0, given.inertia or (0.0, 0.0)
+        size = 4 if self.bearings else 2
+
+        def at(position: float | None) -> Array:
+            """(2, size) displacement there."""
+            arm = (position or 0.0) - (given.position or 0.0)
+            return np.hstack([np.eye(2), arm * np.eye(2)])[:, :size]
+
+        stiffness, damping = np.zeros((2, size, size))
+        for mount in given.mounts:
+            place = at(mount.position)
+            stiffness += place.T @ np.diag(mount.stiffness) @ place
+            damping += place.T @ np.diag(mount.damping) @ place
+        load = np.zeros(size)
+        load[1] = -mass * gravity
+        nodes = ((NODE, at(given.position)), *((self.node(name), at(place)) for name, place in self.bearings))
+        return _body(np.diag([mass, mass, *inertia][:size]), damping, stiffness, load, nodes)
+
+    def _modal(self, gravity: float) -> Body:
+        modes = self.given.modes
+        shapes = [shape(mode) for mode in modes]
+        omega = 2.0 * math.pi * np.array([mode.frequency for mode in modes])
+        damping = np.diag(2.0 * np.array([mode.damping for mode in modes]) * omega)
+
+        def at(place: str) -> Array:
+            """(2, modes) displacement there."""
+            return np.array([each.get(place, (0.0, 0.0)) for each in shapes]).T
+
+        load = -gravity * sum((each.mass * at(each.place)[1] for each in self.given.masses), np.zeros(len(modes)))
+        carried = self.bearings or ((SYMMETRIC_PLACE, 0.0),)
+        nodes = tuple((self.node(name), at(name)) for name, _ in carried)
+        return _body(np.eye(len(modes)), damping, np.diag(omega**2), load, nodes)
+
+
+def _body(
+    mass: Array, damping: Array, stiffness: Array, load: Array, nodes: tuple[tuple[str, Array], ...]
+) -> Body:
+    """A body without rotation and unbalance."""
+    nothing = np.zeros(len(mass))
+    return Body(mass, damping, np.zeros_like(mass), stiffness, load, nothing, nothing, nodes)

@@ -1,0 +1,345 @@
+"""Housings: closed forms of masses in series, a rigid body against its modes, faults.
+
+With impedances Z = K + s C + s^2 M, links in series have 1 / Z = 1 / Z_1 + 1 / Z_2; a symmetric rotor has two of each
+bearing, and one housing.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+import frbcli
+from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
+from frbcli.errors import InputError
+from frbcli.linear.critical_map import critical_map
+from frbcli.linear.damped_modes import damped_modes
+from frbcli.linear.modes import natural_modes
+from frbcli.linear.response import response
+from frbcli.linear.stability import stability
+from frbcli.report.sketch import rotor_sketch
+from frbcli.runs.run import runup
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.planning.plan import make_plan
+
+G, M, U = 9.81, 6.0, 3e-6  # m/s^2, kg, kg m
+K, C = 1e6, 300.0  # N/m, N s/m of one bearing
+HOUSING, SPRINGS, DAMPERS = 40.0, (8e6, 5e6), (400.0, 250.0)  # kg; N/m and N s/m in x and y of the one mount
+SPEED = {"from": "10 Hz", "to": "200 Hz", "duration": "1 s"}
+JEFFCOTT = {
+    "kind": "jeffcott", "mass": "6 kg", "journal_mass": "0.1 kg", "shaft_stiffness": "5e6 N/m",
+    "unbalance": "3e-6 kg*m", "external_damping": "1 N*s/m", "shaft_damping": "0.1 N*s/m",
+}  # fmt: skip
+RIGID = {"kind": "rigid", "mass": f"{M} kg", "unbalance": f"{U!r} kg*m"}
+BODY = {
+    "mass": f"{HOUSING} kg",
+    "mounts": [{"stiffness": [f"{k!r} N/m" for k in SPRINGS], "damping": [f"{c!r} N*s/m" for c in DAMPERS]}],
+}
+
+
+def in_housing(rotor: dict[str, Any], housing: dict[str, Any] | None = None, **bearing: object) -> frbcli.Case:
+    """A symmetric rotor in bearings of given coefficients in a housing."""
+    given = {"kind": "coefficients", "stiffness": f"{K!r} N/m", "damping": f"{C!r} N*s/m"} | bearing
+    data = {"rotor": rotor, "bearing": given, "housing": BODY if housing is None else housing, "speed": SPEED}
+    return case_from_dict(data, "in-housing")
+
+
+def bearing_impedance(s: Any) -> Any:
+    return 2.0 * (K + s * C)
+
+
+def housing_impedance(s: Any, axis: int) -> Any:
+    return SPRINGS[axis] + s * DAMPERS[axis] + s**2 * HOUSING
+
+
+def in_series(one: Any, other: Any) -> Any:
+    return one * other / (one + other)
+
+
+def test_eigenvalues_of_a_rigid_rotor_in_a_housing_are_the_roots_of_the_closed_form() -> None:
+    """Each direction by itself: (m s^2 + b) (M s^2 + b + c) - b^2 with b = 2 (K + C s), c of the mount."""
+    case, expected = in_housing(RIGID), []
+    for axis in (0, 1):
+        b, own = np.array([2 * C, 2 * K]), np.array([HOUSING, DAMPERS[axis], SPRINGS[axis]])
+        both = np.polymul(np.polyadd([M, 0, 0], b), np.polyadd(own, b))
+        expected += np.roots(np.polysub(both, np.polymul(b, b))).tolist()
+    found = stability(case, [80.0]).points[0].eigenvalues
+    assert len(found) == len(expected) == 8
+    for value in expected:
+        assert np.abs(found - value).min() < 1e-9 * abs(value)
+    frequencies = sorted(mode.frequency_Hz for mode in damped_modes(case, 80.0).modes)
+    oscillating = sorted(abs(value.imag) / (2 * math.pi) for value in expected if value.imag > 0)
+    np.testing.assert_allclose(frequencies, oscillating, rtol=1e-9)
+
+
+def test_the_response_of_a_jeffcott_rotor_in_a_housing_is_the_closed_form() -> None:
+    """Housing, bearing, journal, shaft and disk in series and beside each other."""
+    found = response(in_housing(JEFFCOTT), [20.0, 90.0, 150.0])
+    assert found.points == ("journal", "disk", "housing")
+    named = dict(zip(found.points, np.moveaxis(found.motion, 1, 0), strict=True))
+    s = 2j * math.pi * found.speeds_Hz
+    shaft = 5e6 + 0.1 * s
+    for axis, pull in enumerate((1.0j, 1.0)):
+        bearing, housing = bearing_impedance(s), housing_impedance(s, axis)
+        journal = 0.1 * s**2 + in_series(bearing, housing)
+        disk = -(s**2) * U * pull / (6.0 * s**2 + 1.0 * s + in_series(shaft, journal))
+        moved = disk * shaft / (shaft + journal)
+        np.testing.assert_allclose(named["disk"][:, axis], disk, rtol=1e-9)
+        np.testing.assert_allclose(named["journal"][:, axis], moved, rtol=1e-9)
+        np.testing.assert_allclose(named["housing"][:, axis], moved * bearing / (bearing + housing), rtol=1e-9)
+
+
+def test_supports_stand_in_the_housing() -> None:
+    """Rotor, bearing, shell, support, housing, mount and ground follow each other."""
+    found = response(in_housing(RIGID, support={"mass": "2 kg", "stiffness": "4e6 N/m"}), [20.0, 90.0, 150.0])
+    assert found.points == ("journal", "support", "housing")
+    s = 2j * math.pi * found.speeds_Hz
+    for axis, pull in enumerate((1.0j, 1.0)):
+        shell = 2.0 * 2.0 * s**2 + in_series(2.0 * 4e6, housing_impedance(s, axis))
+        rotor = -(s**2) * U * pull / (M * s**2 + in_series(bearing_impedance(s), shell))
+        np.testing.assert_allclose(found.motion[:, 0, axis], rotor, rtol=1e-9)
+
+
+def test_the_mount_carries_the_weight_of_all() -> None:
+    case = in_housing(RIGID)
+    (point,) = stability(case, [80.0]).points
+    assert point.rests
+    rotor = make_rotor(case)
+    sunk = dict(rotor.points)["housing"] @ np.linalg.solve(rotor.stiffness, rotor.static_load)
+    np.testing.assert_allclose(sunk, [0.0, -(M + HOUSING) * G / SPRINGS[1]], rtol=1e-9, atol=1e-15)
+
+
+# ------------------------------------------------------------------------------------- a turbocharger in its housing
+
+BEARINGS = {"left": 0.05, "right": 0.15}  # m
+CENTRE, INERTIA = 0.11, (0.3, 0.2)  # m; kg m^2 of the planes x z and y z
+MOUNTS = ((0.0, (2e7, 3e7)), (0.25, (1e7, 2.5e7)))  # m, N/m
+SHAFT = {
+    "rotor": {"kind": "turbocharger", "modes": 4, "gravity": "9.81 m/s^2"},
+    "shaft": [{"length": "200 mm", "diameter": "20 mm", "density": "7850 kg/m^3", "youngs_modulus": "210 GPa"}],
+    "disk": [{"name": "wheel", "position": "200 mm", "mass": "1.5 kg", "polar_inertia": "1000 kg*mm^2",
+              "diametral_inertia": "700 kg*mm^2", "unbalance": "2 g*mm"}],
+    "bearing": [{"kind": "coefficients", "name": name, "position": f"{place!r} m", "stiffness": f"{K!r} N/m",
+                 "damping": f"{C!r} N*s/m"} for name, place in BEARINGS.items()],
+    "speed": SPEED,
+}  # fmt: skip
+STEADY_RATIO = 1e-4  # s: damping over stiffness of the mounts, so that the modes stay apart
+
+
+def mounted() -> dict[str, Any]:
+    mounts = [
+        {"position": f"{z!r} m", "stiffness": [f"{k!r} N/m" for k in both],
+         "damping": [f"{STEADY_RATIO * k!r} N*s/m" for k in both]}
+        for z, both in MOUNTS
+    ]  # fmt: skip
+    inertia = [f"{value!r} kg*m^2" for value in INERTIA]
+    return {"mass": f"{HOUSING} kg", "inertia": inertia, "position": f"{CENTRE!r} m", "mounts": mounts}
+
+
+def own_modes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(4,) frequencies in rad/s of the housing, and (4, 2) displacements of both bearings, of unit modal mass: each
+    plane by itself, with its displacement and its slope."""
+    frequencies, left, right = [], [], []
+    for axis in (0, 1):
+        mass = np.diag([HOUSING, INERTIA[axis]])
+        arms = [np.array([1.0, z - CENTRE]) for z, _ in MOUNTS]
+        stiffness = sum(both[axis] * np.outer(arm, arm) for arm, (_, both) in zip(arms, MOUNTS, strict=True))
+        squares, vectors = eigh(stiffness, mass)
+        frequencies += np.sqrt(squares).tolist()
+        for vector in vectors.T:
+            for found, place in zip((left, right), BEARINGS.values(), strict=True):
+                found.append(np.eye(2)[axis] * (vector @ [1.0, place - CENTRE]))
+    return np.array(frequencies), np.array(left), np.array(right)
+
+
+def by_modes() -> dict[str, Any]:
+    modes = [
+        {"frequency": f"{float(omega) / (2 * math.pi)!r} Hz", "damping": 0.5 * STEADY_RATIO * float(omega),
+         "at": {"left": left.tolist(), "right": right.tolist()}}
+        for omega, left, right in zip(*own_modes(), strict=True)
+    ]  # fmt: skip
+    return {"modes": modes}
+
+
+def test_modes_of_a_housing_are_those_of_the_body_that_has_them() -> None:
+    """Eigenvalues of the machine, response at all points, without the weight, which modes do not tell."""
+    rigid, modal = (
+        case_from_dict(SHAFT | {"housing": housing}).with_settings("rotor.gravity=0 m/s^2")
+        for housing in (mounted(), by_modes())
+    )
+    one, other = (stability(case, [150.0]).points[0].eigenvalues for case in (rigid, modal))
+    assert len(one) == len(other) == 2 * (8 + 4)
+    for value in one:
+        assert np.abs(other - value).min() < 1e-9 * abs(value)
+    found = [response(case, [40.0, 150.0]) for case in (rigid, modal)]
+    for name in ("journal_left", "disk_wheel", "housing_left", "housing_right"):
+        motions = [each.motion[:, each.points.index(name)] for each in found]
+        np.testing.assert_allclose(motions[0], motions[1], rtol=1e-9, err_msg=name)
+
+
+def test_a_rigid_housing_joins_the_shaft_by_the_bearings_alone() -> None:
+    """Its matrices beside those of the shaft, made here of planes, arms and bearings."""
+    machine, alone = (
+        make_rotor(case_from_dict(SHAFT | extra)) for extra in ({"housing": mounted()}, {})
+    )
+    n, held = alone.size, dict(alone.points)
+    bearings = sum(K * held[f"journal_{name}"].T @ held[f"journal_{name}"] for name in BEARINGS)
+    expected = np.zeros((n + 4, n + 4))
+    expected[:n, :n] = alone.stiffness - bearings
+    for axis in (0, 1):
+        for z, both in MOUNTS:
+            arm = np.zeros(n + 4)
+            arm[n + axis], arm[n + 2 + axis] = 1.0, z - CENTRE
+            expected += both[axis] * np.outer(arm, arm)
+        for name, place in BEARINGS.items():
+            arm = np.append(held[f"journal_{name}"][axis], np.zeros(4))
+            arm[n + axis], arm[n + 2 + axis] = -1.0, -(place - CENTRE)
+            expected += K * np.outer(arm, arm)
+    np.testing.assert_allclose(machine.stiffness, expected, rtol=1e-12, atol=1e-9 * np.abs(expected).max())
+    np.testing.assert_allclose(np.diag(machine.mass)[n:], [HOUSING, HOUSING, *INERTIA])
+    np.testing.assert_allclose(machine.static_load[n:], [0.0, -HOUSING * G, 0.0, 0.0])
+
+
+def test_modes_with_masses_are_orthonormal_and_have_the_weight() -> None:
+    """Two lumps on springs: a mode each, 1/sqrt(m) at its lump."""
+    modes = [{"frequency": f"{80.0 + 10.0 * i + 5.0 * axis} Hz",
+              "at": {"left": [0.0, 0.0], "right": [0.0, 0.0], name: (np.eye(2)[axis] / math.sqrt(mass)).tolist()}}
+             for i, (name, mass) in enumerate({"left": 4.0, "right": 9.0}.items()) for axis in (0, 1)]  # fmt: skip
+    case = case_from_dict(SHAFT | {"housing": {"modes": modes, "masses": {"left": "4 kg", "right": "9 kg"}}})
+    np.testing.assert_allclose(make_rotor(case).static_load[-4:], [0.0, -2.0 * G, 0.0, -3.0 * G], rtol=1e-12)
+    assert load_case_text(case.source_text, name=case.name) == case
+    with pytest.raises(InputError, match="in place of 1"):
+        case.with_settings({"housing.masses": {"left": "5 kg", "right": "9 kg"}})
+    turned = [*modes[:3], modes[3] | {"at": {"left": [0.0, 0.0], "right": [0.2, 0.2]}}]
+    with pytest.raises(InputError, match="with mode 3"):
+        case.with_settings({"housing.modes": turned})
+
+
+# ---------------------------------------------------------------------------------------------------------- in runs
+
+
+def short_film(**tables: object) -> frbcli.Case:
+    """The shipped rigid rotor in its short films, of few revolutions at one speed."""
+    steady = {"start.position": "resting", "speed.from": "60 Hz", "speed.to": "60 Hz", "speed.duration": "60 ms",
+              "accuracy.tolerance": 1e-9}  # fmt: skip
+    return load_case("rigid", ["film.theory=short", "rotor.unbalance=3 g*mm"]).with_settings(steady | tables)
+
+
+def test_a_stiff_housing_changes_no_signal(tmp_path: Path) -> None:
+    """By more than 1e-6, displacements over the clearance, with a million times the stiffness of the film."""
+    fixed = short_film()
+    (point,) = stability(fixed, [60.0]).points
+    stiff = f"{2e6 * float(np.abs(point.films[0].stiffness).max())!r} N/m"
+    mount = {"stiffness": stiff, "damping": "1e4 N*s/m"}
+    moved = fixed.with_settings({"housing": {"mass": "1 g", "mounts": [mount]}})
+    runs = [runup(case, tmp_path / f"{number}.h5") for number, case in enumerate((fixed, moved))]
+    shared = [name for name in runs[0].signals if name in runs[1].signals]
+    assert {"eccentricity", "journal_x_m", "journal_y_m"} <= set(shared)
+    for name in shared:
+        one, other = (run[name] for run in runs)
+        unit = runs[0].references["clearance_m"] if name.endswith("_m") else np.abs(one).max()
+        assert np.abs(one - other).max() <= 1e-6 * unit, name
+
+
+def test_a_run_in_an_elastic_housing_has_the_motion_of_the_response(tmp_path: Path) -> None:
+    modes = [{"frequency": f"{value} Hz", "damping": 0.2, "at": {"bearing": at}}
+             for value, at in ((90.0, [0.3, 0.1]), (110.0, [-0.1, 0.25]))]  # fmt: skip
+    case = in_housing(JEFFCOTT, {"modes": modes}, damping="3000 N*s/m").with_settings(
+        {"speed.from": "60 Hz", "speed.to": "60 Hz", "speed.duration": "1 s", "start.position": "resting",
+         "accuracy.tolerance": 1e-7}
+    )  # fmt: skip
+    found, run = response(case, [60.0]), runup(case, tmp_path / "run.h5")
+    late = run["time_s"] >= run.t_end_s - 10.0 / 60.0
+    turn = np.exp(2j * math.pi * 60.0 * run["time_s"][late])
+    columns = np.column_stack([np.ones(len(turn)), turn.real, -turn.imag])
+    for number, name in enumerate(found.points):
+        for axis, letter in enumerate("xy"):
+            _, real, imaginary = np.linalg.lstsq(columns, run[f"{name}_{letter}_m"][late])[0]
+            amplitude = real + 1j * imaginary
+            assert abs(amplitude - found.motion[0, number, axis]) < 1e-3 * abs(found.motion[0, number, axis]), name
+
+
+def test_forces_on_the_housing() -> None:
+    """One, also with a symmetric rotor, whose housing is one."""
+    plain = in_housing(RIGID)
+    pushed = plain.with_settings({"force": [{"at": "housing", "force": ["10 N", "20 N"]}]})
+    moved = make_rotor(pushed).static_load - make_rotor(plain).static_load
+    np.testing.assert_allclose(moved, [0.0, 0.0, 10.0, 20.0])
+
+
+def test_plan_and_sketch_show_the_housing() -> None:
+    for case, value, grounds in (
+        (in_housing(RIGID), "40 kg on one mount", 4 + 4),
+        (case_from_dict(SHAFT | {"housing": mounted()}), "40 kg on 2 mounts", 4 + 4),
+        (case_from_dict(SHAFT | {"housing": by_modes()}), "4 modes", 4),
+    ):
+        assert [each.value for each in make_plan(case).decisions if each.choice == "housing"] == [value]
+        assert rotor_sketch(case)[0].count('class="ground"') == grounds
+        assert load_case_text(case.source_text, name=case.name) == case
+
+
+def test_analyses_of_a_rotor_on_the_ground_refuse_a_housing() -> None:
+    heavy = load_case("turbocharger-heavy").with_settings({"housing": mounted()})
+    for analysis in (lambda: critical_map(heavy), lambda: natural_modes(heavy, 1e7)):
+        with pytest.raises(InputError) as caught:
+            analysis()
+        assert caught.value.faults[0].key == "housing"
+
+
+MODE: dict[str, Any] = {"frequency": "100 Hz", "at": {"left": [0.3, 0.0], "right": [0.3, 0.0]}}
+FAULTS: dict[str, tuple[dict[str, Any], str, str]] = {
+    "nothing": ({}, "housing.mass", "is missing"),
+    "no mounts": ({"mounts": None}, "housing.mounts", "nothing holds"),
+    "no mass": ({"mass": 0.0}, "housing.mass", "is 0"),
+    "no inertia": ({"inertia": None}, "housing.inertia", "tilts"),
+    "no position": ({"position": None}, "housing.position", "tilts"),
+    "one mount": ({"mounts": mounted()["mounts"][:1]}, "housing.mounts", "tilts freely"),
+    "slack mount": (
+        {"mounts": [*mounted()["mounts"], {"position": "0.1 m", "stiffness": "0 N/m"}]},
+        "housing.mounts.2.stiffness", "than 0",
+    ),
+    "mount without position": (
+        {"mounts": [*mounted()["mounts"], {"stiffness": "1 N/m"}]}, "housing.mounts.2.position", "is missing"
+    ),
+    "both": ({"modes": [MODE]}, "housing.mass", "beside modes"),
+    "a bearing left out": (
+        {"mass": None, "inertia": None, "position": None, "mounts": None,
+         "modes": [MODE | {"at": {"left": [1.0, 0.0]}}]},
+        "housing.modes.0.at", "no displacement at right",
+    ),
+    "an unknown place": (
+        {"mass": None, "inertia": None, "position": None, "mounts": None,
+         "modes": [MODE | {"at": MODE["at"] | {"middle": [1.0, 0.0]}}]},
+        "housing.modes.0.at", "neither a bearing",
+    ),
+    "no frequency": (
+        {"mass": None, "inertia": None, "position": None, "mounts": None, "modes": [MODE | {"frequency": "0 Hz"}]},
+        "housing.modes.0.frequency", "than 0",
+    ),
+    "masses of a rigid housing": ({"masses": {"left": "3 kg"}}, "housing.masses", "without modes"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("given", FAULTS.values(), ids=FAULTS.keys())
+def test_bad_housings_are_refused(given: tuple[dict[str, Any], str, str]) -> None:
+    keys, key, problem = given
+    housing = {name: value for name, value in (mounted() | keys).items() if value is not None} if keys else {}
+    with pytest.raises(InputError) as caught:
+        case_from_dict(SHAFT | {"housing": housing})
+    fault = next(fault for fault in caught.value.faults if fault.key == key)
+    assert problem in fault.problem
+    assert fault.remedy
+    assert sum(each.key == key for each in caught.value.faults) == 1
+
+
+def test_a_symmetric_rotor_does_not_tilt_its_housing() -> None:
+    with pytest.raises(InputError, match="move alike") as caught:
+        in_housing(RIGID, BODY | {"inertia": "1 kg*m^2", "position": "0 m"})
+    assert {fault.key for fault in caught.value.faults} == {"housing.inertia", "housing.position"}
+    with pytest.raises(InputError, match="has no effect"):
+        load_case("bearing").with_settings({"housing": BODY})
