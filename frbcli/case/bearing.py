@@ -47,7 +47,7 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed to ground or housing if not given")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
@@ -110,7 +110,7 @@ class FloatingRingBearing(BearingWalls):
         "oil that leaves one film enters the other",
     )
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed to ground or housing if not given")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:

@@ -104,7 +104,7 @@ class CoefficientsBearing(Model):
         default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
     )
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell or outer ring")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed to ground or housing if not given")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
