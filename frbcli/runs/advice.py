@@ -14,7 +14,7 @@ from frbcli.results.store import Run
 from frbcli.runs.heat import hot_film
 from frbcli.runs.march import UNBOUNDED
 from frbcli.scene.clearance_steps import case_at, step_times
-from frbcli.scene.coupling import APART
+from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places
 from frbcli.scene.remedies import film_remedies, remedies_sentence
 from frbcli.scene.supply import unfed_films
@@ -193,7 +193,7 @@ def _clearance(case: Case, film: str) -> float:
 def _numerics(case: Case) -> tuple[str, ...]:
     """Settings of the time integration that may help. The tolerance does not: steps of 1e-12 s have no error, and what
     has no solution with one tolerance has none with a smaller one."""
-    if case.film.coupling != APART:
+    if not coupling_of(case).in_turn:
         return ()
     smaller = display(case.accuracy.macro_step / SHORTER, "s")
     return (f"accuracy.macro_step = {smaller}, or film.coupling = auto",)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from frbcli.case.schema import Case
 from frbcli.scene.costs.course import longest_step, steps_of_a_turn
+from frbcli.scene.coupling import coupling_named
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.state import Control
 
@@ -19,5 +20,5 @@ def control_of(case: Case, plan: Plan) -> Control:
         output_step=case.output.step,
         contact_eccentricity=contact.eccentricity,
         contact_stiffness=stiffness,
-        linearised=plan.coupling == "dynamic-static-semi-implicit",
+        linearised=coupling_named(plan.coupling).once,
     )

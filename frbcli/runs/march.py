@@ -25,6 +25,7 @@ from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.costs.cost import expected_cost
 from frbcli.scene.costs.course import expected_course
 from frbcli.scene.costs.preparation import film_error_s
+from frbcli.scene.coupling import coupling_named
 from frbcli.scene.machine.segments import Segment, make_segments
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
@@ -93,7 +94,7 @@ class March:
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._heat.start, profile)
-        self._apart = plan.coupling == "co-simulation"
+        self._apart = coupling_named(plan.coupling).in_turn
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))

@@ -1,44 +1,135 @@
-"""Coupling of rotor and films in the time integration: settings and choice (chapter 5)."""
+"""Couplings of rotor and films in the time integration (chapter 5): a row for each, with what it is not made for, and
+the choice of one."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
+from frbcli.scene.gate.analysis import ALL, RUN
+from frbcli.scene.gate.rule import Rule, refusal
+from frbcli.scene.machine.elements import changes_with_speed, load_faults
+from frbcli.scene.planning.film_choice import form_of
 
-COUPLINGS = ("monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation")
-MONOLITHIC, FULL, SEMI, APART = COUPLINGS
-REASONS = {
-    MONOLITHIC: "rotor and film are one equation in every stage",
-    FULL: "the film has no state and is solved with the rotor in every stage",
-    SEMI: "the film is solved once in every stage, at the predicted position of the rotor, and linearised there",
-    APART: "rotor and film are solved in turn and exchange motion and force once per macro step",
-}
+KEY = "film.coupling"
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A coupling. reason: in words; iterates: whether rotor and films are solved until both hold, so that its error is
+    that of Newton's method; once: whether films are solved once in every stage and linearised there; in_turn: whether
+    rotor and films take steps of their own and exchange motion and force once per macro step; film_steps: of the films
+    in a step of the rotor; rules: what it is not made for."""
+
+    name: str
+    reason: str
+    iterates: bool = True
+    once: bool = False
+    in_turn: bool = False
+    film_steps: float = 1.0
+    rules: tuple[Rule, ...] = ()
+
+
+def _oil_faults(case: Case) -> Iterator[Fault]:
+    coupling, cavitation = case.film.coupling, _deciding(case)
+    if form_of(case).solved and law_named(cavitation).keeps_oil:
+        problem = f"needs a film without a state; {cavitation} is mass-conserving, and its oil is a state."
+        yield Fault(KEY, coupling, None, problem, "Choose monolithic, co-simulation or auto.")
+
+
+def _on_cells(case: Case) -> str | None:
+    return case.film.coupling if form_of(case).by_cells else None
+
+
+def _with_heat(case: Case) -> str | None:
+    return None if case.heat is None else case.film.coupling
+
+
+def _over_speed(case: Case) -> str | None:
+    return case.film.coupling if changes_with_speed(case) else None
+
+
+def _signals(case: Case) -> str | None:
+    signals = case.output.signals
+    return ", ".join(signals) if any(kind != "film-thickness" for kind in signals) else None
+
+
+def _load_faults(case: Case) -> Iterator[Fault]:
+    what = "the co-simulation of rotor and films has no load that changes but the unbalance"
+    return load_faults(case, what, "Write auto for film.coupling.")
+
+
+WITHOUT_STATE = Rule(_oil_faults, (RUN,))
+MONOLITHIC = Coupling("monolithic", "rotor and film are one equation in every stage")
+FULL = Coupling(
+    "dynamic-static",
+    "the film has no state and is solved with the rotor in every stage",
+    rules=(WITHOUT_STATE,),
+)
+SEMI = Coupling(
+    "dynamic-static-semi-implicit",
+    "the film is solved once in every stage, at the predicted position of the rotor, and linearised there",
+    iterates=False,
+    once=True,
+    rules=(
+        WITHOUT_STATE,
+        refusal(
+            (RUN,), KEY, _on_cells, "needs a film that is solved without iterations; this one is a finite-volume film",
+            "Choose dynamic-static, co-simulation or auto.",
+        ),
+    ),
+)  # fmt: skip
+APART = Coupling(
+    "co-simulation",
+    "rotor and film are solved in turn and exchange motion and force once per macro step",
+    iterates=False,
+    in_turn=True,
+    film_steps=2.0,
+    rules=(
+        refusal(
+            ALL, KEY, _with_heat,
+            "exchanges forces alone between rotor and films; [thermal] would follow a film that is not there yet",
+            "Write auto.",
+        ),
+        refusal(
+            (RUN,), KEY, _over_speed,
+            "has a rotor of constant coefficients, and those of a bearing depend on the speed", "Write auto.",
+        ),
+        Rule(_load_faults, (RUN,)),
+        refusal(
+            (RUN,), "output.signals", _signals,
+            "are not known in a co-simulation, but for film-thickness", "Choose another film.coupling.",
+        ),
+    ),
+)  # fmt: skip
+ROWS = (MONOLITHIC, FULL, SEMI, APART)
+COUPLINGS = tuple(row.name for row in ROWS)
+
+
+def coupling_named(name: str) -> Coupling:
+    """The row of a name, one of COUPLINGS."""
+    return ROWS[COUPLINGS.index(name)]
 
 
 def chosen_coupling(coupling: str, cavitation: str) -> str:
     """One of COUPLINGS for the setting of a case, which is one of them or "auto"."""
     if coupling != "auto":
         return coupling
-    return MONOLITHIC if law_named(cavitation).keeps_oil else FULL
+    return (MONOLITHIC if law_named(cavitation).keeps_oil else FULL).name
+
+
+def coupling_of(case: Case) -> Coupling:
+    """The coupling of a case, set in it or chosen."""
+    return coupling_named(chosen_coupling(case.film.coupling, _deciding(case)))
 
 
 def plan_coupling(case: Case) -> tuple[str, str]:
     """(one of COUPLINGS, why)."""
-    coupling = chosen_coupling(case.film.coupling, _deciding(case))
-    return coupling, REASONS[coupling] if case.film.coupling == "auto" else f"set in the case; {REASONS[coupling]}"
-
-
-def coupling_fault(case: Case, with_cells: bool) -> Fault | None:
-    """The fault of the coupling that is set in a case."""
-    coupling, cavitation = case.film.coupling, _deciding(case)
-    if coupling in (FULL, SEMI) and law_named(cavitation).keeps_oil:
-        problem = f"needs a film without a state; {cavitation} is mass-conserving, and its oil is a state."
-        return Fault("film.coupling", coupling, None, problem, f"Choose {MONOLITHIC}, {APART} or auto.")
-    if coupling == SEMI and with_cells:
-        problem = "needs a film that is solved without iterations; this one is a finite-volume film."
-        return Fault("film.coupling", coupling, None, problem, f"Choose {FULL}, {APART} or auto.")
-    return None
+    found = coupling_of(case)
+    return found.name, found.reason if case.film.coupling == "auto" else f"set in the case; {found.reason}"
 
 
 def _deciding(case: Case) -> str:

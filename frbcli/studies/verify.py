@@ -12,7 +12,7 @@ from frbcli.case.schema import Case
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.coupling import APART, SEMI, chosen_coupling
+from frbcli.scene.coupling import chosen_coupling, coupling_named
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.differences import difference, onset_speed
 
@@ -51,7 +51,7 @@ def verify(case: Case, run: Run, observe: Callable[[Progress], None] | None = No
 
         finer = other(f"accuracy.tolerance={0.5 * plan.tolerance!r}", f"accuracy.steps_per_revolution={steps}")
         apart, cpu_s, coupling = difference(run, finer), float(finer.cost["cpu_s"]), None
-        if plan.coupling in (SEMI, APART) and finer.status != INTERRUPTED:
+        if not coupling_named(plan.coupling).iterates and finer.status != INTERRUPTED:
             together = other(f"film.coupling={chosen_coupling('auto', plan.cavitation)}")
             coupling, cpu_s = difference(run, together).largest, cpu_s + float(together.cost["cpu_s"])
     onset = onset_speed(run) - onset_speed(finer)

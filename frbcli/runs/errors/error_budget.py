@@ -13,7 +13,7 @@ from frbcli.errors import NotConverged
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.film_error import film_force_errors
 from frbcli.runs.oil import oil_defect
-from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.coupling import coupling_named
 from frbcli.scene.films import bearing_springs
 from frbcli.scene.machine.elements import element_springs
 from frbcli.scene.machine.segments import Segment
@@ -59,7 +59,7 @@ def error_budget(
         "film_force_relative": force,
         "model_relative": force if short else None,
         "mesh_relative": None if short else force,
-        "coupling": None if plan.coupling in (SEMI, APART) else NEWTON_SHARE * plan.tolerance,
+        "coupling": NEWTON_SHARE * plan.tolerance if coupling_named(plan.coupling).iterates else None,
         "modal_reduction": modal_reduction(case, system, samples),
         "cells": None if cells is None else cells.eccentricity,
         "eccentricity": fading + in_films if system.names else None,

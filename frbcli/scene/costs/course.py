@@ -22,7 +22,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import no_inflow
 from frbcli.rotor.speed_profile import Array, SpeedProfile
-from frbcli.scene.coupling import APART, SEMI
+from frbcli.scene.coupling import coupling_named
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.machine.elements import harmonics_of
 from frbcli.scene.planning.film_choice import form_of
@@ -47,7 +47,6 @@ FADING = 0.01  # damping ratio of the vibration that a rotor begins with as it f
 # clearance: 1.8 to 3.0 as measured.
 WHIRL = 2.7
 NEAR = 0.9  # half the rotor speed over the natural frequency of the shaft, from where on it counts as near
-MICRO_STEPS = 2.0  # of a film in a macro step of a co-simulation
 TABLE_POINTS = 400  # of the speed profile
 SLOWEST_Hz = 1e-6  # rotor speed below which revolutions are not counted
 
@@ -80,9 +79,10 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
     rate = np.where(presses, pressed * rate, rate)
     iterations = _solves_of_a_stage(case, plan, whirls, rate / np.maximum(turns, SLOWEST_Hz))
     iterations = np.where(presses, work.pressed[1] * iterations, iterations)
-    if plan.coupling == SEMI:
+    coupling = coupling_named(plan.coupling)
+    if coupling.once:
         iterations = np.ones_like(rate)
-    films = len(film_places(case)) * (MICRO_STEPS if plan.coupling == APART else 1.0)
+    films = len(film_places(case)) * coupling.film_steps
     solves = rate * STAGES[plan.method] * iterations * films
     return RunCourse(times, _summed(rate, times), _summed(solves, times))
 

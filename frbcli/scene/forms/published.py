@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.coupling import MONOLITHIC, chosen_coupling
 from frbcli.scene.films import film_places, rings
 from frbcli.scene.forms.cells import COMPILING, cells_of
 from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
@@ -78,8 +76,7 @@ def _whirl_steepness(case: Case) -> str | None:
 
 
 def _apart(case: Case) -> str | None:
-    coupling = chosen_coupling(case.film.coupling, TwoPhase.name)
-    return None if coupling == MONOLITHIC else coupling
+    return None if case.film.coupling in ("auto", "monolithic") else case.film.coupling
 
 
 RULES = (
@@ -121,7 +118,7 @@ RULES = (
     refusal(
         (RUN,), "film.coupling", _apart,
         "solves the film apart from the rotor, whose elements settle only with it in one step",
-        f"Choose {MONOLITHIC} or auto.",
+        "Choose monolithic or auto.",
     ),
 )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Rules of films, whatever is asked of them: supplies, openings and ends, heat."""
+"""Rules of films, whatever is asked of them: supplies, openings and ends."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
-from frbcli.scene.coupling import APART
 from frbcli.scene.films import film_places
 from frbcli.scene.keys import film_keys
 from frbcli.scene.section import film_section
@@ -28,10 +27,3 @@ def supply_faults(case: Case) -> Iterator[Fault]:
         at, value = (f"{key}.supply.kind", supply.kind) if runs_dry(section) else (key, place.name)
         for found in section_faults(section):
             yield Fault(at, value, None, f"cannot be solved: {found.problem}.", found.remedy)
-
-
-def heat_faults(case: Case) -> Iterator[Fault]:
-    """The coupling that heat cannot be modelled together with."""
-    if case.heat is not None and case.film.coupling == APART:
-        problem = "exchanges forces alone between rotor and films; [thermal] would follow a film that is not there yet."
-        yield Fault("film.coupling", APART, None, problem, "Write auto.")

@@ -1,7 +1,8 @@
 """The gate: one table of rules, each with the analyses that it holds for. Every analysis asks it before a film is made.
 
-A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films is not made
-for stands in its own row, see `rules` in scene/forms/form.py. `docs/matrix.md` is made by asking this gate.
+A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films
+or a coupling is not made for stands in its own row, see `rules` in scene/forms/form.py and scene/coupling.py.
+`docs/matrix.md` is made by asking this gate.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from functools import partial
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
+from frbcli.scene.coupling import coupling_of
 from frbcli.scene.gate import cycles, dampers, films, kinematic, runs, static
 from frbcli.scene.gate.analysis import (
     ALL,
@@ -51,7 +53,6 @@ CONSTANT = "limit cycles follow it with a rotor of constant coefficients"
 
 RULES = (
     Rule(element_faults, ALL),
-    Rule(films.heat_faults, ALL),
     Rule(dampers.heat_faults, ALL),
     Rule(channel_faults, ALL),
     Rule(films.supply_faults, ALL),
@@ -65,7 +66,6 @@ RULES = (
     Rule(kinematic.theory_faults, KINEMATIC),
     Rule(_of_films(runs.theory_faults), (RUN,)),
     Rule(_of_films(runs.form_faults), (RUN,)),
-    Rule(_of_films(runs.signal_faults), (RUN,)),
     Rule(static.sheet_faults, SHEETS),
     Rule(dampers.sheet_faults, SHEETS),
     Rule(static.loaded_heat_faults, (LOADED,)),
@@ -95,7 +95,7 @@ def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
     if alone := without_bearing(case):  # no other rule has a subject
         return alone
     found: list[Fault] = []
-    for rule in sorted((*RULES, *form_of(case).rules), key=lambda rule: rule.last):
+    for rule in sorted((*RULES, *form_of(case).rules, *coupling_of(case).rules), key=lambda rule: rule.last):
         if analysis in rule.analyses and not (rule.last and found):
             found += rule.of(case)
     return found

@@ -1,4 +1,4 @@
-"""Rules of runs: form, theory, coupling and signals of the films, and the number of bearings."""
+"""Rules of runs: theory, solution and grid of the films, speeds, and the number of bearings."""
 
 from __future__ import annotations
 
@@ -6,11 +6,9 @@ from collections.abc import Iterable, Iterator
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.scene.coupling import APART, chosen_coupling, coupling_fault
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.solutions import solution_fault
 from frbcli.scene.gate.rule import run_omega
-from frbcli.scene.machine.elements import changes_with_speed, load_faults
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 
 
@@ -26,31 +24,17 @@ def theory_faults(case: Case) -> Iterator[Fault]:
 
 
 def form_faults(case: Case) -> Iterator[Fault]:
-    """Coupling, solution and grid of films of the program."""
+    """Solution and grid of films of the program."""
     form = form_of(case)
     if not form.solved:
         return
     cells = form.by_cells
     chained = any(place.geometry.supply.divides for place in film_places(case))
-    found = coupling_fault(case, cells), solution_fault(case, all_clipped(case), not (chained or cells))
-    yield from filter(None, found)
-    if _coupling(case) == APART and changes_with_speed(case):
-        problem = "has a rotor of constant coefficients, and those of a bearing depend on the speed."
-        yield Fault("film.coupling", APART, None, problem, "Write auto.")
-    if _coupling(case) == APART:
-        what = "the co-simulation of rotor and films has no load that changes but the unbalance"
-        yield from load_faults(case, what, "Write auto for film.coupling.")
+    if (found := solution_fault(case, all_clipped(case), not (chained or cells))) is not None:
+        yield found
     may_turn = cells and all(is_plain(place.geometry) for place in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
         yield _missing("film.grid", "half-speed", "auto; it is for films on cells without openings and lobes")
-
-
-def signal_faults(case: Case) -> Iterator[Fault]:
-    """Signals of the films that a co-simulation cannot record."""
-    signals = case.output.signals
-    if _coupling(case) == APART and any(kind != "film-thickness" for kind in signals):
-        problem = "are not known in a co-simulation, but for film-thickness."
-        yield Fault("output.signals", ", ".join(signals), None, problem, "Choose another film.coupling.")
 
 
 def speed_faults(case: Case) -> Iterable[Fault]:
@@ -64,10 +48,6 @@ def number_faults(case: Case) -> Iterator[Fault]:
     if len(case.bearings) > 1 and case.rotor.symmetric:
         both = "one bearing with a film, which stands for both of a symmetric rotor, and any with given coefficients"
         yield _missing("bearing", f"{len(case.bearings)} bearings", both)
-
-
-def _coupling(case: Case) -> str:
-    return chosen_coupling(case.film.coupling, case.film.cavitation)
 
 
 def _missing(key: str, value: str, known: str) -> Fault:

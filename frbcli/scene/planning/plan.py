@@ -18,7 +18,7 @@ from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.costs.cost import clock, expected_cost
 from frbcli.scene.costs.reference_length import reference_length
-from frbcli.scene.coupling import FULL, plan_coupling
+from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.none import NO_FILM
@@ -156,7 +156,7 @@ def _plan(case: Case, target: float) -> Plan:
         tolerance=tolerance,
         steps_per_revolution=steps,
         coupling=coupling,
-        macro_step=case.accuracy.macro_step if coupling == "co-simulation" else None,
+        macro_step=case.accuracy.macro_step if coupling_named(coupling).in_turn else None,
         decisions=tuple(decisions),
     )
 
@@ -177,7 +177,7 @@ def _without_films(case: Case, films: FilmChoice, target: float, decisions: list
         method=method,
         tolerance=tolerance,
         steps_per_revolution=steps,
-        coupling=FULL,
+        coupling=FULL.name,
         macro_step=None,
         decisions=tuple(decisions),
         length=length,
