@@ -29,7 +29,8 @@ class RestingFilm:
     counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m, -dF/dD and
     -dF/dD': of one bearing, of films that keep oil when this has settled; name: as in the signals of a run, "" of a
     single film without a name; error: expected one of stiffness and damping, over the largest entry of each, from other
-    meshes, NaN where it is not known; load: (2,) N on the journal.
+    meshes, NaN where it is not known; load: (2,) N on the journal; place_error: expected one of the displacement, over
+    the clearance, likewise.
     """
 
     displacement: Array
@@ -39,6 +40,7 @@ class RestingFilm:
     name: str = ""
     error: float = math.nan
     load: tuple[float, float] = (math.nan, math.nan)
+    place_error: float = math.nan
 
     @property
     def eccentricity(self) -> float:
@@ -108,6 +110,13 @@ def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]],
     return max(errors, default=math.nan)
 
 
+def place_error(own: Array, others: Sequence[tuple[Array, float]]) -> float:
+    """Expected error of a displacement (2,) over the clearance, from those on other meshes and the share of the
+    difference that is the error; NaN without others."""
+    errors = [max(share * float(np.hypot(*(own - other))), LEAST) for other, share in others]
+    return max(errors, default=math.nan)
+
+
 def force_error(static: StaticFilms, i: int, place: Array, total: float) -> float:
     """Relative error of the force of film i at `place` (2,) in m, from another mesh; NaN where it is not known."""
     if not static.others:
@@ -118,11 +127,13 @@ def force_error(static: StaticFilms, i: int, place: Array, total: float) -> floa
     return other.share * float(np.hypot(*(force - mine))) / size if size > 0.0 else 0.0
 
 
-def resting_film(name: str, force: FilmForce, displacement: Array, error: float) -> RestingFilm:
-    """The film of a force; displacement (2,) over the clearance."""
+def resting_film(
+    name: str, force: FilmForce, displacement: Array, error: float, off: float = math.nan
+) -> RestingFilm:
+    """The film of a force; displacement (2,) over the clearance, and off, its error."""
     load, attitude = -force.force, math.nan
     if np.hypot(*load) > STILL and displacement.any():
         across = load[0] * displacement[1] - load[1] * displacement[0]
         attitude = math.degrees(math.atan2(across, load @ displacement))
     x, y = load.tolist()
-    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name, error, (x, y))
+    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name, error, (x, y), off)

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm, coefficient_error, films_at_rest, resting_film
+from frbcli.equilibrium.coefficients import (
+    FilmsAtRest,
+    RestingFilm,
+    coefficient_error,
+    films_at_rest,
+    place_error,
+    resting_film,
+)
 from frbcli.equilibrium.dynamic_films import DynamicFilm, constant_film, dynamic_film
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
@@ -88,19 +95,22 @@ class StaticMachines:
         found = films_at_rest(static.system, omega, position, settled)
         if with_error and not static.on_cells:
             _, others = _on_others(static.others, omega, position.displacements)
-        films = tuple(
-            resting_film(
-                name,
-                force,
-                position.journals[i] / static.system.clearances[i],
-                coefficient_error(force, [(other.forces[i], share) for other, share in others], omega)
-                if with_error
-                else math.nan,
-            )
-            for i, (name, force) in enumerate(zip(static.system.names, found.forces, strict=True))
-        )
+        counted = others if with_error else []
+        films = tuple(_resting_film(static.system, omega, i, found, counted) for i in range(len(found.forces)))
         dynamic = _dynamic(static.system, omega, found) if self._memory else ()
-        return MachineAtRest(static, omega, films, found, warm, tuple(others) if with_error else (), dynamic)
+        return MachineAtRest(static, omega, films, found, warm, tuple(counted), dynamic)
+
+
+def _resting_film(
+    system: System, omega: float, i: int, found: FilmsAtRest, others: Sequence[tuple[FilmsAtRest, float]]
+) -> RestingFilm:
+    """Film i of a machine at rest at omega rad/s, with its errors from the other meshes, NaN without any."""
+    force, clearance = found.forces[i], system.clearances[i]
+    place = found.position.journals[i] / clearance
+    forces = [(other.forces[i], share) for other, share in others]
+    places = [(other.position.journals[i] / clearance, share) for other, share in others]
+    errors = coefficient_error(force, forces, omega), place_error(place, places)
+    return resting_film(system.names[i], force, place, *errors)
 
 
 def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, resting_film
+from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, place_error, resting_film
 from frbcli.equilibrium.resting import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
@@ -182,9 +182,11 @@ def _states(machine: MachineAtRest) -> list[FilmState]:
 def _at_eccentricity(static: StaticFilms, i: int, eccentricity: float, omega: float) -> RestingFilm:
     """Film i under the load along -y that it carries at an eccentricity."""
     place, force = under_vertical_load(static.system, i, eccentricity, omega)
-    others = [(under_vertical_load(films.system, i, eccentricity, omega)[1], films.share) for films in static.others]
-    system = static.system
-    return resting_film(system.names[i], force, place / system.clearances[i], coefficient_error(force, others, omega))
+    system, clearance = static.system, static.system.clearances[i]
+    others = [(*under_vertical_load(films.system, i, eccentricity, omega), films.share) for films in static.others]
+    error = coefficient_error(force, [(other, share) for _, other, share in others], omega)
+    off = place_error(place / clearance, [(there / clearance, share) for there, _, share in others])
+    return resting_film(system.names[i], force, place / clearance, error, off)
 
 
 def _speeds(case: Case) -> tuple[float, ...]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.columns import ENTRIES, Column, Shown, named
+from frbcli.columns import ENTRIES, Column, Shown, named, with_uncertainty
 
 # Tables of the terminal
 FILMS, WARM, MATRICES = "films", "warm", ("stiffness", "damping")
@@ -40,8 +40,11 @@ ERROR = Column(
     shown=tuple(Shown("err.", ".0e", table=table) for table in MATRICES),
 )  # fmt: skip
 
+PLACE_ERROR = Column("displacement_error", "", "expected error of the displacement", attrgetter("place_error"),
+                     more="over the clearance, by the mesh", key="error.displacement")  # fmt: skip
+
 # Of a RestingFilm
-FILM = (DISPLACEMENT, ECCENTRICITY, ATTITUDE, STIFFNESS, DAMPING, ERROR)
+FILM = (DISPLACEMENT, ECCENTRICITY, ATTITUDE, STIFFNESS, DAMPING, ERROR, PLACE_ERROR)
 
 # Of a FilmState
 SHEET = (
@@ -78,6 +81,7 @@ SHEET = (
     STIFFNESS,
     DAMPING,
     ERROR,
+    PLACE_ERROR,
 )  # fmt: skip
 
 GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above 0 it hides the unbalance response",
@@ -86,16 +90,24 @@ GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above
 # Of a StabilityPoint; of several films each has its columns, with its name at their end
 POINT = (SPEED, STATUS, GROWTH,
          Column("frequency", "Hz", "frequency of that whirl", lambda point: point.critical.imag / (2 * math.pi)),
-         Column("growing_modes", "", "number of modes that grow", lambda point: len(point.growing)))  # fmt: skip
+         Column("growing_modes", "", "number of modes that grow", lambda point: len(point.growing)),
+         Column("growth_error", "1/s", "expected error of the growth", lambda point: point.critical_error,
+                more="by the mesh of the films", key="error.growth_1_s"),
+         Column("frequency_error", "Hz", "expected error of the frequency",
+                lambda point: point.critical_error / (2 * math.pi), key="error.frequency_Hz"))  # fmt: skip
 
-# Of an eigenvalue
+# Of an Eigenvalue
 MODES = (
-    Column("frequency", "Hz", "frequency of a mode", lambda value: value.imag / (2 * math.pi),
+    Column("frequency", "Hz", "frequency of a mode", lambda mode: mode.value.imag / (2 * math.pi),
            shown=(Shown("mode Hz", ".1f", table=STABILITY),)),
     Column("damping_ratio", "", "share of the critical damping, below 0 of a mode that grows",
-           lambda value: -value.real / abs(value), shown=(Shown("damping", ".4f", table=STABILITY),), key="damping"),
-    Column("growth", "1/s", "real part of the eigenvalue", attrgetter("real"),
+           lambda mode: -mode.value.real / abs(mode.value), shown=(Shown("damping", ".4f", table=STABILITY),),
+           key="damping"),
+    Column("growth", "1/s", "real part of the eigenvalue", attrgetter("value.real"),
            shown=(Shown("growth 1/s", ".1f", table=STABILITY),)),
+    Column("frequency_error", "Hz", "expected error of the frequency", lambda mode: mode.error / (2 * math.pi),
+           more="by the mesh of the films", key="error.frequency_Hz"),
+    Column("growth_error", "1/s", "expected error of the real part", attrgetter("error"), key="error.growth_1_s"),
 )  # fmt: skip
 
 
@@ -107,12 +119,18 @@ def _size(motion: Any) -> Any:
 
 # Of a DampedMode
 DAMPED_MODES = (
-    Column("frequency", "Hz", "frequency", shown=(Shown("Hz", ".5g"),)),
+    Column("frequency", "Hz", "frequency"),
+    Column("frequency", "", "", lambda mode: with_uncertainty(mode.frequency_Hz, mode.error / (2 * math.pi), 3),
+           shown=(Shown("Hz"),), key="", flat=False),
     Column("direction", "", "`forward` or `backward`", shown=(Shown("whirl"),)),
-    Column("growth", "1/s", "real part of the eigenvalue", attrgetter("eigenvalue.real"),
-           shown=(Shown("growth, 1/s", ".4g"),)),
+    Column("growth", "1/s", "real part of the eigenvalue", attrgetter("eigenvalue.real")),
+    Column("growth", "", "", lambda mode: with_uncertainty(mode.eigenvalue.real, mode.error, 3),
+           shown=(Shown("growth, 1/s"),), key="", flat=False),
     Column("damping_ratio", "", "share of the critical damping", shown=(Shown("damping", ".3g"),)),
     Column("logarithmic_decrement", "", "logarithmic decrement", shown=(Shown("log. decrement", ".3g"),)),
+    Column("frequency_error", "Hz", "expected error of the frequency", lambda mode: mode.error / (2 * math.pi),
+           more="by the mesh of the films, in the last digits in the terminal", key="error.frequency_Hz"),
+    Column("growth_error", "1/s", "expected error of the real part", attrgetter("error"), key="error.growth_1_s"),
 )  # fmt: skip
 
 # Of a Mode of a rotor on springs
@@ -138,6 +156,8 @@ RESPONSE_POINTS = (
     _SPEEDS,
     Column("point", "", "point of the rotor", attrgetter("points"), key="node"),
     Column("amplitude", "m", "larger semi-axis of the orbit", shown=(Shown("um", ".3g", "um", RESPONSE),)),
+    Column("amplitude_error", "m", "expected error of the amplitude", lambda found: found.amplitude_error,
+           more="by the mesh of the films", key="error.amplitude_m"),
     Column("phase", "deg", "phase of the forward motion to the angle of the rotor",
            shown=(Shown("deg", "{:.0f}°".format, table=RESPONSE),)),
     Column("x", "m", "amplitude along x", lambda found: _size(found.motion[:, :, 0])),

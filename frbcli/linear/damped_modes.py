@@ -19,7 +19,7 @@ from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.stability import check_machine
-from frbcli.linear.stability_point import linear_machine, point_at_rest
+from frbcli.linear.stability_point import linear_machine, point_at_rest, with_errors
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.scene.remedies import advised
@@ -39,13 +39,14 @@ class DampedMode:
     eigenvalue: 1/s, imaginary part positive; direction: "forward" | "backward", or "mixed" where some points whirl
     forward and others backward, or all move to and fro in a line; motion: (p, 2) complex amplitudes of x and y of the
     points of a run, the largest semi-axis of all being 1; shape: (s, 2) the same along the shaft, its largest
-    displacement being real.
+    displacement being real; error: 1/s, expected distance of the eigenvalue from the true one.
     """
 
     eigenvalue: complex
     direction: str
     motion: Amplitudes
     shape: Amplitudes
+    error: float = math.nan
 
     @property
     def frequency_Hz(self) -> float:
@@ -122,6 +123,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
         raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, str(none), ""),)) from none
     rotor = without_spins(machine.system.rotor, machine.system.ring_count)
     stations = shaft_of(case).stations(rotor)
+    point = with_errors(point_at_rest(machine, speed_Hz), machine)
     shapes = []
     for value, vector in _eigenvectors(rotor, machine):
         motion: Amplitudes = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
@@ -130,12 +132,12 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
         if size > 0.0:
             there = shape.ravel()[first_largest(shape.ravel())]
             unit = size * there / abs(there)  # its displacement is real: eigenvectors have any phase
-            shapes.append(DampedMode(value, _direction(motion / unit), motion / unit, shape / unit))
+            own = motion / unit
+            shapes.append(DampedMode(value, _direction(own), own, shape / unit, point.error_of(value)))
     keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in shapes), strict=True)]
     shapes = [shapes[i] for i in np.lexsort(keys)] if shapes else []
     names = tuple(name for name, _ in rotor.points)
-    films = point_at_rest(machine, speed_Hz).films
-    error = max((film.error for film in films), default=math.nan)
+    error = max((film.error for film in point.films), default=math.nan)
     return DampedModes(
         case, speed_Hz, names, stations.positions, stations.to_scale, stations.marks, tuple(shapes), error
     )

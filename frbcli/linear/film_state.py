@@ -35,7 +35,8 @@ class FilmState:
     """One film in its resting position, SI units: the fields are those of SHEET in columns.py,
     which tells what they are.
 
-    error: of stiffness and damping, see RestingFilm; problem: why there is no state, then the numbers are NaN.
+    error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; problem: why there is no
+    state, then the numbers are NaN.
     """
 
     film: str
@@ -49,6 +50,7 @@ class FilmState:
     stiffness: Array | None = None
     damping: Array | None = None
     error: float = math.nan
+    place_error: float = math.nan
     sommerfeld_number: float = math.nan
     torque: float = math.nan
     friction_coefficient: float = math.nan
@@ -128,6 +130,7 @@ def film_state(
         stiffness=at_rest.stiffness,
         damping=at_rest.damping,
         error=at_rest.error,
+        place_error=at_rest.place_error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
         torque=found.torque.journal,
         friction_coefficient=friction,

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.columns import Table, spread_table
-from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.coefficients import LEAST, coefficients_of
 from frbcli.equilibrium.linearised import linearised
 from frbcli.errors import Fault, InputError
 from frbcli.film.parabola import summit
@@ -66,8 +66,9 @@ class Response(Tabular):
     2) those of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least damped whirl:
     where it is positive, the motion is not seen; critical_speeds_Hz: where the largest motion of any point has a peak;
     resting: the resting positions; in_films: (n, f, 2) complex amplitudes of the journals in their films, over the
-    clearance; clearances: (n, f) m, warm with heat. excitation: UNBALANCE, with all loads of order 1, or the name of
-    the one load that excites.
+    clearance; clearances: (n, f) m, warm with heat; amplitude_error: (n, p) m, expected one of the amplitude by the
+    mesh of the films, and critical_speed_errors_Hz: those of the critical speeds; NaN where they are not known.
+    excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites.
     """
 
     case: Case
@@ -82,6 +83,8 @@ class Response(Tabular):
     resting: tuple[StabilityPoint, ...]
     in_films: Amplitudes
     clearances: Array
+    amplitude_error: Array
+    critical_speed_errors_Hz: tuple[float, ...]
     excitation: str = UNBALANCE
 
     @property
@@ -204,6 +207,7 @@ def response(
     clearances = np.array([each.clearances for each in systems])
     motion = np.array(motions)
     speeds = np.array([point.speed_Hz for point in resting])
+    peaks, others = peak_speeds(speeds, motion), _on_others(rotor, resting, excitation)
     return Response(
         case=case,
         speeds_Hz=speeds,
@@ -213,10 +217,12 @@ def response(
         elements=tuple(element.name for element in case.elements),
         forces=np.array(forces),
         growth=np.array([point.growth for point in resting]),
-        critical_speeds_Hz=peak_speeds(speeds, motion),
+        critical_speeds_Hz=peaks,
         resting=tuple(resting),
         in_films=np.array(journals) / clearances[:, :, None],
         clearances=clearances,
+        amplitude_error=_amplitude_error(motion, others),
+        critical_speed_errors_Hz=_peak_errors(speeds, peaks, others),
         excitation=excitation,
     )
 
@@ -281,6 +287,48 @@ def _at(
     forces = -np.einsum("fij,fj->fi", stiffness + 1j * frequency * damping, journals)
     forces = np.concatenate([forces, element_forces(case, rotor, omega, frequency, q)])
     return np.array([place @ q for _, place in rotor.points]), forces, journals
+
+
+def _on_others(
+    rotor: LinearRotor, points: Sequence[StabilityPoint], excitation: str
+) -> list[tuple[Amplitudes, float]]:
+    """The motion (n, p, 2) of the points of a rotor on each other mesh of its films, with the share of the difference
+    that is the error; none where a mesh is missing at a speed."""
+    if len({len(point.others) for point in points}) > 1:
+        return []
+    found = []
+    for number in range(len(points[0].others)):
+        motion = []
+        for point in points:
+            omega = 2.0 * math.pi * point.speed_Hz
+            q = forced_motion(rotor, omega, excited(rotor, omega, excitation), *point.others[number][:2])
+            motion.append([place @ q for _, place in rotor.points])
+        found.append((np.array(motion), points[0].others[number][2]))
+    return found
+
+
+def _amplitude_error(motion: Amplitudes, others: Sequence[tuple[Amplitudes, float]]) -> Array:
+    """(n, p) in m: the largest difference of the amplitudes on other meshes times their shares, at least LEAST."""
+    own = larger_semi_axis(motion)
+    if not others:
+        return np.full(own.shape, math.nan)
+    apart = [share * np.abs(larger_semi_axis(other) - own) for other, share in others]
+    return np.asarray(np.maximum(LEAST * own, np.max(apart, axis=0)))
+
+
+def _peak_errors(
+    speeds: Array, peaks: Sequence[float], others: Sequence[tuple[Amplitudes, float]]
+) -> tuple[float, ...]:
+    """In Hz: the distance of each peak to the nearest one on the other meshes, times their shares; NaN where another
+    mesh has no peak within two steps of the speed."""
+    elsewhere = [(np.array(peak_speeds(speeds, motion)), share) for motion, share in others]
+    near = 2.0 * float(np.max(np.diff(speeds), initial=0.0))
+    errors = []
+    for peak in peaks:
+        apart = [(float(np.min(np.abs(found - peak), initial=np.inf)), share) for found, share in elsewhere]
+        known = bool(apart) and max(distance for distance, _ in apart) <= near
+        errors.append(max(LEAST * peak, *(share * distance for distance, share in apart)) if known else math.nan)
+    return tuple(errors)
 
 
 def peak_speeds(speeds: Array, motion: Amplitudes) -> tuple[float, ...]:

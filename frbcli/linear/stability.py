@@ -21,7 +21,7 @@ from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.columns import point_columns
-from frbcli.linear.stability_point import StabilityPoint, point_at_rest
+from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
 from frbcli.linear.threshold import Threshold, find_threshold
 from frbcli.scene.gate.analysis import FILMS, RANGE, STABILITY
 from frbcli.scene.gate.gate import require
@@ -163,7 +163,8 @@ def _point(
     try:
         with advised(case):
             machine = machines.at(2 * math.pi * speed, near, with_error)
-            return point_at_rest(machine, speed, frequency and frequency(machine.omega)), machine
+            point = point_at_rest(machine, speed, frequency and frequency(machine.omega))
+            return with_errors(point, machine) if with_error else point, machine
     except NotConverged as error:
         return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), near
 

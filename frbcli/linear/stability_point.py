@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.equilibrium import hopf
-from frbcli.equilibrium.coefficients import FilmsAtRest, RestingFilm
+from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes, oscillator
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
@@ -27,6 +28,13 @@ UNKNOWN_WHIRL = 0.5  # over the rotor's speed: frequency of coefficients where n
 DIVERGENT = 1e-9  # real part over the largest absolute value from which a motion grows without oscillating
 
 
+class Eigenvalue(NamedTuple):
+    """An eigenvalue in 1/s, and its expected distance from the true one by the mesh, NaN if not known."""
+
+    value: complex
+    error: float
+
+
 @dataclass(frozen=True)
 class StabilityPoint:
     """The rotor at one speed.
@@ -35,7 +43,10 @@ class StabilityPoint:
     on films that keep oil those that grow or decay slowly, see dynamic_films.modes; ascending in |imaginary part|, then
     in the real part, of a pair the one with positive imaginary part first. ring_speeds_Hz: of the rings that turn;
     their speeds stand while the rotor moves. warm: the machine with its heat, of a case that has it; its temperatures
-    stand, too. All are empty where no resting position was found; problem then says why, and is empty otherwise.
+    stand, too. errors: (2 n,) expected ones of the eigenvalues in 1/s, by the mesh of the films, empty where they
+    were not asked for; others: stiffness and damping (films, 2, 2) on other meshes, with the
+    share of the difference that is the error. All are empty where no resting position was found; problem then says why,
+    and is empty otherwise.
     """
 
     speed_Hz: float
@@ -44,6 +55,8 @@ class StabilityPoint:
     problem: str = ""
     ring_speeds_Hz: tuple[float, ...] = ()
     warm: WarmMachine | None = None
+    errors: Array = field(default_factory=lambda: np.zeros(0))
+    others: tuple[tuple[Array, Array, float], ...] = ()
 
     @property
     def value(self) -> float:
@@ -73,6 +86,22 @@ class StabilityPoint:
         divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
         told: Eigenvalues = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
         return told[fastest_first(told)]
+
+    @property
+    def modes_with_errors(self) -> list[Eigenvalue]:
+        """The modes with their errors."""
+        return [Eigenvalue(complex(value), self.error_of(complex(value))) for value in self.modes]
+
+    def error_of(self, value: complex) -> float:
+        """The expected error of one of the eigenvalues, see Eigenvalue."""
+        if not len(self.errors) or math.isnan(value.real):
+            return math.nan
+        return float(self.errors[int(np.argmin(np.abs(self.eigenvalues - value)))])
+
+    @property
+    def critical_error(self) -> float:
+        """The expected error of the critical eigenvalue."""
+        return self.error_of(self.critical)
 
     @property
     def growing(self) -> Eigenvalues:
@@ -121,12 +150,8 @@ def critical_eigenvalue(values: Eigenvalues) -> complex:
 
 def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Eigenvalues:
     """(2 n,) eigenvalues in 1/s of a machine at rest with its films as they are solved, on its own mesh or another."""
-    stiffness, damping = (
-        -np.array([getattr(force, name) for force in films.forces]).reshape(-1, 2, 2)
-        for name in ("by_displacement", "by_velocity")
-    )
     system = machine.system
-    return eigenvalues(without_spins(system.rotor, system.ring_count), machine.omega, stiffness, damping)
+    return eigenvalues(without_spins(system.rotor, system.ring_count), machine.omega, *_coefficients(films))
 
 
 def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Eigenvalues, float]]:
@@ -141,6 +166,7 @@ def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None 
     """The point at a speed in Hz of a machine that rests. frequency: in rad/s, of the coefficients of films that keep
     oil; by default that of the least damped whirl."""
     rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
+    others: tuple[tuple[Array, Array, float], ...]
     if machine.dynamic:
         values = _with_memory(machine)
         whirl = critical_eigenvalue(values).imag
@@ -149,9 +175,32 @@ def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None 
         pairs = zip(machine.films, machine.dynamic, strict=True)
         films = tuple(_at_frequency(film, dynamic, frequency) for film, dynamic in pairs)
         _check_known(films)
-        return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm)
+        fine = [dynamic.fine.at(1j * frequency)[0] for dynamic in machine.dynamic]
+        others = ((np.array([z.real for z in fine]), np.array([z.imag for z in fine]) / frequency, 1.0),)
+        return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others)
     values = machine_eigenvalues(machine, machine.at_rest)
-    return StabilityPoint(speed, machine.films, values, ring_speeds_Hz=rings, warm=machine.warm)
+    others = tuple((*_coefficients(films), share) for films, share in machine.others)
+    return StabilityPoint(speed, machine.films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others)
+
+
+def with_errors(point: StabilityPoint, machine: MachineAtRest) -> StabilityPoint:
+    """The point of a machine with the errors of its eigenvalues: the distance to the nearest ones on the other meshes,
+    times their shares, at least LEAST of it. Real and imaginary part have the same one, since either may agree by
+    chance."""
+    others = [(values, share) for values, share in other_eigenvalues(machine) if len(values)]
+    if not others:
+        return point
+    apart = [share * np.abs(point.eigenvalues[:, None] - values).min(axis=1) for values, share in others]
+    return replace(point, errors=np.max([LEAST * np.abs(point.eigenvalues), *apart], axis=0))
+
+
+def _coefficients(films: FilmsAtRest) -> tuple[Array, Array]:
+    """(films, 2, 2) stiffness in N/m and damping in N s/m of the films of a machine, as they are solved."""
+    stiffness, damping = (
+        -np.array([getattr(force, name) for force in films.forces]).reshape(-1, 2, 2)
+        for name in ("by_displacement", "by_velocity")
+    )
+    return stiffness, damping
 
 
 def _check_known(films: Sequence[RestingFilm]) -> None:

@@ -80,6 +80,7 @@ def command(
             "films": spread_table(RESPONSE_FILMS, found).documents(),
             "coefficients": documents(RESPONSE_COEFFICIENTS, films),
             "critical_speeds_Hz": found.critical_speeds_Hz,
+            "error": {"critical_speeds_Hz": found.critical_speed_errors_Hz},
             **places.write(terminal, found.to_pandas, lambda: _figure(found, tracks, as_map)),
         }
     )
@@ -113,6 +114,9 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
 
 
 def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
+    import numpy as np
+
+    from frbcli.columns import with_uncertainty
     from frbcli.linear.columns import RESPONSE
 
     shown = found.points[:MOST_POINTS]
@@ -134,9 +138,16 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
         terminal.sentence(sentence)
     for sentence in _doubts(found):
         terminal.sentence(sentence)
-    peaks = ", ".join(f"{speed:.1f}" for speed in found.critical_speeds_Hz)
+    told = zip(found.critical_speeds_Hz, found.critical_speed_errors_Hz, strict=True)
+    peaks = ", ".join(with_uncertainty(speed, error, 1) for speed, error in told)
     terminal.result(f"Peaks at {peaks} Hz." if peaks else "No peak in the range.")
     tell_coefficient_error(terminal, found.resting)
+    largest = found.amplitude.max(axis=0)
+    known = (largest > 0.0) & np.isfinite(found.amplitude_error).all(axis=0)
+    if known.any():
+        share = float((found.amplitude_error.max(axis=0)[known] / largest[known]).max())
+        told_share = float(f"{100.0 * share:.1g}")
+        terminal.sentence(f"Expected error of the amplitudes: up to {told_share:g} % of the largest of each point.")
 
 
 def _excitation(found: Response) -> list[str]:

@@ -172,7 +172,8 @@ def _point(point: StabilityPoint) -> dict[str, Any]:
     from frbcli.linear.columns import FILM, MODES, POINT
 
     told, films = document(POINT, point), documents(FILM, point.films)
-    told |= films[0] if films else dict.fromkeys(keys(FILM))
+    errors = told.pop("error") | (films[0]["error"] if films else {})
+    told |= (films[0] if films else dict.fromkeys(keys(FILM))) | {"error": errors}
     if len(films) > 1:
         named = zip(point.films, films, strict=True)
         told["films"] = [{"film": film.name} | values for film, values in named]
@@ -182,7 +183,7 @@ def _point(point: StabilityPoint) -> dict[str, Any]:
         told["thermal"] = heat_document(point.warm)
     if point.problem:
         told["problem"] = point.problem
-    told["modes"] = documents(MODES, point.modes.tolist())
+    told["modes"] = documents(MODES, point.modes_with_errors)
     return told | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
 
 

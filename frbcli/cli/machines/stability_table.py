@@ -57,8 +57,8 @@ def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     """A line of a single film; further ones hold what else grows."""
     if not point.rests:
         return [(_speed(point), NONE, *[""] * (2 * MODES_TOLD + 2))]
-    modes = point.modes[: max(MODES_TOLD, len(point.growing))]
-    cells = table_of(MODES, modes.tolist()).cells(STABILITY)
+    modes = point.modes_with_errors[: max(MODES_TOLD, len(point.growing))]
+    cells = table_of(MODES, modes).cells(STABILITY)
     place = (table_of(FILM, point.films[:1]).cells(STABILITY) or [("-", "-")])[0]
     lines = []
     for start in range(0, max(1, len(cells)), MODES_TOLD):
@@ -76,7 +76,7 @@ def _film_lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     count = max(len(point.films), len(point.growing))
     places = table_of(FILM, point.films).cells(STABILITY)
     films = [(film.name, *place) for film, place in zip(point.films, places, strict=True)]
-    modes = table_of(MODES, point.modes[:count].tolist()).cells(STABILITY)
+    modes = table_of(MODES, point.modes_with_errors[:count]).cells(STABILITY)
     films += [("",) * 3] * (count - len(films))
     modes += [("",) * 3] * (count - len(modes))
     speeds = [_speed(point), *[""] * (count - 1)]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from frbcli.analysis.orders.order_tracking import OrderTrack
 from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, Response, larger_semi_axis
-from frbcli.plot.style import BLACK, COLOURS, GREY, legend_beside, new_figure, styled
+from frbcli.plot.style import BAND, BLACK, COLOURS, GREY, legend_beside, new_figure, styled
 
 Array = NDArray[np.float64]
 MICRO = 1e6
@@ -76,9 +76,14 @@ def _orbit_speeds(found: Response) -> list[int]:
 
 
 def draw_amplitude(axes: Axes, found: Response) -> None:
-    """The larger semi-axes of all points over the rotor speed on axes of a figure, with the critical speeds."""
+    """The larger semi-axes of all points over the rotor speed on axes of a figure, with bands of their expected errors
+    and the critical speeds."""
     for number, name in enumerate(found.points):
-        _line(axes, found, MICRO * found.amplitude[:, number], *_line_of(number), name.replace("_", " "))
+        size, error = (MICRO * values[:, number] for values in (found.amplitude, found.amplitude_error))
+        _line(axes, found, size, *_line_of(number), name.replace("_", " "))
+        axes.fill_between(
+            found.speeds_Hz, size - error, size + error, color=_line_of(number)[0], alpha=BAND, linewidth=0.0
+        )
     for number, critical in enumerate(found.critical_speeds_Hz):
         label = None if number else "critical speed"
         axes.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=label)

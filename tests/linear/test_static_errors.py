@@ -1,0 +1,82 @@
+"""Stated errors of static results beside true ones: on half the cells, against the cells of all static results."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from frbcli.case.reading.load import load_case
+from frbcli.equilibrium import static_films
+from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
+from frbcli.linear.damped_modes import damped_modes
+from frbcli.linear.response import response
+from frbcli.linear.stability import stability
+
+SPEEDS = [40.0, 90.0]
+CASE = load_case("rigid-axial-groove", ["rotor.unbalance=3 g*mm"])
+
+
+@pytest.fixture
+def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Static results on half of their cells, with errors from a quarter and a third of them."""
+    monkeypatch.setattr(static_films, "CELLS", (72, 10))
+    monkeypatch.setattr(static_films, "COARSER", ((36, 5), (48, 7)))
+
+
+@pytest.fixture(scope="module")
+def exact() -> dict[str, Any]:
+    return {
+        "stability": stability(CASE, SPEEDS),
+        "response": response(CASE, SPEEDS),
+        "sheet": bearing_sheet(CASE, SPEEDS),
+        "chart": sommerfeld_chart(CASE, [0.6], 90.0),
+        "modes": damped_modes(CASE, 90.0),
+    }
+
+
+@pytest.mark.usefixtures("coarse")
+def test_places_and_eigenvalues(exact: dict[str, Any]) -> None:
+    for own, fine in zip(stability(CASE, SPEEDS).points, exact["stability"].points, strict=True):
+        off = np.hypot(*(own.films[0].displacement - fine.films[0].displacement))
+        assert off <= own.films[0].place_error < 0.05
+        for value, error in own.modes_with_errors:
+            apart = fine.eigenvalues[np.argmin(np.abs(fine.eigenvalues - value))] - value
+            assert abs(apart) <= error < 0.1 * abs(value)
+
+
+@pytest.mark.usefixtures("coarse")
+def test_amplitudes(exact: dict[str, Any]) -> None:
+    own, fine = response(CASE, SPEEDS), exact["response"]
+    assert np.all(np.abs(own.amplitude - fine.amplitude) <= own.amplitude_error)
+    assert np.all(own.amplitude_error < 0.1 * own.amplitude)
+
+
+@pytest.mark.usefixtures("coarse")
+def test_sheets(exact: dict[str, Any]) -> None:
+    for own, fine in zip(bearing_sheet(CASE, SPEEDS).points, exact["sheet"].points, strict=True):
+        assert np.hypot(*(own.displacement - fine.displacement)) <= own.place_error < 0.05
+    own, fine = sommerfeld_chart(CASE, [0.6], 90.0).points[0], exact["chart"].points[0]
+    assert np.hypot(*(own.displacement - fine.displacement)) <= own.place_error < 0.05
+
+
+@pytest.mark.usefixtures("coarse")
+def test_damped_modes(exact: dict[str, Any]) -> None:
+    for own, fine in zip(damped_modes(CASE, 90.0).modes, exact["modes"].modes, strict=True):
+        assert abs(own.eigenvalue - fine.eigenvalue) <= own.error
+
+
+def test_a_peak_is_as_uncertain_as_the_films() -> None:
+    """Tables of the half-Sommerfeld film are good to 3e-5 and less; the error of a peak is as small, and known."""
+    found = response(load_case("jeffcott", ["film.theory=finite"]))
+    assert len(found.critical_speeds_Hz) == len(found.critical_speed_errors_Hz) > 0
+    for speed, error in zip(found.critical_speeds_Hz, found.critical_speed_errors_Hz, strict=True):
+        assert 3e-5 * speed <= error < 1e-2 * speed
+
+
+def test_without_films_no_error_is_stated() -> None:
+    """The coefficients are given, and nothing is known of their errors."""
+    found = response(load_case("seal"), [30.0])
+    assert np.isnan(found.amplitude_error).all()
+    assert np.isnan(stability(load_case("seal"), [30.0]).points[0].critical_error)
