@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from frbcli.analysis.signals import films, joined
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
@@ -16,6 +18,9 @@ from frbcli.runs.march import UNBOUNDED
 from frbcli.scene.clearance_steps import case_at, step_times
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places
+from frbcli.scene.planning.cell_choice import gap_ratio
+from frbcli.scene.planning.eccentricity import expected_eccentricity
+from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.remedies import film_remedies, remedies_sentence
 from frbcli.scene.supply import unfed_films
 from frbcli.solve.state import STEP
@@ -26,6 +31,8 @@ THIN = 0.99  # eccentricity above which the cause of a film without solution is 
 AT_ONCE = 1e-9  # s within which a run ends at a step of the clearance
 SHORTER = 10.0  # divisor of a macro step
 STIFFNESS = "1e9 N/m"  # suggested contact stiffness
+CLOSER = 1.5  # times the smallest gap that was reached, from which on the one that was expected is told
+FINER = 4.0  # divisor of the target
 
 
 @dataclass(frozen=True)
@@ -80,6 +87,25 @@ def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
     if end.status == "finished":
         return tuple(film.remark for film in unfed_films(case) if not film.keeps)
     return _stuck(case, end)
+
+
+def accuracy_advice(case: Case, run: Run) -> tuple[str, ...]:
+    """A sentence on a run on cells whose journal came nearer to its shell, before a whirl, than the plan was made for,
+    and which states an error above the target; may be none."""
+    if not form_of(case).chosen_by_target or case.accuracy.mesh is not None:
+        return ()
+    expected, stated, until = expected_eccentricity(case), run.error.get("eccentricity"), run.error.get("quiet_until_s")
+    if expected is None or stated is None or until is None or stated <= case.accuracy.target:
+        return ()
+    quiet = int(np.searchsorted(run["time_s"], until, side="right"))
+    reached = max(float(np.max(run[joined("eccentricity", name)][:quiet], initial=0.0)) for name in films(run.signals))
+    if gap_ratio(expected, reached) < CLOSER:
+        return ()
+    target, finer = case.accuracy.target, case.accuracy.target / FINER
+    return (
+        f"The eccentricity reached {reached:.2f} where the plan expected {expected:.2f}: the error of up to "
+        f"{stated:.1e} may be above the target of {target:g}. For less, accuracy.target = {finer:g}.",
+    )
 
 
 def _starved(case: Case) -> tuple[str, ...]:

@@ -8,28 +8,39 @@ import pytest
 import unseen_films
 from unseen_films import Found, tried
 
-MISSED, UNSTATED = 0.15, 0.15  # share of the films that may miss their target, or state less than their error
-
 
 def found(folder: Path, seeds: range | tuple[int, ...]) -> list[Found]:
     return [each for seed in seeds for each in tried(seed, folder)]
 
 
-@pytest.mark.parametrize("seed", [7, 77, 184])
+def said(film: Found) -> bool:
+    """Whether a film holds its target, or states an error that covers the true one."""
+    return film.true <= film.target or film.true <= film.stated
+
+
+@pytest.mark.parametrize("seed", [7, 26, 77, 184])
 def test_an_unseen_film_holds_its_targets(seed: int, tmp_path: Path) -> None:
-    """Feed holes; grooves in narrow bearings with oil-keeping laws, whose films had 1.1 to 2.5 times their targets."""
+    """Feed holes; an eccentricity of 0.97, with 1.35 times the target on cells that do not follow it; grooves in narrow
+    bearings with oil-keeping laws, whose films had 1.1 to 2.5 times their targets."""
     for film in tried(seed, tmp_path):
         assert film.status == film.fine == "finished"
         assert film.true <= film.target
         assert film.true <= film.stated
 
 
+@pytest.mark.parametrize("seed", [5, pytest.param(93, marks=pytest.mark.nightly)])
+def test_a_film_that_misses_its_target_states_it(seed: int, tmp_path: Path) -> None:
+    """Large steps beside two grooves of an oil-keeping law, whose error stays on any cells; slots in a film that comes
+    five times nearer to its shell than the plan expects. They stated a third of their errors."""
+    for film in tried(seed, tmp_path):
+        assert film.true > film.target
+        assert film.true <= film.stated <= 6.0 * film.true
+
+
 @pytest.mark.nightly
-def test_unseen_films_hold_their_targets(tmp_path: Path) -> None:
+def test_unseen_films_hold_their_targets_or_state_their_errors(tmp_path: Path) -> None:
     """All laws and supplies once more, 36 films with two targets; each begins."""
     films = found(tmp_path, range(1000, 1000 + len(unseen_films.LAWS) * len(unseen_films.SUPPLIES)))
     assert len(films) >= 60
-    said = [film for film in films if "out of reach" not in film.announced]
-    assert sum(film.true > film.target for film in said) <= MISSED * len(said)
-    assert sum(film.true > film.stated for film in films) <= UNSTATED * len(films)
+    assert [film for film in films if not said(film)] == []
     assert {film.status for film in films} <= {"finished", "contact", "starved"}

@@ -25,7 +25,7 @@ from frbcli.runs.errors.film_error import FilmErrors
 from frbcli.runs.run import runup
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.cell_choice import cell_error
+from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
@@ -172,7 +172,8 @@ def test_the_share_of_the_difference_that_is_stated(name: str, settings: list[st
     assert cells is not None
     found = on_fewer_cells(march.March(case, plan, make_segments(case, plan), run_up_profile(case)), 0.0)
     assert found is not None
-    own, others = (cell_error(case, each) for each in (plan.cells, cells))
+    worst = worst_film(case, plan.eccentricity)
+    own, others = (worst.of(each) for each in (plan.cells, cells))
     assert found.share == pytest.approx(times * own / (others - own))
     assert found.least == pytest.approx(0.5 * own)
 

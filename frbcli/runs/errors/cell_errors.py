@@ -8,7 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.scene.machine.system import System
+from frbcli.scene.planning.cell_choice import gap_ratio
 from frbcli.solve.state import Array
+
+CLOSER = 3.0  # most that a smaller gap than was expected counts
 
 
 @dataclass(frozen=True)
@@ -26,11 +29,13 @@ class CellErrors:
 class FewerCells:
     """A run on fewer cells. share: of the difference between the runs that the error of the finer one may be; samples:
     at the same times as those of the run, see March; the last ones may be missing; least: error of the eccentricity
-    that is stated even if both runs agree, which they may by chance; no more than the largest eccentricity."""
+    that is stated even if both runs agree, which they may by chance; no more than the largest eccentricity. expected:
+    eccentricity that it was told for; more is stated of a run with a smaller gap."""
 
     share: float
     samples: Array
     least: float = 0.0
+    expected: float | None = None
 
     def at(self, there: NDArray[np.bool_]) -> FewerCells:
         """These errors at some of the times only, (m,) whether at each time of the run."""
@@ -52,7 +57,8 @@ class FewerCells:
         first = 2 * n + 1
         oil = float(np.abs(apart[:, first : first + len(system.names)][:, list(system.remembering)]).max(initial=0.0))
         reach = max(_largest(samples[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True))
-        least = min(self.least, reach)
+        closer = 1.0 if self.expected is None else min(gap_ratio(self.expected, reach), CLOSER)
+        least = min(closer * self.least, reach)
         eccentricity, displacement = (max(least, self.share * off) for off in (max(eccentric), max([*films, *points])))
         return CellErrors(eccentricity, displacement, self.share * spins / top, self.share * oil)
 

@@ -16,7 +16,7 @@ from frbcli.scene.planning.planned import Plan
 from frbcli.solve.stage.contact import felt_motion
 from frbcli.solve.state import Array
 
-SMALL_FORCE = 0.1  # of the median one
+SMALL_FORCE, NO_FORCE = 0.1, 1e-9  # of the median one; of the largest one, where half of the states have none
 QUANTILE = 0.9  # quantile of the errors, weighted with the force
 
 
@@ -38,7 +38,7 @@ class FilmErrors:
             return None
         # At states with a very small force, as at the start, the error is relative to the usual force.
         scales = np.maximum(sizes, SMALL_FORCE * float(np.median(sizes)))
-        relative = errors / np.maximum(scales, np.finfo(float).tiny)
+        relative = errors / np.maximum(scales, NO_FORCE * float(sizes.max()))
         order = np.argsort(relative)
         carried = np.cumsum(sizes[order])
         return float(relative[order][np.searchsorted(carried, QUANTILE * carried[-1])])

@@ -12,7 +12,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER
 from frbcli.film.grid import Array
 from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
-from frbcli.scene.planning.cell_choice import USUAL, cells_time, coarser_cells, compared_states
+from frbcli.scene.planning.cell_choice import USUAL, cells_time, coarser_cells, compared_states, worst_film
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -29,6 +29,7 @@ FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
 KEEPING_SOLVES, FRONT_SOLVES = 2.2, 0.55
 # Fronts that cross cells make the local error of second order; the steps fall with the size of the cells.
 FRONT_ORDER, FRONT_CELLS = 2.0, 1.0 / 3.0
+EXPECTED = "largest one expected, of weight and unbalance in short bearings without openings; the cells are for it"
 
 
 @dataclass(frozen=True)
@@ -79,13 +80,16 @@ class CellForm(FilmForm):
 
     def fewer_cells(self, case: Case, plan: Plan) -> tuple[int, int] | None:
         """See FilmForm."""
-        return coarser_cells(case, cells_of(plan))
+        return coarser_cells(worst_film(case, plan.eccentricity), cells_of(plan))
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         """See FilmForm."""
         assert films.cells is not None
         around, along = films.cells
-        return (("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}"),)
+        told = ("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")
+        if films.eccentricity is None:
+            return (told,)
+        return (told, ("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
 
     def mesh_of(self, plan: Plan) -> tuple[int, int]:
         """See FilmForm."""

@@ -14,6 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import no_inflow
 from frbcli.scene.films import FilmPlace, film_places, is_plain
+from frbcli.scene.planning.short_bearing import CLOSEST
 from frbcli.scene.section import film_section
 
 USUAL = (48, 6)  # cells around and along for which the errors are tabulated
@@ -28,17 +29,24 @@ CELLS_DOUBLE = 16.0  # cells along that double the time of a cell
 MOST_STATES, FEWEST_STATES = 8, 2
 KNEE = 1.5  # error over the least one that can be had, where the target is out of reach: less costs twice as much
 BEYOND = 2.0  # order of the cells along outside of what was measured
+MEASURED_AT = 0.85  # largest eccentricity of the films whose errors stand here; growth is told from there on
 
 
 @dataclass(frozen=True)
 class CellError:
     """Of films of one kind. around: error of USUAL cells around, of an order; along: error by the cells along; least:
-    cells around, below which the error is a matter of chance."""
+    cells around, below which the error is a matter of chance; growth: power of the smallest gap with which the error of
+    the cells around grows."""
 
     around: float
     order: float
     along: Mapping[int, float]
     least: int = AROUND[0]
+    growth: float = 0.0
+
+    def at(self, eccentricity: float) -> CellError:
+        """The same up to an eccentricity."""
+        return replace(self, around=self.around * float(gap_ratio(MEASURED_AT, eccentricity) ** self.growth))
 
     def of(self, cells: tuple[int, int]) -> float:
         """Error of the eccentricities with cells (around, along)."""
@@ -56,38 +64,64 @@ class CellError:
 
 # Without openings, with lobes, with grooves across, with bores or pockets; films that keep their oil are carried on by
 # cells that turn with it where there are no openings, by cells at rest else.
-PLAIN = CellError(3.5e-4, 2.0, {4: 4.8e-3, 5: 2.2e-3, 6: 1.1e-3, 8: 5e-4, 10: 3e-4})
+# Plain films of laws that keep no oil, eccentricities of 0.92 to 0.98: 1.2e-3 to 3e-3, of others up to 0.8e-3.
+PLAIN = CellError(3.5e-4, 2.0, {4: 4.8e-3, 5: 2.2e-3, 6: 1.1e-3, 8: 5e-4, 10: 3e-4}, growth=1.0)
+PLAIN_OIL = replace(PLAIN, growth=0.5)
 LOBES = CellError(4e-4, 2.0, {4: 3e-4, 6: 1e-4, 8: 5e-5})
 LOBES_OIL = CellError(1.2e-3, 1.5, {4: 1.5e-4, 6: 1e-4, 8: 5e-5})
 # One groove; more of them leave shorter lands, with fewer cells each. Of 20 films, one to three grooves of 10 to 40
 # degrees, five laws, eccentricities up to 0.1 to 0.9: 0.7e-3 to 6.6e-3, 1.4e-3 to 6e-3, 0.6e-3 to 9.5e-3. 32 around
 # have up to three times the error of 48.
 GROOVE = CellError(3e-3, 2.0, {4: 3e-4, 6: 1e-4, 8: 5e-5}, least=40)
-# The same of laws that keep oil in bearings narrower than NARROW: oil goes out of and into the grooves over a length of
-# half the width, which few cells around have, and its fronts are carried from cell to cell. 5 films of this kind at
-# eccentricities up to 0.9: 0.9e-3 to 1.1e-2 per groove, of orders 0.9 to 1.7.
+# The same of laws that keep oil, between several grooves and in bearings narrower than NARROW: oil goes out of and into
+# the grooves over a length of half the width, which few cells around have, and its fronts are carried from cell to
+# cell. 22 films of this kind at eccentricities of 0.86 to 0.99: 0.4e-3 to 8e-3 per groove, and one of 5e-2, of orders
+# 0.9 to 1.9; 6 others, wide and with one groove: 0.8e-3 to 2e-3.
 NARROW = 0.65  # width over diameter
-NARROW_GROOVE_OIL = CellError(8e-3, 1.5, GROOVE.along, least=40)
+GROOVE_OIL = CellError(8e-3, 1.5, GROOVE.along, least=40)
 # In a film that empties, cells fill and rupture one by one; below 48 around the error is several times as large.
 EMPTYING = CellError(4e-3, 1.0, {4: 6e-3, 5: 3e-3, 6: 2e-3, 8: 8e-4, 10: 5e-4}, least=48)
 BORES = CellError(1.8e-3, 3.0, {4: 1.2e-2, 5: 2.6e-3, 6: 2.5e-3, 8: 9e-4, 10: 4e-4}, least=40)
-# Pockets and slots: their edges lie between cells. 10 films of laws that keep no oil: 0.7e-3 to 1.1e-2 on 40 x 5 cells,
-# where 3 with feed holes had 1e-3 to 3e-3; on 56 x 8 cells a half of it, not a third.
-RECESSES = CellError(3.5e-3, 1.5, BORES.along, least=40)
 BORES_OIL = CellError(3.5e-3, 2.0, {4: 1.4e-2, 5: 6e-3, 6: 3e-3, 8: 1.4e-3, 10: 9e-4}, least=40)
+# Pockets and slots: their edges lie between cells. 23 films of laws that keep no oil: 0.7e-3 to 1.2e-2 on 40 x 5 cells,
+# where 10 with feed holes had 0.6e-3 to 3.4e-3; on 56 x 8 cells a half of it, not a third. 20 films of laws that keep
+# oil on 48 x 6 cells: 0.5e-3 to 1.1e-2, two of them, nearly unstable, 3e-2 and 7e-2.
+RECESSES = CellError(4.5e-3, 1.5, BORES.along, least=40)
+RECESSES_OIL = CellError(6e-3, 1.5, BORES_OIL.along, least=40)
 
 
-def cell_error(case: Case, cells: tuple[int, int]) -> float:
-    """Expected error of the eccentricities by cells (around, along): that of the worst film."""
-    return max(_kind(case, place).of(cells) for place in film_places(case))
+@dataclass(frozen=True)
+class WorstFilm:
+    """What cells make of the error of a machine: the errors of all of its films."""
+
+    films: tuple[CellError, ...]
+
+    def of(self, cells: tuple[int, int]) -> float:
+        """Expected error of the eccentricities with cells (around, along): that of the worst film."""
+        return max(film.of(cells) for film in self.films)
+
+    @property
+    def least(self) -> int:
+        """Cells around, below which the error is a matter of chance."""
+        return max(film.least for film in self.films)
 
 
-def fewest_cells(case: Case, allowed: float, most: float) -> tuple[int, int]:
+def worst_film(case: Case, eccentricity: float | None) -> WorstFilm:
+    """The errors of the films of a case up to the largest eccentricity, where that is known."""
+    kinds = (_kind(case, place) for place in film_places(case))
+    return WorstFilm(tuple(kind if eccentricity is None else kind.at(eccentricity) for kind in kinds))
+
+
+def gap_ratio(expected: float, reached: float) -> float:
+    """The smallest gap at the one eccentricity over that at the other, where the other is larger."""
+    return max(1.0, (1.0 - expected) / max(1.0 - reached, CLOSEST))
+
+
+def fewest_cells(worst: WorstFilm, allowed: float, most: float) -> tuple[int, int]:
     """The cheapest cells (around, along) with no more than the allowed error. If there are none: the most exact, or
     where their error is above `most`, so that the target is out of reach, the cheapest with little more than it."""
-    least = max(_kind(case, place).least for place in film_places(case))
-    choices = sorted(((m, k) for m in AROUND if m >= least for k in ALONG), key=lambda cells: cells_time(*cells))
-    errors = {cells: cell_error(case, cells) for cells in choices}
+    choices = sorted(((m, k) for m in AROUND if m >= worst.least for k in ALONG), key=lambda cells: cells_time(*cells))
+    errors = {cells: worst.of(cells) for cells in choices}
     best = min(errors.values())
     if best > allowed:
         allowed = best if best <= most else KNEE * best
@@ -108,13 +142,13 @@ def cells_time(around: int, along: int) -> float:
     return around * along * (1.0 + (along / CELLS_DOUBLE) ** 2) * (1.0 if along in FAST else SLOW)
 
 
-def coarser_cells(case: Case, cells: tuple[int, int]) -> tuple[int, int] | None:
+def coarser_cells(worst: WorstFilm, cells: tuple[int, int]) -> tuple[int, int] | None:
     """The most exact cells that are FEWER in both directions, with at least COARSER times the error; None if there are
     none."""
-    least, (low, high) = COARSER * cell_error(case, cells), FEWER
+    least, (low, high) = COARSER * worst.of(cells), FEWER
     around = [m for m in (*FEWER_AROUND, *AROUND) if low * cells[0] <= m <= high * cells[0]]
     choices = [(m, k) for m in around for k in FAST if low * cells[1] <= k <= high * cells[1]]
-    errors = {choice: cell_error(case, choice) for choice in choices}
+    errors = {choice: worst.of(choice) for choice in choices}
     coarser = (choice for choice in choices if errors[choice] >= least)
     return min(coarser, key=lambda choice: errors[choice], default=None)
 
@@ -129,13 +163,16 @@ def _kind(case: Case, place: FilmPlace) -> CellError:
     keeps = law.keeps_oil
     section = film_section(case, place.geometry, place.feed_holes)
     if section.holes:
-        return BORES_OIL if keeps else RECESSES if _recessed(place) else BORES
+        if _recessed(place):
+            return RECESSES_OIL if keeps else RECESSES
+        return BORES_OIL if keeps else BORES
     if law.empties and no_inflow(section):
         return EMPTYING
     if is_plain(place.geometry):
-        return PLAIN
+        return PLAIN_OIL if keeps else PLAIN
     if section.grooves:
-        one = NARROW_GROOVE_OIL if keeps and place.geometry.width < NARROW * place.geometry.diameter else GROOVE
+        short = len(section.grooves) > 1 or place.geometry.width < NARROW * place.geometry.diameter
+        one = GROOVE_OIL if keeps and short else GROOVE
         return replace(one, around=one.around * len(section.grooves))
     return LOBES_OIL if keeps else LOBES
 

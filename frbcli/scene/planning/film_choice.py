@@ -21,15 +21,15 @@ from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, published_elements
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
-from frbcli.scene.planning.cell_choice import FEWEST, cell_error, fewest_cells, given_cells
+from frbcli.scene.planning.cell_choice import FEWEST, WorstFilm, fewest_cells, given_cells, worst_film
+from frbcli.scene.planning.eccentricity import expected_eccentricity
+from frbcli.scene.planning.short_bearing import short_error, slenderness_of
 
 # Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
 # call would cost much more for eccentricities close to 1.
 TABLE_HOLDS_TO, SOLVED_HOLDS_TO = 0.95, 0.9
 FILM_SHARE = 0.5  # of the target
 DEFAULT_MESH = Mesh(axial=6, circumferential=96)  # where no plan is made
-# The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.
-SHORT, SHORT_POWER = 0.45, 1.3
 # Errors at TABLE_HOLDS_TO: MESH_ERROR (b/D)^2, and the error of the interpolation, which does not depend on the mesh.
 MESH_ERROR = {Mesh(3, 48): 4.2e-3, Mesh(4, 64): 3e-3, Mesh(6, 96): 3e-4, Mesh(10, 192): 5e-5}
 TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
@@ -46,7 +46,8 @@ class FilmChoice:
     """theory: "short" | "finite", or the name of a bearing model; form: how the most expensive film is computed;
     mesh: the finest mesh of elements; cells: (around, along) or None; error: expected relative
     error of the forces at the eccentricity up to which the film holds the target, 0 for a bearing model, whose error is
-    not known; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements."""
+    not known; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements; eccentricity: that
+    the cells are chosen for, None where it is not known or has no influence."""
 
     theory: str
     form: FilmForm
@@ -56,6 +57,7 @@ class FilmChoice:
     theory_why: str
     mesh_why: str
     films: tuple[tuple[FilmForm, Mesh], ...] = ()
+    eccentricity: float | None = None
 
 
 def form_of(case: Case) -> FilmForm:
@@ -93,15 +95,17 @@ def _published(case: Case, _: float) -> FilmChoice:
 
 
 def _volumes(case: Case, target: float) -> FilmChoice:
-    cells, cells_why = _cells(case, target)
-    error = cell_error(case, cells)
+    eccentricity = expected_eccentricity(case)
+    worst = worst_film(case, eccentricity)
+    cells, cells_why = _cells(case, worst, target)
+    error = worst.of(cells)
     theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
     mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
     if case.film.solution == "cells":
         mesh_why += "; film.solution is set in the case"
     elif all(law_named(model).tabulated for model in case.cavitations):
         mesh_why += f"; no table: {table_obstacle(case)}"
-    return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, error, theory_why, mesh_why)
+    return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, error, theory_why, mesh_why, (), eccentricity)
 
 
 def _solutions(case: Case, _: float) -> FilmChoice:
@@ -113,7 +117,7 @@ def _solutions(case: Case, _: float) -> FilmChoice:
 
 def _rectangles(case: Case, target: float) -> FilmChoice:
     given, films = case.accuracy.mesh, [place.geometry for place in film_places(case)]
-    slenderness = max(_slenderness(film) for film in films)
+    slenderness = max(slenderness_of(film) for film in films)
     short = short_error(slenderness, SOLVED_HOLDS_TO)
     theory, theory_why = case.film.theory, "set in the case"
     if theory == "auto":
@@ -124,7 +128,7 @@ def _rectangles(case: Case, target: float) -> FilmChoice:
             theory_why = "axial grooves, which the short bearing does not have"
     forms = [film_form(case, film, theory) for film in films]
     form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
-    meshes = [_mesh(form, _slenderness(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]
+    meshes = [_mesh(form, slenderness_of(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]
     mesh, error = max((mesh for mesh, _ in meshes), key=_size), max(error for _, error in meshes)
     holds_to = SOLVED_HOLDS_TO if form == CHAINS else TABLE_HOLDS_TO
     mesh_why = f"relative error {error:.1g} at an eccentricity of {holds_to:g}"
@@ -135,11 +139,6 @@ def _rectangles(case: Case, target: float) -> FilmChoice:
     each = tuple((form, mesh) for form, (mesh, _) in zip(forms, meshes, strict=True))
     error = short if theory == "short" else error
     return FilmChoice(theory, form, mesh, None, error, theory_why, mesh_why, each)
-
-
-def short_error(slenderness: float, eccentricity: float) -> float:
-    """Relative error of the force of the short-bearing theory, for sections of b/D = slenderness."""
-    return float(SHORT * slenderness**2 * (1.0 - eccentricity) ** -SHORT_POWER)
 
 
 def all_clipped(case: Case) -> bool:
@@ -176,11 +175,6 @@ def _rectangular(film: FilmGeometry, several: bool) -> bool:
     return film.lobes is None and film.supply.rectangular and not (several and film.supply.divides)
 
 
-def _slenderness(film: FilmGeometry) -> float:
-    """Width of a section over the diameter."""
-    return film.width / film.diameter / (2 if film.supply.splits else 1)
-
-
 def _mesh(form: FilmForm, slenderness: float, allowed: float) -> tuple[Mesh, float]:
     """The coarsest mesh whose error is small enough, or below which the error does not fall, and its error."""
     meshes = list(CHAIN_ERROR if form == CHAINS else MESH_ERROR)
@@ -205,9 +199,9 @@ def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
     return float(max(factor * slenderness**2, FIELDS_FLOOR if form == FIELDS else TABLE_FLOOR))
 
 
-def _cells(case: Case, target: float) -> tuple[tuple[int, int], str]:
+def _cells(case: Case, worst: WorstFilm, target: float) -> tuple[tuple[int, int], str]:
     """Cells (around, along), and what comes before their error in their reason."""
     if case.accuracy.mesh is not None:
         cells, why = given_cells(case.accuracy.mesh, FEWEST)
         return cells, f"{why}; "
-    return fewest_cells(case, (RING_SHARE if turning_rings(case) else CELL_SHARE) * target, REACHED * target), ""
+    return fewest_cells(worst, (RING_SHARE if turning_rings(case) else CELL_SHARE) * target, REACHED * target), ""

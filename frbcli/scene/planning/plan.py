@@ -158,6 +158,7 @@ def _plan(case: Case, target: float) -> Plan:
         coupling=coupling,
         macro_step=case.accuracy.macro_step if coupling_named(coupling).in_turn else None,
         decisions=tuple(decisions),
+        eccentricity=films.eccentricity,
     )
 
 
