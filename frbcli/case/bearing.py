@@ -147,8 +147,8 @@ FilmBearing = SingleFilmBearing | FloatingRingBearing
 Bearing = Annotated[SingleFilmBearing | FloatingRingBearing | CoefficientsBearing, Field(discriminator="kind")]
 
 
-class _OneOrMany:
-    """The schema of [bearing] or [[bearing]], for editors."""
+class OneOrMany:
+    """The schema of one table or of several, as [bearing] and [[bearing]], for editors."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return handler(source)
@@ -191,4 +191,4 @@ def _named(bearing: object, name: str) -> object:
     return bearing
 
 
-Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_as_list), _OneOrMany()]
+Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_as_list), OneOrMany()]

@@ -39,6 +39,7 @@ from frbcli.case.quantities import (
 )
 from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
+from frbcli.case.surroundings.base import Bases
 from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.housing import Housing
@@ -217,6 +218,7 @@ class Case(Model):
     forces: tuple[AppliedForce, ...] = Field(
         default=(), alias="force", description="forces on places of the machine beside unbalance and weight"
     )
+    bases: Bases = Field(default=(), alias="base", description="motion of the ground that the machine stands on")
     given_bearings: Bearings = Field(
         default=(), alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
     )

@@ -1,4 +1,4 @@
-"""Forces on places of a machine: constant ones, and harmonic ones as their cosine and sine parts,
+"""Forces on places of a machine: constant ones, tables over time, and harmonic ones as their cosine and sine parts,
 F = Re(A exp(i (theta + phase))) with A = f in a direction and A = (f_x + i f_y, f_y - i f_x) rotating."""
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.places import node_at
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.rotor.assembly import NodeForce
-from frbcli.rotor.loads import Harmonic
+from frbcli.rotor.loads import Harmonic, linear_table
 from frbcli.units import display
 
 
@@ -41,9 +41,12 @@ class ForceElement(MachineElement):
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""
         given = self.given
-        x, y = np.multiply(self.count(site), given.force).tolist()
+        x, y = np.multiply(self.count(site), given.amplitude).tolist()
         if given.constant:
             return Parts(forces=(NodeForce(self.node, (x, y)),))
+        if given.over_time is not None:
+            table = linear_table(self.name, np.diag([x, y]), given.over_time.time, *given.over_time.both)
+            return Parts(loads=((self.node, table),))
         order, frequency = given.turns
         amplitude = np.array([x + 1j * y, y - 1j * x] if given.rotating else [x, y]) * np.exp(1j * given.phase)
         # Re(A exp(i theta)) = Re A cos(theta) - Im A sin(theta)
@@ -52,7 +55,7 @@ class ForceElement(MachineElement):
 
     def told(self, site: Site) -> Line:
         """See MachineElement."""
-        x, y = (display(each, "N") for each in self.given.force)
+        x, y = (display(each, "N") for each in self.given.amplitude)
         turning = f"{self.given.turning}, {'rotating, ' if self.given.rotating else ''}"
         where = "at each of both equal bearings" if self.count(site) > 1.0 else "at one place"
         value = f"{self.node.replace('_', ' ')}: {x} in x, {y} in y"

@@ -76,10 +76,9 @@ class HousingElement(MachineElement):
             place = at(mount.position)
             stiffness += place.T @ np.diag(mount.stiffness) @ place
             damping += place.T @ np.diag(mount.damping) @ place
-        load = np.zeros(size)
-        load[1] = -mass * gravity
+        carried = mass * np.eye(2, size)
         nodes = ((NODE, at(given.position)), *((self.node(name), at(place)) for name, place in self.bearings))
-        return _body(np.diag([mass, mass, *inertia][:size]), damping, stiffness, load, nodes)
+        return _body(np.diag([mass, mass, *inertia][:size]), damping, stiffness, gravity, nodes, carried)
 
     def _modal(self, gravity: float) -> Body:
         modes = self.given.modes
@@ -91,15 +90,17 @@ class HousingElement(MachineElement):
             """(2, modes) displacement there."""
             return np.array([each.get(place, (0.0, 0.0)) for each in shapes]).T
 
-        load = -gravity * sum((each.mass * at(each.place)[1] for each in self.given.masses), np.zeros(len(modes)))
-        carried = self.bearings or ((SYMMETRIC_PLACE, 0.0),)
-        nodes = tuple((self.node(name), at(name)) for name, _ in carried)
-        return _body(np.eye(len(modes)), damping, np.diag(omega**2), load, nodes)
+        masses = [each.mass * at(each.place) for each in self.given.masses]
+        carried = sum(masses, np.zeros((2, len(modes)))) if masses else None
+        nodes = tuple((self.node(name), at(name)) for name, _ in self.bearings or ((SYMMETRIC_PLACE, 0.0),))
+        return _body(np.eye(len(modes)), damping, np.diag(omega**2), gravity, nodes, carried)
 
 
 def _body(
-    mass: Array, damping: Array, stiffness: Array, load: Array, nodes: tuple[tuple[str, Array], ...]
-) -> Body:
-    """A body without rotation and unbalance."""
+    mass: Array, damping: Array, stiffness: Array, gravity: float, nodes: tuple[tuple[str, Array], ...],
+    inertia: Array | None,
+) -> Body:  # fmt: skip
+    """A body without rotation and unbalance, with a weight as far as its inertia is known."""
     nothing = np.zeros(len(mass))
-    return Body(mass, damping, np.zeros_like(mass), stiffness, load, nothing, nothing, nodes)
+    load = nothing if inertia is None else -gravity * inertia[1]
+    return Body(mass, damping, np.zeros_like(mass), stiffness, load, nothing, nothing, nodes, inertia)

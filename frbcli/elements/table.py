@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from frbcli.case.schema import Case
+from frbcli.elements.base import BaseElement
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import MachineElement
@@ -14,7 +15,8 @@ from frbcli.elements.support import SupportElement
 from frbcli.elements.thrust import ThrustElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
-    GivenCoefficients, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement
+    GivenCoefficients, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,
+    BaseElement,
 )  # fmt: skip
 
 

@@ -11,7 +11,6 @@ from typing import Any
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
-from frbcli.case.reading.load import LARGEST_FILE
 from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.film.bearing_model.table import label_of as bearing_label
@@ -88,8 +87,6 @@ def shell(run: Run, bearing: str = "") -> float | None:
 
 def case_tables(run: Run) -> dict[str, Any]:
     """The tables of the case that a run was made of. Raises RunFileError if its text cannot be that of a case."""
-    if len(run.case_text.encode(errors="replace")) > LARGEST_FILE:
-        raise refuse(run.path, f"has a case of more than {LARGEST_FILE // 1024} KiB.", "Run the case again.")
     try:
         return parse(run.case_text)
     except TomlFault as error:

@@ -48,8 +48,9 @@ def assembled(
     loads: Sequence[tuple[str, Load]] = (),
 ) -> LinearRotor:
     """The machine of bodies, whose degrees of freedom follow each other in their order, with films between nodes,
-    linear parts on the relative motion of nodes, constant forces on nodes, and loads on the (x, y) of nodes. Raises
-    KeyError for a node that no body has."""
+    linear parts on the relative motion of nodes, constant forces on nodes, and loads on the (x, y) of nodes; a load on
+    the GROUND is its acceleration, in m/s^2. Raises KeyError for a node that no body has, and for the GROUND under
+    bodies of unknown inertia."""
     size = sum(body.size for body in bodies)
     nodes = _nodes(bodies, size)
 
@@ -76,6 +77,8 @@ def assembled(
     )
     machine = machine.with_parts([part.seen_by(relative(link), link.count) for link, part in parts])
     constant = (nodes[each.node].T @ np.array(each.force) for each in forces)
+    if all(body.inertia is not None for body in bodies):
+        nodes[GROUND] = -np.concatenate([body.inertia for body in bodies if body.inertia is not None], axis=1)
     varying = tuple(load.seen_by(nodes[node]) for node, load in loads)
     return replace(machine, static_load=sum(constant, machine.static_load), loads=varying)
 

@@ -18,7 +18,8 @@ class Body:
 
     mass, damping, gyroscopic, stiffness: (n, n), see LinearRotor; static_load: (n,) N; unbalance_cos, unbalance_sin:
     (n,) kg m, see LinearRotor. nodes: names and (c, n) maps of the places at which elements act and which a run
-    records, with a row for each of the COORDINATES.
+    records, with a row for each of the COORDINATES; inertia: (2, n) kg against accelerations of the ground in x and y,
+    the mass matrix times a displacement of the whole body, None where that is not known.
     """
 
     mass: Array
@@ -29,6 +30,7 @@ class Body:
     unbalance_cos: Array
     unbalance_sin: Array
     nodes: tuple[tuple[str, Array], ...]
+    inertia: Array | None = None
 
     @property
     def size(self) -> int:
@@ -48,13 +50,14 @@ def point_mass(node: str, mass: float, gravity: float, unbalance: float = 0.0, e
         unbalance_cos=np.array([unbalance, 0.0]),
         unbalance_sin=np.array([0.0, unbalance]),
         nodes=((node, np.eye(2)),),
+        inertia=mass * np.eye(2),
     )
 
 
 def spin(inertia: float) -> Body:
     """The angle of a ring that turns, in rad, which no element between nodes acts on; inertia in kg m^2."""
     one, none = np.eye(1), np.zeros((1, 1))
-    return Body(inertia * one, none, none, none, np.zeros(1), np.zeros(1), np.zeros(1), ())
+    return Body(inertia * one, none, none, none, np.zeros(1), np.zeros(1), np.zeros(1), (), np.zeros((2, 1)))
 
 
 def jeffcott_rotor(
@@ -71,16 +74,17 @@ def jeffcott_rotor(
     Masses m_D, m_J in kg, stiffness c in N/m, unbalance U of the disk in kg m, dampings d_o, d_i in N s/m, gravity in
     m/s^2. q = [x_J, x_D, y_J, y_D]."""
     coupling = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    weight = -gravity * np.array([journal_mass, mass])
+    masses = np.array([journal_mass, mass])
     return Body(
         mass=_both_planes(np.diag([journal_mass, mass])),
         damping=_both_planes(shaft_damping * coupling + np.diag([0.0, external_damping])),
         gyroscopic=np.zeros((4, 4)),
         stiffness=_both_planes(shaft_stiffness * coupling),
-        static_load=np.concatenate([np.zeros(2), weight]),
+        static_load=np.concatenate([np.zeros(2), -gravity * masses]),
         unbalance_cos=np.array([0.0, unbalance, 0.0, 0.0]),
         unbalance_sin=np.array([0.0, 0.0, 0.0, unbalance]),
         nodes=(("journal", planar(4, 0, 2)), ("disk", planar(4, 1, 3))),
+        inertia=np.kron(np.eye(2), masses),
     )
 
 

@@ -28,6 +28,11 @@ class Load:
         """What it changes with, in words."""
         return "time"
 
+    @property
+    def largest(self) -> Array:
+        """(2, n) N: the columns at their largest factors."""
+        return self.columns
+
     def factors(self, t: Array, angle: Array) -> Array:
         """(k, 2) factors of the columns at times (k,) in s and angles (k,) of the rotor in rad."""
         raise NotImplementedError
@@ -89,11 +94,26 @@ class Tabulated(Load):
     times: Array
     cubics: Array
 
+    @property
+    def largest(self) -> Array:
+        """See Load."""
+        return np.asarray(np.abs(self.factors(self.times, self.times)).max(axis=0)[:, None] * self.columns)
+
     def factors(self, t: Array, angle: Array) -> Array:  # noqa: ARG002
         """See Load."""
         piece = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.cubics) - 1)
         powers = (t - self.times[piece])[:, None] ** np.arange(4)
         return np.asarray(np.einsum("kcp,kp->kc", self.cubics[piece], powers))
+
+
+def linear_table(
+    name: str, columns: Array, times: Sequence[float], x: Sequence[float], y: Sequence[float]
+) -> Tabulated:
+    """The load of a table with factors x and y (k,) at times (k,) in s, linear between them."""
+    t, values = np.asarray(times, dtype=float), np.array([x, y], dtype=float)
+    cubics = np.zeros((len(t) - 1, 2, 4))
+    cubics[:, :, 0], cubics[:, :, 1] = values[:, :-1].T, (np.diff(values) / np.diff(t)).T
+    return Tabulated(name, columns, t, cubics)
 
 
 def loads_at(loads: Sequence[Load], size: int, t: Array, angle: Array) -> Array:

@@ -87,6 +87,7 @@ def turbocharger_rotor(
         unbalance_cos=unbalance_cos.ravel(),
         unbalance_sin=unbalance_sin.ravel(),
         nodes=tuple(nodes),
+        inertia=_of(both, modes.weight[None, :]),
     )
 
 

@@ -37,6 +37,8 @@ SLOTS = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", le
 HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
 OIL = "oil.viscosity={grade='SAE 10W-40'}"
 HARMONIC = 'force=[{at="disk", force=["10 N", "0 N"], order=2}]'
+TABLE = 'force=[{at="disk", over_time={time=[0, 1000], x=[0, 1]}}]'
+GROUND = 'base={acceleration=["2 m/s^2", "0 m/s^2"], order=2, speed="50 Hz"}'
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
 DAMPER = (
     'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
@@ -82,6 +84,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "rigid housing": ("jeffcott", ('housing={mass="40 kg", mounts=[{stiffness="1e8 N/m"}]}',)),
     "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
     "harmonic forces": ("jeffcott", (HARMONIC,)),
+    "forces over time": ("jeffcott", (TABLE,)),
+    "motion of the ground": ("jeffcott", (GROUND,)),
     "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearings alone": ("thrust", ()),
 }

@@ -61,6 +61,8 @@ TABLES = {
     "at = [{ ... }]": "ModeAt",
     "masses = [{ ... }]": "MassAt",
     "[[force]]": "AppliedForce",
+    "[base]": "Base",
+    "over_time = { ... }": "OverTime",
     "[bearing.ring]": "Ring",
     "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",

@@ -16,6 +16,8 @@ from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.cavitation import table
 from frbcli.units import NUMBER, display, readable
 
+MOST_LISTED = 12  # numbers of a list; of a table from a file only the count is told
+
 
 @dataclass(frozen=True)
 class Value:
@@ -48,7 +50,10 @@ def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value
     if isinstance(found, Model):
         yield from _values(f"{key}.", found, written)
     elif isinstance(found, tuple):
-        single = key == "bearing" and len(found) == 1
+        if len(found) > MOST_LISTED and isinstance(found[0], float):
+            yield Value(key, len(found), "", f"{len(found)} values")
+            return
+        single = key in ("bearing", "base") and len(found) == 1
         each = written if isinstance(written, list) else [written] * len(found)
         for index, (item, its_text) in enumerate(zip(found, each, strict=True)):
             yield from _one(key if single else f"{key}.{index}", item, field, its_text)

@@ -21,7 +21,8 @@ from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import objections, with_nearest_kinds
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.housing_rules import housing_breaches
-from frbcli.case.surroundings.places import force_breaches
+from frbcli.case.surroundings.places import base_breaches, force_breaches
+from frbcli.case.surroundings.time_tables import with_time_tables
 from frbcli.errors import Fault, InputError
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
@@ -189,12 +190,13 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data = data if "name" in data else {"name": _printable(name), **data}
     data, unread = with_rotor_file(data, Path(folder))
     data, unknown = with_coefficient_files(data, Path(folder))
+    data, unfit = with_time_tables(data, Path(folder))
     case, found = _validate(data)
-    if case is not None and not found:
-        found = [*force_breaches(case), *housing_breaches(case)]
+    if case is not None and not (found or unfit):
+        found = [*force_breaches(case), *base_breaches(case), *housing_breaches(case)]
     if unread:  # what the file would have completed is no fault of the case
         found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
-    return case, data, [*unknown, *found]
+    return case, data, [*unknown, *unfit, *found]
 
 
 def _refused(source: str, faults: Sequence[Fault]) -> InputError:

@@ -21,6 +21,8 @@ def as_text(case: Model, name: str, bearing_names: Sequence[str]) -> str:
             table["name"] = bearing_name  # a file without names would number them
     elif bearings:
         tables["bearing"] = bearings[0]
+    if len(tables.get("base", [])) == 1:
+        tables["base"] = tables["base"][0]
     return to_toml(tables)
 
 

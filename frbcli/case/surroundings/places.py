@@ -1,11 +1,14 @@
-"""The places of a machine that forces can act on, and what is wrong with forces of a case."""
+"""The places of a machine that forces can act on, and what is wrong with the loads of a case."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from frbcli.case.model import Model
+from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
+from frbcli.case.surroundings.over_time import OverTime, over_time_problem
 from frbcli.nearest import did_you_mean
 
 if TYPE_CHECKING:
@@ -46,7 +49,7 @@ def node_at(case: Case, at: str) -> str:
 def force_breaches(case: Case) -> Iterator[Breach]:
     """Every broken rule of the forces of a case."""
     for number, force in enumerate(case.forces):
-        path = ("force", number)
+        path: Path = ("force", number)
         if case.given_rotor is None:
             yield Breach(path, "has no effect: a kinematic test moves its journal.", "Remove it.")
             continue
@@ -59,5 +62,42 @@ def force_breaches(case: Case) -> Iterator[Breach]:
         for key in ("order", "frequency"):
             if getattr(force, key) == 0.0:
                 yield Breach((*path, key), "is 0.", "Leave it out: the force is then constant.")
-        if force.phase and force.constant:
+        if force.over_time is not None:
+            yield from _table_breaches(path, force, force.over_time, ("order", "frequency", "rotating", "phase"))
+        elif force.force is None:
+            yield Breach((*path, "force"), "is missing.", 'Write e.g. ["10 N", "0 N"].')
+        elif force.phase and force.constant:
             yield Breach((*path, "phase"), "has no effect: the force is constant.", "Remove it, or give an order.")
+
+
+def base_breaches(case: Case) -> Iterator[Breach]:
+    """Every broken rule of the motion of the ground."""
+    for number, base in enumerate(case.bases):
+        path: Path = ("base",) if len(case.bases) == 1 else ("base", number)
+        if case.given_rotor is None:
+            yield Breach(path, "has no effect: a kinematic test moves its journal.", "Remove it.")
+            continue
+        if case.housing is not None and case.housing.modes and not case.housing.masses:
+            problem = "acts on masses, and those of the housing are not known: its modes do not say them."
+            yield Breach(path, problem, "Give housing.masses, or a rigid housing.")
+        if base.over_time is not None:
+            yield from _table_breaches(path, base, base.over_time, ("order", "speed", "phase"))
+            continue
+        if base.acceleration is None:
+            yield Breach((*path, "acceleration"), "is missing.", 'Write e.g. ["2 m/s^2", "0 m/s^2"], or a file.')
+        elif base.order is None and base.speed is None:
+            problem = "would not change: a ground that is only accelerated moves away."
+            yield Breach((*path, "acceleration"), problem, "Give an order, the speed of what shakes, or a file.")
+        for key in ("order", "speed"):
+            if getattr(base, key) == 0.0:
+                yield Breach((*path, key), "is 0.", "Give what the ground swings with.")
+
+
+def _table_breaches(path: Path, given: Model, table: OverTime, others: tuple[str, ...]) -> Iterator[Breach]:
+    """Rules of a table over time beside the other keys that say how a load changes."""
+    beside = [key for key in others if key in given.model_fields_set]
+    if beside:
+        yield Breach((*path, beside[0]), "is given beside file.", "Keep one of the two.")
+    problem = over_time_problem(table.time, *table.both)
+    if problem:
+        yield Breach((*path, "over_time"), problem, "Order its rows by rising times.")

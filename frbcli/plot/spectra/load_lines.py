@@ -31,7 +31,7 @@ class LoadLine(NamedTuple):
 
 def load_lines(run: Run) -> tuple[LoadLine, ...]:
     """One line for each frequency of the harmonic loads of the case of a run beside the rotor speed itself."""
-    if not run.case_text or "force" not in case_tables(run):
+    if not run.case_text or not {"force", "base"} & case_tables(run).keys():
         return ()
     try:
         loads = harmonics_of(load_case_text(run.case_text, name=run.case_name))

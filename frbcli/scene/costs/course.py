@@ -74,6 +74,8 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
     work, whirls = plan.form.work, omega >= whirl_speed(case)
     presses = whirls & (omega >= _pressing_speed(case))
     rate = np.maximum(1.0 / longest_step(case, plan), work.crowded * steps_of_a_turn(case, plan) * turns)
+    pieces = np.clip(np.searchsorted(profile.times, times, side="right") - 1, 0, len(profile.times) - 2)
+    rate = np.maximum(rate, 1.0 / np.diff(profile.times)[pieces])  # a step ends at each kink of the profile
     rate = np.maximum(rate, _resolving(case, plan, times, omega, whirls))
     pressed = work.pressed[0] * (ELASTIC if case.contact.policy == "elastic" else 1.0)
     rate = np.where(presses, pressed * rate, rate)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,15 +17,19 @@ from frbcli.scene.shafts.table import shaft_of
 SMALLEST = 1e-9  # m: of a rotor that neither its weight nor an unbalance moves
 LARGEST = 1.0  # m: bearings that let the rotor sag further do not hold it
 SAGS, TURNS, LEAST = "the largest static deflection", "the unbalance over the mass", "the least that is taken"
+LOADED = "the largest static deflection under a load that changes"
 
 
 def reference_length(case: Case) -> tuple[float, str]:
     """Length in m, and which one it is: the largest static deflection of a point of a run at the first and the last
-    speed, or the unbalance over the mass if that is larger, at least SMALLEST."""
+    speed, under the static load or another load at its largest, or the unbalance over the mass if that is larger, at
+    least SMALLEST."""
     rotor = make_rotor(case)
-    speeds = (2.0 * math.pi * speed for speed in (case.speed.start, case.speed.end))
+    speeds = [2.0 * math.pi * speed for speed in (case.speed.start, case.speed.end)]
     sag = max(_sag(rotor, omega) for omega in speeds)
-    return max((sag, SAGS), (shaft_of(case).eccentricity, TURNS), (SMALLEST, LEAST))
+    pushed = (replace(rotor, static_load=column) for load in rotor.loads for column in load.largest)
+    loaded = max((_sag(each, omega) for each in pushed for omega in speeds), default=0.0)
+    return max((sag, SAGS), (loaded, LOADED), (shaft_of(case).eccentricity, TURNS), (SMALLEST, LEAST))
 
 
 def _sag(rotor: LinearRotor, omega: float) -> float:

@@ -17,7 +17,7 @@ from frbcli.elements.table import elements_of
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND
 from frbcli.rotor.linear import Array, LinearRotor
-from frbcli.rotor.loads import Harmonic
+from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.scene.shafts.table import shaft_of
 
 
@@ -67,7 +67,29 @@ def load_faults(case: Case, what: str, remedy: str) -> Iterator[Fault]:
     for element in elements_of(case):
         for node, load in element.parts(site).loads:
             problem = f"changes with {load.changes_with}, and {what}."
-            yield Fault(element.key, node.replace("_", " "), None, problem, remedy)
+            yield Fault(element.key, node.replace("_", " ") or load.name, None, problem, remedy)
+
+
+def table_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:
+    """The faults of tables over time that do not last from begin to end of a run, in s."""
+    site = site_of(case)
+    for element in elements_of(case):
+        for _, load in element.parts(site).loads:
+            if not isinstance(load, Tabulated):
+                continue
+            if load.times[0] > begin:
+                problem = f"has a table that begins at {load.times[0]:.9g} s, and the run begins at {begin:g} s."
+                yield Fault(f"{element.key}.file", load.name, None, problem, "Begin the table with the run.")
+            if load.times[-1] < end:
+                problem = f"has a table that ends at {load.times[-1]:.9g} s, and the run ends at {end:.9g} s."
+                remedy = "Lengthen the table, or end the run before."
+                yield Fault(f"{element.key}.file", load.name, None, problem, remedy)
+
+
+def table_times(case: Case) -> Array:
+    """The times in s of all rows of the tables over time of a case."""
+    tables = (load.times for _, load in element_parts(case).loads if isinstance(load, Tabulated))
+    return np.unique(np.concatenate([np.zeros(0), *tables]))
 
 
 def element_forces(

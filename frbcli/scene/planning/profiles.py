@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 
 from frbcli.case.schema import Case
+from frbcli.errors import InputError
 from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
+from frbcli.scene.machine.elements import table_faults, table_times
 
 
 def run_up_profile(case: Case) -> SpeedProfile:
-    """From the first to the last speed of the case."""
+    """From the first to the last speed of the case. Raises InputError for a table over time that ends before."""
     speed = case.speed
-    return speed_profile([0.0, speed.duration], [2 * math.pi * speed.start, 2 * math.pi * speed.end])
+    return _with_tables(case, [0.0, speed.duration], [speed.start, speed.end])
 
 
 def run_down_profile(case: Case) -> SpeedProfile:
-    """Up, hold, and back down (section 7.2.2)."""
+    """Up, hold, and back down (section 7.2.2). Raises InputError for a table over time that ends before."""
     speed = case.speed
     times, speeds = [0.0, speed.duration], [speed.start, speed.end]
     if speed.hold > 0.0:
@@ -23,4 +25,12 @@ def run_down_profile(case: Case) -> SpeedProfile:
         speeds.append(speed.end)
     times.append(times[-1] + speed.down_duration)
     speeds.append(speed.start)
-    return speed_profile(times, [2 * math.pi * value for value in speeds])
+    return _with_tables(case, times, speeds)
+
+
+def _with_tables(case: Case, times: list[float], speeds: list[float]) -> SpeedProfile:
+    """The profile through speeds in Hz at times in s, with kinks of no angle at the rows of tables over time."""
+    faults = tuple(table_faults(case, times[0], times[-1]))
+    if faults:
+        raise InputError(case.name or "case", faults)
+    return speed_profile(times, [2 * math.pi * value for value in speeds]).with_stops(table_times(case).tolist())

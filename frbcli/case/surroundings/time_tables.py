@@ -1,0 +1,175 @@
+"""Tables over time out of a file of a measuring instrument or of a calculation: CSV, WAV, MAT or UFF.
+
+The case gets the numbers in place of the key `file`, so that a run has all that it was made of.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from frbcli.case.quantities import SMALLEST
+from frbcli.case.reading.tables import Breach, tables
+from frbcli.errors import InputError
+from frbcli.units import ValueFault, quantity
+
+if TYPE_CHECKING:
+    from frbcli.results.measured.columns import Columns, Values
+
+MOST_NUMBERS = 60_000  # of all tables of a case, whose text a run file holds
+TIMES, RATES = ("t", "time", "zeit"), ("fs", "rate", "sampling_rate", "sample_rate")
+EVEN, MOSTLY = 0.01, 0.9  # share by which steps of time may differ, and share of them from which a table is even
+FEWEST_EVEN = 20  # rows
+SUFFIX = re.compile(r"(.+)_([A-Za-z0-9]+)")  # of names such as time_s, as frb export writes them
+
+
+class _Unfit(Exception):
+    """Problem and remedy of a file that cannot be taken."""
+
+
+@dataclass(frozen=True)
+class TableKind:
+    """What a file holds over time. unit: SI; x, y: names of its columns, in small letters and without unit."""
+
+    unit: str
+    x: tuple[str, ...]
+    y: tuple[str, ...]
+
+
+FORCE = TableKind("N", ("x", "fx", "force_x", "1"), ("y", "fy", "force_y", "2"))
+ACCELERATION = TableKind("m/s^2", ("x", "ax", "acceleration_x", "1"), ("y", "ay", "acceleration_y", "2"))
+KINDS = {"force": FORCE, "base": ACCELERATION}  # tables of the case file that can have `file`
+
+
+def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
+    """The tables of a case with the numbers of each `file` over time in place of that key, and the faults.
+
+    folder: that a relative path counts from. A table whose file has faults keeps the key.
+    """
+    changed, found, count = dict(data), list[Breach](), 0
+    for kind, wanted in KINDS.items():
+        for path, given in tables(data, kind):
+            name, key = given.get("file"), (*path, "file")
+            if not isinstance(name, str) or not name:
+                continue
+            if "over_time" in given:
+                found.append(Breach(key, "is given beside over_time.", "Keep one of the two."))
+                continue
+            try:
+                numbers = _read(folder / name, wanted, MOST_NUMBERS - count)
+            except _Unfit as fault:
+                found.append(Breach(key, *fault.args))
+                continue
+            count += sum(map(len, numbers.values()))
+            kept = {other: value for other, value in given.items() if other != "file"}
+            kept["over_time"] = {"source": name, **numbers}
+            if len(path) == 1:
+                changed[kind] = kept
+            else:
+                changed[kind] = [kept if place == path[1] else other for place, other in enumerate(changed[kind])]
+    return changed, found
+
+
+def _read(path: Path, wanted: TableKind, most: int) -> dict[str, list[float]]:
+    from frbcli.results.measured.reading import read_columns
+
+    try:
+        columns = read_columns(path)
+        time = _times(columns)
+        x, y = _named(columns, wanted)
+        values = {"x": _values(columns, x, wanted)} | ({"y": _values(columns, y, wanted)} if y else {})
+    except InputError as error:
+        (fault,) = error.faults
+        raise _Unfit(fault.problem, fault.remedy) from None
+    found = {"time": time, **values}
+    shortest, longest = min(map(len, found.values())), max(map(len, found.values()))
+    if shortest != longest:
+        raise _Unfit(f"has columns of {shortest} and of {longest} rows.", "Give all columns the same rows.")
+    if longest * len(found) > most:
+        problem = f"has {longest} rows of {len(found)} columns; the tables of a case hold {MOST_NUMBERS} numbers."
+        raise _Unfit(problem, "Cut it, or sample it at fewer times.")
+    _check_times(columns, time)
+    return {name: column.tolist() for name, column in found.items()}
+
+
+def _plain(columns: Columns) -> Iterator[tuple[str, str]]:
+    """The names of the columns: as people write them, in small letters and without unit, and as they stand there."""
+    from frbcli.results.measured.delimited import without_unit
+
+    for name in columns.values:
+        plain = without_unit(name).strip().lower()
+        yield plain, name
+        if suffix := SUFFIX.fullmatch(plain):
+            yield suffix.group(1), name
+
+
+def _times(columns: Columns) -> Values:
+    import numpy as np
+
+    named = dict(_plain(columns))
+    for name in TIMES:
+        if name in named:
+            return columns[named[name]] * _unit(columns, named[name], "s")
+    rates = [value for name, value in columns.numbers.items() if name.lower() in RATES]
+    rate = columns.rate or (rates[0] if rates else None)
+    if rate is None or not rate > 0.0:
+        raise _Unfit('has no column "time".', 'Call the column of its times "time" or "t"; a WAV needs none.')
+    return np.arange(max(map(len, columns.values.values()), default=0)) / rate
+
+
+def _named(columns: Columns, wanted: TableKind) -> tuple[str, str]:
+    """The columns of x and y; of a single one there is no y."""
+    named = dict(_plain(columns))
+    x, y = ([named[name] for name in names if name in named][:1] for names in (wanted.x, wanted.y))
+    if x and y:
+        return x[0], y[0]
+    others = [name for plain, name in _plain(columns) if name in columns.values and plain not in TIMES]
+    single = [name for name in dict.fromkeys(others) if name not in {named.get(time) for time in TIMES}]
+    if len(single) == 1:
+        return single[0], ""
+    listed = ", ".join(f'"{name}"' for name in columns.values)
+    remedy = f'Call them "{wanted.x[0]}" and "{wanted.y[0]}", or give one column beside the time. It has: {listed}.'
+    raise _Unfit("has no columns of the values in x and y.", remedy)
+
+
+def _values(columns: Columns, name: str, wanted: TableKind) -> Values:
+    values = columns[name] * _unit(columns, name, wanted.unit)
+    values[abs(values) < SMALLEST] = 0.0  # round-off, as of a sine at its zero
+    return values
+
+
+def _unit(columns: Columns, name: str, si: str) -> float:
+    """SI value of 1 in a column. Raises _Unfit for a unit of something else."""
+    told = columns.unit(name) or ""
+    suffix = SUFFIX.fullmatch(name)
+    if not told.strip("-1 ") and suffix is None:
+        return 1.0
+    try:
+        return quantity(f"1 {told}" if told.strip("-1 ") else f"1 {suffix.group(2) if suffix else si}", si)
+    except ValueFault:
+        if not told.strip("-1 "):
+            return 1.0  # the end of a name that is no unit
+        problem = f'has "{told}" as unit of the column "{name}".'
+        raise _Unfit(problem, f"Give it in {si} or a unit like it.") from None
+
+
+def _check_times(columns: Columns, time: Values) -> None:
+    """Times rise, and a table of even steps has no gap."""
+    import numpy as np
+
+    if len(time) < 2:
+        raise _Unfit("has fewer than two rows.", "Give the values at two times at least.")
+    steps = np.diff(time)
+    if not np.all(steps > 0.0):
+        row = int(np.argmin(steps > 0.0)) + 1
+        problem = f"has the time {time[row]:.6g} s in {columns.row(row)}, not later than the row before."
+        raise _Unfit(problem, "Order its rows by rising times, each once.")
+    usual = float(np.median(steps))
+    even = np.abs(steps - usual) <= EVEN * usual
+    if len(time) >= FEWEST_EVEN and not np.all(even) and np.mean(even) >= MOSTLY and steps.max() > 1.5 * usual:
+        row = int(np.argmax(steps > 1.5 * usual)) + 1
+        problem = f"has a gap of {steps[row - 1]:.4g} s before {columns.row(row)}; other rows are {usual:.4g} s apart."
+        raise _Unfit(problem, "Fill the gap, or cut the table there.")

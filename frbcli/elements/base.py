@@ -1,0 +1,49 @@
+"""Motion of the ground: all masses feel its acceleration a as the load -M r a, with the displacement r of the whole
+machine, and all displacements are those against the ground."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.case.surroundings.base import Base
+from frbcli.elements.element import Line, MachineElement, Parts, Site
+from frbcli.rotor.assembly import GROUND
+from frbcli.rotor.loads import Harmonic, linear_table
+from frbcli.units import display
+
+
+@dataclass(frozen=True)
+class BaseElement(MachineElement):
+    """The ground under the machine. name: of the load."""
+
+    name: str
+    given: Base
+
+    @classmethod
+    def of(cls, case: Case) -> Iterator[Self]:
+        """See MachineElement."""
+        single = len(case.bases) == 1
+        for number, base in enumerate(case.bases):
+            yield cls("base" if single else f"base.{number}", "base" if single else f"base {number + 1}", base)
+
+    def parts(self, site: Site) -> Parts:
+        """See MachineElement."""
+        directions = np.diag(self.given.amplitude)
+        table = self.given.over_time
+        if table is not None:
+            return Parts(loads=((GROUND, linear_table(self.name, directions, table.time, *table.both)),))
+        order, frequency = self.given.turns
+        turn = np.exp(1j * self.given.phase)  # Re(a exp(i theta)) = Re a cos(theta) - Im a sin(theta)
+        columns = np.outer([turn.real, -turn.imag], self.given.amplitude)
+        return Parts(loads=((GROUND, Harmonic(self.name, columns, order, 2.0 * math.pi * frequency)),))
+
+    def told(self, site: Site) -> Line:
+        """See MachineElement."""
+        x, y = (display(each, "m/s^2") for each in self.given.amplitude)
+        return "ground", f"{x} in x, {y} in y", f"{self.given.turning}; displacements are those against the ground"
