@@ -65,6 +65,8 @@ MORE = [
     (["stability", "jeffcott", *SHORT, "--shapes", "200 Hz"], "jeffcott-shapes.png", "Damped modes and their shapes."),
     (["response", "turbocharger-car", "--speed", "1000 Hz", "--map"], "turbocharger-car-critical-map.png",
      "Undamped critical speeds over the stiffness of the bearings."),
+    (["runup", "squeeze-film-damper", "-o", "damper.h5"], "damper-summary.png",
+     "A rotor on squeeze film dampers passes its critical speed."),
     (["bearing", "bearing", "--over", "eccentricity"], "bearing-bearing.png", "A bearing over its eccentricity."),
 ]  # fmt: skip
 LONGEST = 40  # lines of output on a page

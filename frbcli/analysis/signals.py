@@ -17,7 +17,7 @@ from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
 Values = NDArray[np.float64]
 Motion = NDArray[np.complex128]
 
-KINDS = ("journal", "disk", "ring", "support")  # of points
+KINDS = ("journal", "disk", "ring", "shell", "support", "housing")  # of points
 END = "_x_m"
 PIECE = 2**17  # samples of a signal that are looked at together: 1 MB
 CORNERS = 400  # intervals of a run in which its ramp is determined
@@ -110,7 +110,7 @@ def pieces(count: int) -> Iterator[tuple[int, int]]:
 
 
 def located(run: RunLike, node: str) -> tuple[str, str]:
-    """Kind and name of "disk", "journal" (the first, if there are several), "journal_NAME" or "support_NAME" of a
+    """Kind and name of "disk", "journal" (the first, if there are several), "journal_NAME" or "shell_NAME" of a
     bearing or "disk_NAME" of a disk; NAME alone, of a bearing its journal, will do where a bearing and a disk do not
     share it."""
     alone = [kind for kind in ("journal", "disk") if node in points(run.signals, kind)]
@@ -169,7 +169,8 @@ def film_clearance(run: RunLike, film: str = "") -> float | None:
 def in_film(run: RunLike, bearing: str) -> bool:
     """Whether the journal of a bearing is in a film; elsewhere nothing says how far it can move."""
     known = set(films(run.signals))
-    return bool(known) and (not bearing or bearing in known or joined(bearing, "inner") in known)
+    own = {bearing, *(joined(bearing, side) for side in ("inner", "damper"))}
+    return bool(known) and (not bearing or bool(own & known))
 
 
 def samples_about(run: RunLike, begin_s: float, end_s: float) -> tuple[int, int]:
@@ -204,10 +205,13 @@ def clearance_steps(run: RunLike) -> list[float]:
 
 
 def bearing_clearance(run: RunLike, name: str = "") -> float | None:
-    """How far in m the journal of a bearing can move: the clearance, of a floating ring the sum of both."""
+    """How far in m the journal of a bearing can move: the clearance, of a floating ring the sum of both, with that of
+    a damper."""
+    damper, room = run.references.get(joined("clearance_m", name, "damper")), film_clearance(run, name)
     if name in points(run.signals, "ring"):
         both = [run.references.get(joined("clearance_m", name, side)) for side in ("inner", "outer")]
         known = [length for length in both if length is not None]
-        if len(known) == 2:
-            return sum(known)
-    return film_clearance(run, name)
+        room = sum(known) if len(known) == 2 else room
+    elif damper is not None and name not in films(run.signals):
+        return damper  # the shaft is in no film of its own
+    return room if damper is None or room is None else room + damper

@@ -15,6 +15,7 @@ import pytest
 from scipy.optimize import brentq
 
 import frbcli
+from frbcli.analysis.signals import bearing_clearance, point_of
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.errors import InputError
 from frbcli.film.rectangles.short import short_pressure
@@ -22,7 +23,7 @@ from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.report.sketch import film_sketches, rotor_sketch
-from frbcli.runs.run import runup
+from frbcli.runs.run import rundown, runup
 from frbcli.scene.gate.analysis import BEARING, HEAT, ROTATION, RUN, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.machine.findings import findings
@@ -132,6 +133,54 @@ def test_a_run_settles_on_the_circle_of_the_closed_form(tmp_path: Path) -> None:
     np.testing.assert_allclose(
         np.hypot(run["shell_x_m"], run["shell_y_m"])[late], eccentricity * CLEARANCE, rtol=1e-4
     )
+
+
+BISTABLE = """
+rotor = { kind = "jeffcott", mass = "20 kg", journal_mass = "2 kg", shaft_stiffness = "2e7 N/m", unbalance = "1 kg*mm",
+          external_damping = "20 N*s/m", shaft_damping = "1 N*s/m", gravity = "0 m/s^2" }
+oil = { viscosity = "1 mPa*s", density = "850 kg/m^3" }
+film = { theory = "short" }
+speed = { from = "95 Hz", to = "165 Hz", duration = "20 s", hold = "0.2 s" }
+output = { step = "1e-3 s" }
+[bearing]
+kind = "coefficients"
+stiffness = "5e7 N/m"
+damping = "500 N*s/m"
+damper = { width = "20 mm", diameter = "90 mm", clearance = "90 um", mass = "1 kg", spring = "1e6 N/m" }
+""".replace(",\n          ", ", ")
+
+
+def circles(speed_Hz: float) -> list[float]:
+    """All eccentricities of the shell of BISTABLE on a circle around the centre, ascending."""
+    w, cube = 2.0 * math.pi * speed_Hz, 1e-3 * 0.045 * (20e-3 / 90e-6) ** 3
+    e = np.linspace(1e-3, 0.995, 20001)
+    stiffness, damping = 2.0 * w * cube * e / (1.0 - e**2) ** 2, 0.5 * math.pi * cube / (1.0 - e**2) ** 1.5
+    carried, bearing = 2.0 * (1e6 + stiffness + 1j * w * damping - w**2), 2.0 * (5e7 + 1j * w * 500.0)
+    shaft, journal = 2e7 + 1j * w, -2.0 * w**2 + bearing * carried / (bearing + carried)
+    disk = 1e-3 * w**2 / (-20.0 * w**2 + 20j * w + shaft * journal / (shaft + journal))
+    shell = disk * shaft / (shaft + journal) * bearing / (bearing + carried)
+    left = np.abs(shell) / 90e-6 - e
+    return [float(each) for each in 0.5 * (e[1:] + e[:-1])[np.diff(np.sign(left)) != 0]]
+
+
+def test_the_jumps_of_a_damper_that_stiffens_are_the_folds_of_the_closed_form(tmp_path: Path) -> None:
+    """Up, the shell stays on the large circle until that ends; down, on the small one. In between there are three."""
+    run = rundown(load_case_text(BISTABLE), tmp_path / "run.h5")
+    assert run.status == "finished"
+    time, speed, found = run["time_s"], run["speed_Hz"], run["eccentricity_damper"]
+    folds = [speed_Hz for speed_Hz in np.arange(95.0, 165.0, 0.25) if len(circles(speed_Hz)) == 3]
+    lower, upper = folds[0], folds[-1]
+    assert upper - lower > 25.0
+    up, down = time < 20.0, time > 20.2
+    for speed_Hz in (lower + 8.0, upper - 8.0):
+        small, _, large = circles(speed_Hz)
+        for way, expected in ((up, large), (down, small)):
+            near = way & (np.abs(speed - speed_Hz) < 0.2)
+            assert found[near].mean() == pytest.approx(expected, rel=0.02)
+    jump_down = speed[up][np.argmax((found < 0.6)[up] & (speed > lower)[up])]
+    jump_up = speed[down][np.argmax((found > 0.75)[down])]
+    assert upper - 0.5 < jump_down < 1.03 * upper  # not before the circle ends, and after it has had time to leave it
+    assert 0.97 * lower < jump_up < lower + 0.5
 
 
 FULL = ("oil.ambient_pressure=3 bar", "oil.cavitation_pressure=1 bar")  # no part of the film cavitates at rest
@@ -322,3 +371,24 @@ def test_the_text_gives_the_case_again_and_plan_and_sketch_show_the_damper() -> 
     assert rotor_sketch(plain)[0].count('class="ring"') == rotor_sketch(load_case_text(SEMI_FLOATING + RING))[0].count(
         'class="ring"'
     )
+
+
+def test_the_shipped_damper_takes_the_resonance_away(tmp_path: Path) -> None:
+    """The same machine with a hundredth of the oil's viscosity swings more than four times as far, at the frequency of
+    rotor and springs, sqrt(k / m) of 22 kg and two shells on shaft and springs in series."""
+    cases = [load_case("squeeze-film-damper", [f"bearing.damper.viscosity={eta} mPa*s"]) for eta in (10.0, 0.1)]
+    runs = [runup(case, tmp_path / f"{number}.h5") for number, case in enumerate(cases)]
+    swings = [np.hypot(*(run[f"disk_{axis}_m"] - run[f"disk_{axis}_m"].mean() for axis in "xy")).max() for run in runs]
+    assert swings[0] < 30e-6
+    assert swings[1] > 4.0 * swings[0]
+    natural = math.sqrt(1.0 / (1.0 / 2e7 + 1.0 / 1e7 + 1.0 / 1e8) / 22.0) / (2.0 * math.pi)
+    (passed,) = [event for event in runs[0].events if event["kind"] == "critical-speed"]
+    assert natural < passed["speed_Hz"] < 1.5 * natural  # the damping stiffens it
+
+
+def test_points_of_a_run_in_dampers_are_found_and_the_journal_moves_through_both_films(tmp_path: Path) -> None:
+    rolling = runup(load_case("squeeze-film-damper", ["speed.duration=20 ms"]), tmp_path / "rolling.h5")
+    plain = runup(load_case_text(SEMI_FLOATING + IN_DAMPER), tmp_path / "plain.h5")
+    assert [point_of(run, "shell") for run in (rolling, plain)] == ["shell", "shell"]
+    assert bearing_clearance(rolling) == pytest.approx(90e-6)
+    assert bearing_clearance(plain) == pytest.approx(30e-6 + 60e-6)

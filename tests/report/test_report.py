@@ -156,7 +156,7 @@ def test_every_shipped_machine_is_drawn(name: str) -> None:
         assert note.endswith(".")
         assert "nan" not in drawing
         assert drawing.count('class="ground"') == 2 * len(case.elements) * (1 if case.shaft else 2)
-    assert bool(film_sketches(case)) == bool(case.bearings)
+    assert bool(film_sketches(case)) == bool(case.films)
 
 
 def test_a_shaft_is_drawn_to_scale() -> None:
