@@ -115,11 +115,11 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     for name in bearings:
         room = signals.bearing_clearance(run, name)
         if room is not None and name in rings:
-            events += _ring_whirls(run, name, room, turns)
+            events += _whirls_of_any_frequency(run, name, room, turns, in_films=True)
         elif room is not None:
             events += _whirl(run, whirls[plain.index(name)][0] / room, turns, name)
         else:
-            events += _whirls_without_films(run, name, turns)
+            events += _whirls_of_any_frequency(run, name, run.references.get("length_m", 0.0), turns, in_films=False)
     before = min((event.t_s for event in events), default=np.inf)
     seen = [joined(*node) for node in nodes]
     events += _near_the_speed(run, turns, dict(zip(seen, resonances, strict=True)), besides, before)
@@ -184,36 +184,24 @@ def _clearance_steps(run: RunLike) -> Iterator[Event]:
             yield Event("clearance-step", None, t, signals.speed_at(run, t), None, None)
 
 
-def _ring_whirls(run: RunLike, name: str, room: float, turns: Revolutions) -> Iterator[Event]:
-    """Onset, lock-in and offset of each whirl of a floating ring bearing; room in m: C_i + C_o."""
-    settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
-    for whirl in find_whirls(run, name, room, settled_s):
-        moments: list[tuple[Kind, int]] = [("onset", 0)]
-        if whirl.lock_in is not None:
-            moments.append(("lock-in", whirl.lock_in))
-        if not whirl.lasts:
-            moments.append(("offset", len(whirl.time_s) - 1))
-        for kind, at in moments:
-            t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
-            speed = signals.speed_at(run, t)
-            film, point = joined(name, whirl.side), joined("journal", name)
-            yield Event(kind, film, t, speed, frequency, frequency / speed, point, _reached(kind, whirl.amplitude))
-
-
-def _whirls_without_films(run: RunLike, name: str, turns: Revolutions) -> Iterator[Event]:
-    """Onset and offset of each whirl of a journal that is in no film, of any frequency well below the speed: what
-    drives it, such as a seal, has no film that would tell how fast. Relative to the length of the machine."""
-    room = run.references.get("length_m", 0.0)
+def _whirls_of_any_frequency(
+    run: RunLike, name: str, room: float, turns: Revolutions, in_films: bool
+) -> Iterator[Event]:
+    """Onset and offset of each whirl of a journal of any frequency well below the speed, relative to room in m: of
+    floating ring bearings, with the lock-in, C_i + C_o. A journal that is in no film is driven by something, such as a
+    seal, that has no film that would tell how fast; its room is the length of the machine."""
     settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
     for whirl in find_whirls(run, name, room, settled_s) if room > 0.0 else ():
         moments: list[tuple[Kind, int]] = [("onset", 0)]
+        if in_films and whirl.lock_in is not None:
+            moments.append(("lock-in", whirl.lock_in))
         if not whirl.lasts:
             moments.append(("offset", len(whirl.time_s) - 1))
+        film, point = joined(name, whirl.side) if in_films else None, joined("journal", name)
         for kind, at in moments:
             t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
             speed = signals.speed_at(run, t)
-            amplitude = _reached(kind, whirl.amplitude)
-            yield Event(kind, None, t, speed, frequency, frequency / speed, joined("journal", name), amplitude)
+            yield Event(kind, film, t, speed, frequency, frequency / speed, point, _reached(kind, whirl.amplitude))
 
 
 def _reached(kind: Kind, amplitude: Values) -> float | None:

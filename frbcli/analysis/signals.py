@@ -44,20 +44,6 @@ class RunLike(Protocol):
 
 
 @dataclass(frozen=True)
-class RingSpeed:
-    """The speed (n,) in Hz of the ring of a bearing, read slice by slice; 0 of a ring that does not turn."""
-
-    run: RunLike
-    name: str
-
-    def __len__(self) -> int:
-        return len(self.run)
-
-    def __getitem__(self, where: slice) -> Values:
-        return ring_speed(self.run, self.name, where.start or 0, len(self) if where.stop is None else where.stop)
-
-
-@dataclass(frozen=True)
 class SignalOf:
     """A signal (n,) of a run, read slice by slice."""
 
@@ -68,7 +54,17 @@ class SignalOf:
         return len(self.run)
 
     def __getitem__(self, where: slice) -> Values:
-        return piece(self.run, self.name, where.start or 0, len(self) if where.stop is None else where.stop)
+        return self._piece(where.start or 0, len(self) if where.stop is None else where.stop)
+
+    def _piece(self, start: int, stop: int) -> Values:
+        return piece(self.run, self.name, start, stop)
+
+
+class RingSpeed(SignalOf):
+    """The speed (n,) in Hz of the ring of a bearing with a name, read slice by slice; 0 of one that does not turn."""
+
+    def _piece(self, start: int, stop: int) -> Values:
+        return ring_speed(self.run, self.name, start, stop)
 
 
 def piece(run: RunLike, name: str, start: int, stop: int) -> Values:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +72,9 @@ class MovedFilm:
         return math.hypot(*self.loads.force)
 
 
+Moved = TypeVar("Moved", bound=MovedFilm)
+
+
 @dataclass(frozen=True)
 class _Moment(MovedFilm):
     """motion: seen from the surface that the supply is in, as the solution is."""
@@ -119,11 +123,16 @@ def _moments(
     case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array,
     observe: Callable[[int], None] | None = None,
 ) -> tuple[list[_Moment], str]:  # fmt: skip
-    """Those until the film does not converge, and why it does not. Raises NotConverged if there are none."""
-    moments: list[_Moment] = []
+    found = march(film, path, times, film_at=_film_at(case, plan, film))
+    return collected((_moment(case, plan, film, moment) for moment in found), observe)
+
+
+def collected(found: Iterator[Moved], observe: Callable[[int], None] | None = None) -> tuple[list[Moved], str]:
+    """The moments until the film does not converge, and why it does not. Raises NotConverged if there are none."""
+    moments: list[Moved] = []
     try:
-        for moment in march(film, path, times, film_at=_film_at(case, plan, film)):
-            moments.append(_moment(case, plan, film, moment))
+        for moment in found:
+            moments.append(moment)
             if observe is not None:
                 observe(len(moments))
     except NotConverged as failure:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from frbcli.bearing_tests.history import (
     PROBE_WIDTH,
     Course,
     MovedFilm,
+    collected,
     course_of,
     every_second,
     peak_error,
@@ -43,6 +44,11 @@ DERIVATIVES = 1e-2  # a solution that is unsettled by more of its force has none
 GENTLE = 0.9  # x_1 of a step less steep, with which the position is sought first
 STARTS = (0.6, 0.3, 0.85, 0.15)
 ATTITUDE = math.radians(40.0)
+
+
+@dataclass(frozen=True)
+class _Moment(MovedFilm):
+    solution: PublishedSolution
 
 
 def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: NodeState | None = None) -> FilmMoment:
@@ -89,48 +95,32 @@ def published_course(
     """The film along a path from a full one at times[0], see film_course; its error from half as many elements each way
     in half the steps. Raises NotConverged if it does not converge at once."""
     film, path = published_film(case, plan.section, plan.cells), path_seen_from(path, plan.turning)
-    moments, solutions, problem = _moments(case, plan, film, path, times, observe)
-    worst = max(range(len(moments)), key=lambda n: moments[n].size)
+    moments, problem = collected(_march(case, plan, film, path, times), observe)
+    worst = max(moments, key=lambda moment: moment.size)
     passed, error, spent = times[: len(moments) + 1], math.nan, 0
     try:
-        coarse, _, unsolved = _moments(case, plan, film.coarser(), path, every_second(passed))
+        coarse, unsolved = collected(_march(case, plan, film.coarser(), path, every_second(passed)))
         spent = sum(moment.iterations for moment in coarse)
         error = math.nan if unsolved else peak_error(case, passed, moments, coarse)
     except NotConverged:
         pass
-    field = _field(film, solutions[worst])
-    field = replace(field, phi=field.phi + plan.turning * moments[worst].time)
-    return course_of(moments, moments[worst], field, error, film.elements.fixed, spent, problem)
+    field = _field(film, worst.solution)
+    field = replace(field, phi=field.phi + plan.turning * worst.time)
+    return course_of(moments, worst, field, error, film.elements.fixed, spent, problem)
 
 
-def _moments(
-    case: Case, plan: KinematicPlan, film: PublishedFilm, path: Path, times: Array,
-    observe: Callable[[int], None] | None = None,
-) -> tuple[list[MovedFilm], list[PublishedSolution], str]:  # fmt: skip
-    """Those until the film does not converge, with its solutions, and why it does not. Raises NotConverged if there are
-    none."""
-    moments: list[MovedFilm] = []
-    solutions: list[PublishedSolution] = []
-    state, problem = film.full(), ""
+def _march(case: Case, plan: KinematicPlan, film: PublishedFilm, path: Path, times: Array) -> Iterator[_Moment]:
+    """The film at the times (n,) after the first, from a full one. Raises NotConverged."""
+    state = film.full()
     for begin, time in itertools.pairwise(times.tolist()):
-        try:
-            solution = film.step(path, state, begin, time - begin)
-        except NotConverged as failure:
-            if not moments:
-                raise
-            problem = f"stopped at {begin:.4g} s: {failure}"
-            break
+        solution = film.step(path, state, begin, time - begin)
         state = solution.state
-        moments.append(_moment(case, plan, film, time, solution))
-        solutions.append(solution)
-        if observe is not None:
-            observe(len(moments))
-    return moments, solutions, problem
+        yield _moment(case, plan, film, time, solution)
 
 
 def _moment(
     case: Case, plan: KinematicPlan, film: PublishedFilm, time: float, solution: PublishedSolution
-) -> MovedFilm:
+) -> _Moment:
     """As seen in the lab."""
     motion, angle = solution.motion, plan.turning * time
     found = published_loads(film, solution, motion.omega + 2.0 * plan.turning, case.film.cavitation_factor)
@@ -138,7 +128,7 @@ def _moment(
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
     probe = pressure_at(_field(film, solution), PROBE - angle, place)
     gap = float(gap_height(plan.section, motion.d, np.array([PROBE - angle]))[0])
-    return MovedFilm(time, turned(motion.d, angle), found, probe, gap, solution.iterations)
+    return _Moment(time, turned(motion.d, angle), found, probe, gap, solution.iterations, solution)
 
 
 def _rest(film: PublishedFilm, load: float, omega: float, start: Array) -> tuple[Array, NodeState]:

@@ -18,6 +18,7 @@ from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
+from frbcli.linear.response import larger_semi_axis
 from frbcli.linear.stability import check_machine
 from frbcli.linear.stability_point import linear_machine, point_at_rest, with_errors
 from frbcli.rotor.linear import LinearRotor, without_spins
@@ -128,7 +129,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     for value, vector in _eigenvectors(rotor, machine):
         motion: Amplitudes = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
         shape = np.einsum("sij,j->si", stations.maps, vector)
-        size = float(np.max(_larger(np.concatenate([motion, shape]))))
+        size = float(np.max(larger_semi_axis(np.concatenate([motion, shape]))))
         if size > 0.0:
             there = shape.ravel()[first_largest(shape.ravel())]
             unit = size * there / abs(there)  # its displacement is real: eigenvectors have any phase
@@ -161,9 +162,3 @@ def _direction(motion: Amplitudes) -> str:
     moving &= np.abs(forward - backward) > EQUAL * (forward + backward)  # to and fro in a line: no sense
     senses = set((forward > backward)[moving].tolist())
     return MIXED if len(senses) != 1 else FORWARD if True in senses else BACKWARD
-
-
-def _larger(motion: Amplitudes) -> Array:
-    """(...) larger semi-axes of amplitudes (..., 2)."""
-    x, y = motion[..., 0], motion[..., 1]
-    return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))

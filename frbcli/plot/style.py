@@ -177,7 +177,7 @@ def legend_beside(axes: Axes) -> None:
 def check_picture(path: Path) -> None:
     """Raises InputError if a picture cannot have this name or this place; called before the work."""
     if path.suffix.lower() not in FORMATS:
-        raise _refuse(path, "is not a picture format of frb.", f"End it with {', '.join(FORMATS)}.")
+        raise refused(path, "is not a picture format of frb.", f"End it with {', '.join(FORMATS)}.")
     require_places([(path, PICTURES[path.suffix.lower()])])
 
 
@@ -191,7 +191,7 @@ def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
     try:
         content = picture(figure, path.suffix.lower(), dpi)
     except (OSError, ValueError) as error:
-        raise _refuse(path, f"cannot be drawn: {error}.", "") from error
+        raise refused(path, f"cannot be drawn: {error}.", "") from error
     write(path, PICTURES[path.suffix.lower()], content)
     return path
 
@@ -204,5 +204,6 @@ def picture(figure: Figure, suffix: str, dpi: int = 150, own_letters: bool = Fal
     return content.getvalue()
 
 
-def _refuse(path: Path, problem: str, remedy: str) -> InputError:
+def refused(path: Path, problem: str, remedy: str) -> InputError:
+    """Why a picture cannot be written."""
     return InputError(f"picture {path}", (Fault(key="output", value="", line=None, problem=problem, remedy=remedy),))

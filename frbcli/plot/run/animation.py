@@ -14,11 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from frbcli.analysis.signals import joined, points, speed_at
-from frbcli.errors import Fault, InputError
 from frbcli.plot.run.envelope import at_times
 from frbcli.plot.run.orbit import LAST_s
 from frbcli.plot.signals import MICRO, cut, ends, heading, motion, shell
-from frbcli.plot.style import BLUE, GREY, new_figure, styled
+from frbcli.plot.style import BLUE, GREY, new_figure, refused, styled
 from frbcli.results.files.kinds import PICTURES
 from frbcli.results.files.place import require_places
 from frbcli.results.files.write import written
@@ -34,9 +33,9 @@ DPI = 90
 def check_animation(path: Path) -> None:
     """Raises InputError if a moving picture cannot have this name or this place, or its program is missing."""
     if path.suffix.lower() not in FORMATS:
-        raise _refuse(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
+        raise refused(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
     if path.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
-        raise _refuse(path, "needs the program ffmpeg, which is not here.", "Install it, or end the name with .gif.")
+        raise refused(path, "needs the program ffmpeg, which is not here.", "Install it, or end the name with .gif.")
     require_places([(path, PICTURES[path.suffix.lower()])])
 
 
@@ -111,7 +110,3 @@ def _prepare(axes: Axes, bearing: str, radius: float, reach: float) -> None:
     axes.set_aspect("equal")
     axes.set_xlabel("x in µm")
     axes.set_ylabel("y in µm")
-
-
-def _refuse(path: Path, problem: str, remedy: str) -> InputError:
-    return InputError(f"picture {path}", (Fault(key="output", value="", line=None, problem=problem, remedy=remedy),))
