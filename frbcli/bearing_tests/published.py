@@ -47,7 +47,7 @@ ATTITUDE = math.radians(40.0)
 
 
 @dataclass(frozen=True)
-class _Moment(MovedFilm):
+class _NodeMoment(MovedFilm):
     solution: PublishedSolution
 
 
@@ -109,7 +109,7 @@ def published_course(
     return course_of(moments, worst, field, error, film.elements.fixed, spent, problem)
 
 
-def _march(case: Case, plan: KinematicPlan, film: PublishedFilm, path: Path, times: Array) -> Iterator[_Moment]:
+def _march(case: Case, plan: KinematicPlan, film: PublishedFilm, path: Path, times: Array) -> Iterator[_NodeMoment]:
     """The film at the times (n,) after the first, from a full one. Raises NotConverged."""
     state = film.full()
     for begin, time in itertools.pairwise(times.tolist()):
@@ -120,7 +120,7 @@ def _march(case: Case, plan: KinematicPlan, film: PublishedFilm, path: Path, tim
 
 def _moment(
     case: Case, plan: KinematicPlan, film: PublishedFilm, time: float, solution: PublishedSolution
-) -> _Moment:
+) -> _NodeMoment:
     """As seen in the lab."""
     motion, angle = solution.motion, plan.turning * time
     found = published_loads(film, solution, motion.omega + 2.0 * plan.turning, case.film.cavitation_factor)
@@ -128,7 +128,7 @@ def _moment(
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
     probe = pressure_at(_field(film, solution), PROBE - angle, place)
     gap = float(gap_height(plan.section, motion.d, np.array([PROBE - angle]))[0])
-    return _Moment(time, turned(motion.d, angle), found, probe, gap, solution.iterations, solution)
+    return _NodeMoment(time, turned(motion.d, angle), found, probe, gap, solution.iterations, solution)
 
 
 def _rest(film: PublishedFilm, load: float, omega: float, start: Array) -> tuple[Array, NodeState]:
