@@ -14,6 +14,7 @@ from frbcli.cycles.faults import check
 from frbcli.cycles.heat import warm_walk
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
+from frbcli.cycles.over_speed import changing_walk
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.result import SPEED, LimitCycles, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
@@ -81,12 +82,15 @@ def limit_cycles(
         with advised(case):
             if case.heat is not None:
                 walk = warm_walk(case, plan, system, slowest, fastest, asked)
+            elif system.rotor.over_speed is not None:
+                walk = changing_walk(system, slowest, fastest, asked)
             else:
                 walk = _walk(system, machine, slowest, fastest, asked)
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
-    if case.heat is not None or not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
+    changes = case.heat is not None or system.rotor.over_speed is not None
+    if changes or not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
         return found
     response = synchronous_response(machine, walk.resting.points[-1], slowest)
     if with_unbalance:

@@ -595,9 +595,13 @@ def test_limit_cycles_of_a_film_beside_an_element() -> None:
     (hopf,) = [point for point in found.special if point.kind == "hopf"][:1]
     assert hopf.speed_Hz == pytest.approx(threshold.speed_Hz, rel=1e-6)
     assert any(len(branch.points) > 3 for branch in found.branches)
+    growing = in_film(growing_seal(300.0), speed=speed(195.0, 200.0))
+    threshold, found = stability(growing).threshold, frbcli.limit_cycles(growing)
+    assert threshold is not None
+    assert [point.speed_Hz for point in found.of("hopf")] == pytest.approx([threshold.speed_Hz], rel=1e-6)
     with pytest.raises(InputError) as caught:
-        frbcli.limit_cycles(in_film(growing_seal(10.0), speed=speed(20.0, 320.0)))
-    (fault,) = caught.value.faults
+        frbcli.limit_cycles(growing, with_unbalance=True)
+    (fault,) = [fault for fault in caught.value.faults if "over_speed" in fault.key]
     assert fault.key == "bearing.1.over_speed"
     assert "depends on the speed" in fault.problem
 

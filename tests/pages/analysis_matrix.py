@@ -49,6 +49,15 @@ THRUST = (
     'thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
     'taper_angle="50 deg", taper="20 um"}]'
 )
+OVER_SPEED = ", ".join([
+    'speed=["0 Hz", "300 Hz"]',
+    *(f'k{axes}=["1e5 N/m", "2e5 N/m"]' for axes in ("xx", "xy", "yx", "yy")),
+    *(f'c{axes}=["10 N*s/m", "20 N*s/m"]' for axes in ("xx", "xy", "yx", "yy")),
+])
+SEAL = (
+    'bearing=[{kind="single-film", width="20 mm", diameter="25 mm", clearance="35 um"}, '
+    f'{{kind="coefficients", name="seal", over_speed={{{OVER_SPEED}}}}}]'
+)
 SPRING = '{kind="coefficients", name="seal", stiffness="1e5 N/m"}'
 
 # Row of the table: a shipped case, and what is set in it.
@@ -78,6 +87,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "co-simulation": ("jeffcott", ("film.coupling=co-simulation",)),
     "turbocharger on two bearings": ("turbocharger-heavy", ()),
     "coefficients alone": ("seal", ()),
+    "films beside coefficients over the speed": ("jeffcott", (SEAL,)),
     "bearings on supports": ("jeffcott", (SUPPORT,)),
     "squeeze film damper that cavitates": ("jeffcott", (DAMPER, "bearing.damper.cavitation=half-sommerfeld")),
     "squeeze film damper, Sommerfeld": ("jeffcott", (DAMPER,)),

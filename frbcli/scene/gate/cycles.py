@@ -10,11 +10,20 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
 from frbcli.scene.keys import cavitation_keys
+from frbcli.scene.machine.elements import speed_dependent
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
+CONSTANT = "these limit cycles are of a rotor of constant coefficients"
 HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
+
+
+def coefficient_faults(case: Case) -> Iterator[Fault]:
+    """Coefficients of bearings that depend on the speed are followed where films have neither heat nor oil of their
+    own."""
+    if case.heat is not None or (case.films and by_shooting(case)):
+        yield from speed_dependent(case, CONSTANT)
 
 
 def cycle_heat_faults(case: Case) -> Iterator[Fault]:

@@ -49,8 +49,6 @@ def _without_film(what: str) -> Callable[[Case], Faults]:
 
 
 OWN_PERIOD = "limit cycles have a period of their own"
-CONSTANT = "limit cycles follow it with a rotor of constant coefficients"
-
 RULES = (
     Rule(element_faults, ALL),
     Rule(dampers.heat_faults, ALL),
@@ -76,7 +74,8 @@ RULES = (
     Rule(dampers.linear_faults, (STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),
     Rule(static.range_faults, (RANGE,)),
-    Rule(lambda case: speed_dependent(case, CONSTANT), EVERY_CYCLE),
+    Rule(cycles.coefficient_faults, (SPEED_CYCLES,)),
+    Rule(lambda case: speed_dependent(case, cycles.CONSTANT), (CYCLES, WHIRLS)),
     Rule(cycles.cycle_heat_faults, (SPEED_CYCLES,)),
     Rule(cycles.other_cycle_heat_faults, (CYCLES, WHIRLS)),
     Rule(lambda case: load_faults(case, OWN_PERIOD, "Remove it, or take a run-up."), EVERY_CYCLE),

@@ -1,0 +1,101 @@
+"""Limit cycles beside bearings whose coefficients depend on the speed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from frbcli.case.reading.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.cycles.limit_cycles import limit_cycles
+from frbcli.cycles.result import CyclePoint, LimitCycles
+from frbcli.errors import InputError
+
+MACHINE = """
+[rotor]
+kind = "jeffcott"
+mass = "6 kg"
+journal_mass = "100 g"
+shaft_stiffness = "5000 N/mm"
+[[bearing]]
+kind = "single-film"
+width = "20 mm"
+diameter = "25 mm"
+clearance = "35 um"
+ends = "free-to-air"
+supply = { kind = "circumferential-groove", pressure = "1 bar" }
+[[bearing]]
+kind = "coefficients"
+name = "seal"
+%s
+[oil]
+viscosity = "12 mPa*s"
+density = "830 kg/m^3"
+ambient_pressure = "1 bar"
+cavitation_pressure = "1 bar"
+[film]
+theory = "short"
+[speed]
+from = "170 Hz"
+to = "200 Hz"
+duration = "1 s"
+"""
+LOW, HIGH = (2e5, 5e4, 20.0), (8e5, 2e5, 60.0)  # at 160 and 200 Hz: direct and cross-coupled N/m, N s/m
+
+
+def at(speed: float) -> tuple[float, float, float]:
+    share = (speed - 160.0) / 40.0
+    k, q, c = (low + share * (high - low) for low, high in zip(LOW, HIGH, strict=True))
+    return k, q, c
+
+
+def tables(*pairs: tuple[float, tuple[float, float, float]]) -> str:
+    rows = {
+        "speed": [f"{speed} Hz" for speed, _ in pairs],
+        **{key: [f"{k} N/m" for _, (k, _, _) in pairs] for key in ("kxx", "kyy")},
+        **{key: [f"{sign * q} N/m" for _, (_, q, _) in pairs] for key, sign in (("kxy", 1.0), ("kyx", -1.0))},
+        **{key: [f"{c} N*s/m" for _, (_, _, c) in pairs] for key in ("cxx", "cyy")},
+        **{key: ["0 N*s/m"] * len(pairs) for key in ("cxy", "cyx")},
+    }
+    return "[bearing.over_speed]\n" + "\n".join(f"{key} = {values!r}" for key, values in rows.items())
+
+
+def constant(k: float, q: float, c: float) -> str:
+    return f'stiffness = [["{k} N/m", "{q} N/m"], ["{-q} N/m", "{k} N/m"]]\ndamping = "{c} N*s/m"'
+
+
+def case(coefficients: str, *settings: str) -> Case:
+    return load_case_text(MACHINE % coefficients, settings)
+
+
+def asked(found: LimitCycles, speed: float) -> CyclePoint:
+    (point,) = (p for b in found.branches for p in b.points if p.kind == "asked" and abs(p.speed_Hz - speed) < 1e-6)
+    return point
+
+
+def test_coefficients_that_do_not_change_are_constant_ones() -> None:
+    given = tables((160.0, LOW), (200.0, LOW)), constant(*LOW)
+    one, other = (limit_cycles(case(text, "speed.from=183 Hz", "speed.to=185 Hz"), [184.0]) for text in given)
+    assert [p.speed_Hz for p in one.special] == pytest.approx([p.speed_Hz for p in other.special], rel=1e-9)
+    assert asked(one, 184.0).frequency_Hz == pytest.approx(asked(other, 184.0).frequency_Hz, rel=1e-9)
+    assert asked(one, 184.0).multipliers[1:3] == pytest.approx(asked(other, 184.0).multipliers[1:3], rel=1e-6)
+
+
+def test_a_cycle_is_that_of_the_machine_with_the_coefficients_of_its_speed() -> None:
+    near = "speed.from=193.5 Hz", "speed.to=195 Hz"
+    found = limit_cycles(case(tables((160.0, LOW), (200.0, HIGH)), *near), [194.0])
+    (hopf,) = found.of("hopf")
+    alone = limit_cycles(case(constant(*at(194.0)), "speed.from=193 Hz", "speed.to=195 Hz"), [194.0])
+    ours, others = asked(found, 194.0), asked(alone, 194.0)
+    assert ours.frequency_Hz == pytest.approx(others.frequency_Hz, rel=1e-9)
+    assert ours.eccentricity_max == pytest.approx(others.eccentricity_max, rel=1e-6)
+    assert ours.multipliers[1:3] == pytest.approx(others.multipliers[1:3], rel=1e-6)
+    (alone,) = limit_cycles(case(constant(*at(hopf.speed_Hz)), *near)).of("hopf")
+    assert alone.speed_Hz == pytest.approx(hopf.speed_Hz, rel=1e-8)
+    assert alone.frequency_Hz == pytest.approx(hopf.frequency_Hz, rel=1e-8)
+    assert np.isfinite(hopf.lyapunov)
+
+
+def test_films_on_cells_have_cycles_with_constant_coefficients_only() -> None:
+    with pytest.raises(InputError, match="constant coefficients"):
+        limit_cycles(case(tables((160.0, LOW), (200.0, HIGH)), "film.cavitation=reynolds", "film.theory=auto"))
