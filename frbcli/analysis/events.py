@@ -25,7 +25,7 @@ from frbcli.analysis.orders.resonance import (
     vibrations_beside,
 )
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked, track
-from frbcli.analysis.orders.subsynchronous import SIDES, find_whirls, window_step_s
+from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, find_whirls, window_step_s
 from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, points
 from frbcli.analysis.spectra.peaks import intervals_above
 from frbcli.analysis.spectra.windows import hann
@@ -37,6 +37,7 @@ WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1
 WHIRL_BAND = (0.2, 0.8)  # orders in which the dominating frequency is sought
 FREQUENCY_REVOLUTIONS = 16  # window for that frequency: lines 1/16 apart, and short against a ramp of some 10 s
 FREQUENCY_PADDING = 16  # interpolation between these lines
+SHARE_OF_LINE = 0.05  # of the windows of floating rings: how fine a parabola finds a peak beside weaker ones
 FREQUENCY_SAMPLES = 32  # per revolution, there
 WHIRL_BEGINS = 0.05  # amplitude relative to the clearance; unbalance and noise of a quiet run stay below in that order
 WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one whirl
@@ -141,7 +142,9 @@ def resolution(run: RunLike, event: Mapping[str, Any]) -> tuple[float, float]:
     speed_Hz = 0.5 * abs(around[1] - around[0])
     if event["kind"] == "critical-speed":
         return speed_Hz, speed_Hz
-    return speed_Hz, 0.0 if in_rings else speed / (FREQUENCY_PADDING * FREQUENCY_REVOLUTIONS)
+    if not in_rings:
+        return speed_Hz, speed / (FREQUENCY_PADDING * FREQUENCY_REVOLUTIONS)
+    return speed_Hz, abs(float(event["frequency_ratio"] or 0.0)) * speed_Hz + SHARE_OF_LINE / (HOPS * step_s)
 
 
 def _near_the_speed(

@@ -22,7 +22,7 @@ from frbcli.analysis.signals import RunLike, Values, piece
 
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
 NEAR_REVOLUTIONS = 40.0  # of the rotor, or as much: at the beginning of a run a whirl settles in as many
-SAFETY = 1.5  # times the difference of both runs
+SAFETY = 1.5  # times the difference of both runs, of many pairs; of one alone twice as much
 FAINT = 1.5  # times the amplitude from which a whirl counts: below it one run has it and another one has not
 RETURNS = 3  # onsets of one whirl within so many windows are a motion that comes and goes
 GIVEN = "clearance-step"  # its time stands in the case
@@ -37,7 +37,9 @@ SLOW = {"ring_speed": "ring_speed_uncertainty_Hz", "temperature": "temperature_u
 Record = Mapping[str, Any]
 
 
-def with_uncertainties(run: RunLike, events: Sequence[Record], second: Sequence[Record]) -> list[dict[str, Any]]:
+def with_uncertainties(
+    run: RunLike, events: Sequence[Record], second: Sequence[Record], amplitude: float = 0.0
+) -> list[dict[str, Any]]:
     """The events of a run with the uncertainties of speed and frequency in Hz and of the amplitude.
 
     Parameters
@@ -46,6 +48,8 @@ def with_uncertainties(run: RunLike, events: Sequence[Record], second: Sequence[
         The run that has them.
     events, second : sequence of dict
         The events of the run, and of the second run.
+    amplitude : float
+        Least uncertainty of an amplitude: the error of the eccentricities before a whirl, say.
 
     Returns
     -------
@@ -55,8 +59,8 @@ def with_uncertainties(run: RunLike, events: Sequence[Record], second: Sequence[
     """
     others = partners(events, second)
     both = [(event, other) for event, other in zip(events, others, strict=True) if other is not None]
-    usual = _Usual.of([pair for pair in both if pair[0]["kind"] in OF_WHIRLS])
-    alone = _Usual()
+    usual = _Usual.of([pair for pair in both if pair[0]["kind"] in OF_WHIRLS], amplitude)
+    alone = _Usual(amplitude=amplitude, safety=2.0 * SAFETY)
     return [
         {**event, **_unmatched(event, events, second)}
         if other is None
@@ -67,19 +71,23 @@ def with_uncertainties(run: RunLike, events: Sequence[Record], second: Sequence[
 
 @dataclass(frozen=True)
 class _Usual:
-    """Usual differences of all events of whirls: of speed and frequency relative to them, of the amplitude."""
+    """Usual uncertainties of all events of whirls: of speed and frequency relative to them, of the amplitude; safety:
+    times the difference of an event, more where few pairs say little of what is usual."""
 
     speed: float = 0.0
     frequency: float = 0.0
     amplitude: float = 0.0
+    safety: float = SAFETY
 
     @classmethod
-    def of(cls, both: Sequence[tuple[Record, Record]]) -> _Usual:
-        """Those of some pairs."""
+    def of(cls, both: Sequence[tuple[Record, Record]], amplitude: float) -> _Usual:
+        """Those of some pairs. amplitude: least one."""
+        safety = SAFETY * (1.0 + 1.0 / max(1, len(both)))
         speed, frequency = (
             _usual([_apart(*pair, key) / _size(pair[0], key) for pair in both]) for key in (SPEED, FREQUENCY)
         )
-        return cls(speed, frequency, _usual([_apart(*pair, AMPLITUDE) for pair in both]))
+        usual = _usual([_apart(*pair, AMPLITUDE) for pair in both])
+        return cls(safety * speed, safety * frequency, max(amplitude, safety * usual), safety)
 
 
 def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
@@ -140,10 +148,10 @@ def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[
     }
     resolved = {SPEED: speed_Hz, FREQUENCY: frequency_Hz, AMPLITUDE: 0.0}
     told = {
-        key: None if event.get(key) is None else max(SAFETY * _apart(event, other, key), SAFETY * least, resolved[key])
+        key: None if event.get(key) is None else max(usual.safety * _apart(event, other, key), least, resolved[key])
         for key, least in usual_of.items()
     }
-    reason = _faint(event)
+    reason = _faint(event) or _grazing(run, event)
     return {
         "speed_uncertainty_Hz": told[SPEED],
         "frequency_uncertainty_Hz": told[FREQUENCY],
@@ -181,6 +189,13 @@ def _faint(event: Record) -> str:
     if event["kind"] != "onset" or amplitude is None or amplitude >= FAINT * begins:
         return ""
     return f"its amplitude of at most {amplitude:.2g} is close to the {begins:g} from which a whirl counts"
+
+
+def _grazing(run: RunLike, event: Record) -> str:
+    """Why a contact is not certain that does not end its run, "" for any other event."""
+    if event["kind"] != "contact" or run.status == "contact":
+        return ""
+    return "the journal grazes the shell, and may miss it by less than the error of its eccentricity"
 
 
 def _apart(event: Record, other: Record, key: str) -> float:

@@ -8,6 +8,7 @@ from operator import attrgetter
 from typing import Any
 
 from frbcli.columns import ZERO_CELSIUS, Column, Shown
+from frbcli.results.columns import told_speed
 
 MODELS, COUPLINGS = "models", "couplings"  # tables of the terminal
 
@@ -15,9 +16,14 @@ MODELS, COUPLINGS = "models", "couplings"  # tables of the terminal
 def _event(kind: str, key: str) -> Callable[[Any], float]:
     def value(result: Any) -> float:
         event = result.first(kind)
-        return math.nan if event is None else event[key]
+        return math.nan if event is None or event.get(key) is None else event[key]
 
     return value
+
+
+def _told(kind: str) -> Callable[[Any], str | None]:
+    """The speed of an event with its uncertainty; that of a run with a second one."""
+    return lambda result: None if result.first(kind) is None else told_speed(result.first(kind))
 
 
 def _of(account: str, key: str) -> Callable[[Any], Any]:
@@ -43,10 +49,14 @@ VARIANT = (
     Column("status", "", "how the run ended", attrgetter("run.status")),
     Column("t_end", "s", "when it ended", attrgetter("run.t_end_s"), key=""),
     Column("events", "", "events of the run", attrgetter("run.events"), flat=False),
-    Column("critical_speed", "Hz", "rotor speed at resonance", _event("critical-speed", "speed_Hz"), key="",
-           shown=(Shown("crit.", ".1f", table=MODELS),)),
-    Column("onset_speed", "Hz", "rotor speed at the onset of whirl", _event("onset", "speed_Hz"), key="",
-           shown=(Shown("onset", ".1f", table=MODELS), Shown("onset", ".1f", table=COUPLINGS))),
+    Column("critical_speed", "Hz", "rotor speed at resonance", _event("critical-speed", "speed_Hz"), key=""),
+    Column("critical_speed", "", "", _told("critical-speed"), key="", flat=False,
+           shown=(Shown("crit.", table=MODELS),)),
+    Column("onset_speed", "Hz", "rotor speed at the onset of whirl", _event("onset", "speed_Hz"), key=""),
+    Column("onset_speed", "", "", _told("onset"), key="", flat=False,
+           shown=(Shown("onset", table=MODELS), Shown("onset", table=COUPLINGS))),
+    Column("onset_speed_uncertainty", "Hz", "its uncertainty, where the run has it",
+           _event("onset", "speed_uncertainty_Hz"), key=""),
     Column("onset_frequency_ratio", "", "whirl ratio there", _event("onset", "frequency_ratio"), key="",
            shown=(Shown("ratio", ".3f", table=MODELS),)),
     Column("deviation_largest", "", "largest deviation of the eccentricity from the first row before a whirl",

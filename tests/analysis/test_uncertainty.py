@@ -30,20 +30,20 @@ def event(t_s: float, kind: str = "onset", frequency_Hz: float = 90.0, **more: A
 
 def test_an_event_is_as_uncertain_as_both_runs_differ(run: Run) -> None:
     found = with_uncertainties(run, [event(6.0)], [event(6.1, frequency_Hz=92.0, amplitude=0.78)])[0]
-    assert found["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 3.0)
-    assert found["frequency_uncertainty_Hz"] == pytest.approx(SAFETY * 2.0)
-    assert found["amplitude_uncertainty"] == pytest.approx(SAFETY * 0.02)
+    assert found["speed_uncertainty_Hz"] == pytest.approx(2.0 * SAFETY * 3.0)  # one pair alone: twice
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(2.0 * SAFETY * 2.0)
+    assert found["amplitude_uncertainty"] == pytest.approx(2.0 * SAFETY * 0.02)
     assert (found["certain"], found["reason"]) == (True, None)
 
 
 def test_what_agrees_by_chance_is_as_uncertain_as_the_other_whirls(run: Run) -> None:
-    """Four whirls that are 1, 1, 1 % and nothing off: the last one has 1.5 * 1 % without its outlier, which is none."""
+    """Four whirls that are 1, 1, 1 % and nothing off; the factor of four pairs is 1.25 times that of many."""
     own = [event(t) for t in (4.0, 5.0, 6.0, 7.0)]
     second = [event(t) for t in (4.04, 5.05, 6.06, 7.0)]
     found = with_uncertainties(run, own, second)
-    least = SAFETY * 0.01 * (2.0 / 3.0) ** 0.5  # the root mean square of 0, 1 and 1 %, three of the four
+    least = 1.25 * SAFETY * 0.01 * (2.0 / 3.0) ** 0.5  # the root mean square of 0, 1 and 1 %, three of the four
     assert found[3]["speed_uncertainty_Hz"] == pytest.approx(least * 210.0)
-    assert found[0]["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 0.01 * 120.0)
+    assert found[0]["speed_uncertainty_Hz"] == pytest.approx(1.25 * SAFETY * 0.01 * 120.0)
 
 
 def test_equal_runs_leave_the_resolution(run: Run) -> None:
@@ -55,6 +55,21 @@ def test_equal_runs_leave_the_resolution(run: Run) -> None:
     assert critical["frequency_uncertainty_Hz"] == critical["speed_uncertainty_Hz"]
 
 
+def test_an_amplitude_is_no_more_certain_than_the_eccentricities(run: Run) -> None:
+    found = with_uncertainties(run, [event(6.0)], [event(6.0)], amplitude=3e-3)[0]
+    assert found["amplitude_uncertainty"] == 3e-3
+
+
+def test_an_event_of_a_ring_is_resolved_by_its_windows(run: Run) -> None:
+    """A ramp of 30 Hz/s takes the longest windows, of 0.1 s, every 0.01 s."""
+    ring = event(6.0, film="inner")
+    found = with_uncertainties(run, [ring], [ring])[0]
+    assert found["speed_uncertainty_Hz"] == pytest.approx(0.3)
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(0.5 * 0.3 + 0.05 / 0.1)
+    touch = ring | {"kind": "contact", "frequency_Hz": None, "frequency_ratio": None, "amplitude": None}
+    assert with_uncertainties(run, [touch], [touch])[0]["frequency_uncertainty_Hz"] is None
+
+
 def test_a_step_of_the_clearance_is_given(run: Run) -> None:
     step = event(6.0, "clearance-step") | {"frequency_Hz": None, "amplitude": None}
     assert with_uncertainties(run, [step], [step])[0]["speed_uncertainty_Hz"] == 0.0
@@ -63,8 +78,11 @@ def test_a_step_of_the_clearance_is_given(run: Run) -> None:
 def test_a_contact_has_no_frequency(run: Run) -> None:
     touch = event(6.0, "contact") | {"frequency_Hz": None, "amplitude": None}
     found = with_uncertainties(run, [touch], [touch | {"t_s": 6.01, "speed_Hz": 180.3}])[0]
-    assert found["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 0.3)
+    assert found["speed_uncertainty_Hz"] == pytest.approx(2.0 * SAFETY * 0.3)
     assert (found["frequency_uncertainty_Hz"], found["amplitude_uncertainty"]) == (None, None)
+    assert found["certain"] is False  # it does not end the run
+    ended = make_run(Rotor(), "contact")
+    assert with_uncertainties(ended, [touch], [touch])[0]["certain"] is True
 
 
 @pytest.mark.parametrize(

@@ -65,5 +65,13 @@ def with_second_run(march: March, run: Run, observe: Observer | None = None) -> 
     second = second_run(march, run, observe)
     if second is None:
         return run.events, run.error
-    events = with_uncertainties(run, run.events, [asdict(event) for event in find_events(second)])
+    found = [asdict(event) for event in find_events(second)]
+    events = with_uncertainties(run, run.events, found, _least_amplitude(run.error))
     return events, {**run.error, **slow_uncertainties(run, second)}
+
+
+def _least_amplitude(error: Record) -> float:
+    """What amplitudes are uncertain by at least: the error of the eccentricities before a whirl, without that of the
+    short-bearing theory, which both runs have."""
+    own = error.get("eccentricity") if error.get("model_relative") is None else error.get("time_integration")
+    return float(own or 0.0)

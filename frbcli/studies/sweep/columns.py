@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from operator import attrgetter
 from typing import Any
 
-from frbcli.columns import Column, Shown
+from frbcli.columns import Column, Shown, with_uncertainty
 
 EVENTS = {
     "runup": ("critical-speed", "self-excited", "onset", "offset", "lock-in", "contact"),
@@ -16,7 +16,6 @@ EVENTS = {
 }
 TOLD = ("onset", "threshold")  # events in the table of the terminal
 LONGEST_REASON = 100  # characters in the table of the terminal
-HERTZ = "{:.1f} Hz".format
 
 
 def reason(point: Any) -> str:
@@ -69,12 +68,25 @@ def point_columns(keys: Sequence[str], method: str, reasons: bool = False) -> tu
 
 
 def event_columns(kind: str) -> tuple[Column, ...]:
-    """Rotor speed and frequency at the first event of a kind."""
-    name = kind.replace("-", "_").removesuffix("_speed")
-    heads = (kind, "frequency") if kind in TOLD else ()
-    wanted = (("speed", "rotor speed"), ("frequency", "frequency of the motion"))
-    return tuple(
-        Column(f"{name}_{quantity}", "Hz", f"{words} at the first event `{kind}`", _first(kind, f"{quantity}_Hz"),
-               shown=tuple(Shown(head, HERTZ) for head in heads[number : number + 1]), key="")
-        for number, (quantity, words) in enumerate(wanted)
-    )  # fmt: skip
+    """Rotor speed and frequency at the first event of a kind, with their uncertainties where the point has them."""
+    name, found = kind.replace("-", "_").removesuffix("_speed"), []
+    wanted = (("speed", kind, "rotor speed"), ("frequency", "frequency", "frequency of the motion"))
+    for quantity, head, words in wanted:
+        value, uncertainty = _first(kind, f"{quantity}_Hz"), _first(kind, f"{quantity}_uncertainty_Hz")
+        at = f"at the first event `{kind}`"
+        found.append(Column(f"{name}_{quantity}", "Hz", f"{words} {at}", value, key=""))
+        found.append(
+            Column(f"{name}_{quantity}_uncertainty", "Hz", f"uncertainty of the {words} {at}", uncertainty, key="")
+        )
+        if kind in TOLD:
+            shown = (Shown(head),)
+            found.append(Column(head, "", "", _told(value, uncertainty), shown=shown, key="", flat=False))
+    return tuple(found)
+
+
+def _told(value: Callable[[Any], float], uncertainty: Callable[[Any], float]) -> Callable[[Any], str | None]:
+    def told(point: Any) -> str | None:
+        number = value(point)
+        return None if math.isnan(number) else f"{with_uncertainty(number, uncertainty(point), 1)} Hz"
+
+    return told
