@@ -261,12 +261,6 @@ def forced_motion(
     return np.asarray(np.linalg.solve(k + 1j * frequency * d - frequency**2 * mass, force))
 
 
-def unbalance_motion(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Amplitudes:
-    """(n,) complex amplitudes of all degrees of freedom at omega rad/s on bearings of stiffness and damping (films, 2,
-    2) in N/m and N s/m."""
-    return forced_motion(rotor, omega, (omega, omega**2 * rotor.unbalance), stiffness, damping)
-
-
 def larger_semi_axis(motion: Amplitudes) -> Array:
     """(...) of the ellipse that x and y with the complex amplitudes (..., 2) draw: its forward and its backward part
     added up."""

@@ -15,7 +15,7 @@ from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
-from frbcli.linear.response import DOUBTFUL, Response, larger_semi_axis, response, unbalance_motion
+from frbcli.linear.response import DOUBTFUL, Response, forced_motion, larger_semi_axis, response
 from frbcli.plot.machine.response import response_figure
 from frbcli.rotor.body import jeffcott_rotor
 from frbcli.runs.run import runup
@@ -28,7 +28,7 @@ def test_a_jeffcott_rotor_on_springs_and_dampers_has_its_closed_form(omega: floa
     """Equal in x and y, and not cross-coupled: z = x + iy turns forward alone, two equations remain."""
     rotor = in_two_bearings(jeffcott_rotor(MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER, 9.81))
     k, c = 3e6, 2e3
-    motion = unbalance_motion(rotor, omega, k * np.eye(2)[None], c * np.eye(2)[None])
+    motion = forced_motion(rotor, omega, (omega, omega**2 * rotor.unbalance), k * np.eye(2)[None], c * np.eye(2)[None])
     spring = SHAFT + 1j * omega * INNER
     disk = spring - MASS * omega**2 + 1j * omega * OUTER
     journal = spring - JOURNALS * omega**2 + 2.0 * (k + 1j * omega * c)  # two bearings
@@ -44,7 +44,8 @@ def test_a_jeffcott_rotor_on_springs_and_dampers_has_its_closed_form(omega: floa
 def test_a_rigid_rotor_far_above_all_turns_about_its_centre_of_mass() -> None:
     rotor = rigid(5.0, 2e-6, 0.0)
     omega = 1e6
-    x, y = unbalance_motion(rotor, omega, 1e6 * np.eye(2)[None], 10.0 * np.eye(2)[None])
+    pull = omega, omega**2 * rotor.unbalance
+    x, y = forced_motion(rotor, omega, pull, 1e6 * np.eye(2)[None], 10.0 * np.eye(2)[None])
     assert 0.5 * abs(x + 1j * y) == pytest.approx(2e-6 / 5.0, rel=1e-4)
 
 
