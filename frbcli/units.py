@@ -17,13 +17,15 @@ if TYPE_CHECKING:
 
 SPEED = "Hz"
 ANGLE = "rad"
+ANGULAR_RATE = "rad/s"
 TEMPERATURE_DIFFERENCE = "delta_degC"
 NUMBER = "1"
 
 _SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "rad/s": 1 / (2 * math.pi)}
 _ANGLE_UNITS = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
+_ANGULAR_RATE_UNITS = {f"{name}/s": one for name, one in _ANGLE_UNITS.items()}
 _NUMBER_UNITS = {"": 1.0, "1": 1.0, "%": 0.01}
-_TABLES = {SPEED: _SPEED_UNITS, ANGLE: _ANGLE_UNITS, NUMBER: _NUMBER_UNITS}
+_TABLES = {SPEED: _SPEED_UNITS, ANGLE: _ANGLE_UNITS, ANGULAR_RATE: _ANGULAR_RATE_UNITS, NUMBER: _NUMBER_UNITS}
 # The units that cases are written in, so that most need no registry of units, which takes a second to load. A test
 # holds every factor to the registry; any other unit goes there.
 _COMMON: dict[str, dict[str, float]] = {
@@ -38,6 +40,7 @@ _COMMON: dict[str, dict[str, float]] = {
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mbar": 1e2, "bar": 1e5, "N/mm^2": 1e6},
     "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3, "cP": 1e-3},
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0},
+    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
     "m/s^2": {"m/s^2": 1.0},
     "1/K": {"1/K": 1.0},
     "J/K": {"J/K": 1.0, "kJ/K": 1e3},

@@ -8,7 +8,7 @@ from dataclasses import replace
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from frbcli.columns import Column, Shown, named
+from frbcli.columns import Column, Columns, Shown, named
 
 FORCES, OIL = "forces", "oil"  # tables of the terminal
 
@@ -16,6 +16,11 @@ FORCES, OIL = "forces", "oil"  # tables of the terminal
 def _loads(path: str) -> Callable[[Any], Any]:
     get = attrgetter(path)
     return lambda result: math.nan if result.loads is None else get(result.loads)
+
+
+def _moment(result: Any) -> Any:
+    known = result.loads is not None and not math.isnan(result.loads.moment[0])
+    return result.loads.moment if known else None
 
 
 def _force(result: Any) -> Any:
@@ -80,6 +85,20 @@ RESULT = (
     Column("unknowns", "", "number of unknowns", key="cost.unknowns"),
     Column("newton_iterations", "", "number of Newton's steps", key="cost.newton_iterations"),
 )  # fmt: skip
+
+# Of a KinematicResult of a rotation whose journal tilts, or whose velocity is given
+MOMENT = (
+    Column("moment", "N m", "moment of the force about x, y through the middle of the bearing", _moment,
+           shape=(2,), shown=(Shown(("Mx", "My"), ".4g", table=FORCES),)),
+    Column("moment_error_relative", "", "error of the moment, from half the cells, over its size",
+           attrgetter("moment_error"), key="error.moment_relative"),
+)  # fmt: skip
+
+
+def result_columns(moment: bool) -> Columns:
+    """Columns of a KinematicResult; moment: whether it states the moment of the force."""
+    return (*RESULT, *MOMENT) if moment else RESULT
+
 
 # Of a History: whole in JSON, moment by moment in pandas
 HISTORY = (

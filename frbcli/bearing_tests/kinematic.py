@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.bearing_tests.columns import MOMENTS, RESULT
+from frbcli.bearing_tests.columns import MOMENTS, result_columns
 from frbcli.bearing_tests.history import History
 from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
 from frbcli.bearing_tests.steady_film import FilmField
@@ -25,6 +25,7 @@ from frbcli.film.published.solution import NodeState
 from frbcli.html import Tabular
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.scene.remedies import advised, film_advice
+from frbcli.scene.tilt import displacement_of, slope_of, states_moment, tilt_of, tilt_rate_of
 from frbcli.thermal.steady import SteadyHeat
 
 Observer = Callable[[int, int], None]
@@ -38,11 +39,12 @@ class KinematicResult:
     """What one cavitation model says, or the bearing model, then cavitation is empty.
 
     status: "ok" | "not-converged", then problem says why. displacement: (2,) over the clearance; loads, field: None if
-    there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error:
-    estimated, relative to the force, NaN if not known; history: None for a rotation. Of a squeeze or a whirl,
-    displacement, loads and field are those of the moment of the largest force, and so is the error; with a law that
-    keeps oil it is the worst of the largest forces of the periods. heat: of a case with heat, in a squeeze or whirl of
-    the mean over the last period; all else is that of its viscosity and clearance, as in `plan`.
+    there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error,
+    moment_error: estimated, relative to force and moment, NaN if not known, the latter of a rotation; history: None for
+    a rotation. Of a squeeze or a whirl, displacement, loads and field are those of the moment of the largest force, and
+    so is the error; with a law that keeps oil it is the worst of the largest forces of the periods. heat: of a case
+    with heat, in a squeeze or whirl of the mean over the last period; all else is that of its viscosity and clearance,
+    as in `plan`.
     """
 
     cavitation: str
@@ -59,6 +61,7 @@ class KinematicResult:
     plan: KinematicPlan
     problem: str = ""
     heat: SteadyHeat | None = None
+    moment_error: float = math.nan
 
     @property
     def theory(self) -> str:
@@ -84,7 +87,7 @@ class KinematicTest(Tabular):
     def table(self) -> Table:
         """One row per model for a rotation; for a squeeze or a whirl one per model and moment."""
         if self.test == "rotation":
-            return table_of(RESULT, self.results)
+            return table_of(result_columns(states_moment(self.case)), self.results)
         moments = ((each, 1 if each.history is None else len(each.history.time_s)) for each in self.results)
         return table_of(MOMENTS, ((result, moment) for result, count in moments for moment in range(count)))
 
@@ -252,6 +255,7 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
         newton_iterations=moment.iterations,
         plan=plan,
         heat=None if warm is None else warm.steady,
+        moment_error=moment.moment_error,
     )
 
 
@@ -264,11 +268,14 @@ def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]
     if motion.load is not None:
         found, start = tested_film(case, plan).rest(motion.load, omega)
         return Motion((float(found[0]), float(found[1])), (0.0, 0.0), omega), start
-    e, angle = motion.eccentricity or 0.0, motion.angle
+    e, angle, section = motion.eccentricity or 0.0, motion.angle, plan.section
     along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
     turn = e * 2.0 * math.pi * motion.whirl_speed
     rates = [motion.eccentricity_rate * a + turn * b for a, b in zip(along, across, strict=True)]
-    return Motion((e * along[0], e * along[1]), (rates[0], rates[1]), omega), start
+    if motion.velocity is not None:
+        rates = [each / section.clearance for each in motion.velocity]
+    slope, slope_rate = slope_of(tilt_of(case), section), slope_of(tilt_rate_of(case), section)
+    return Motion(displacement_of(case), (rates[0], rates[1]), omega, slope, slope_rate), start
 
 
 def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,9 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.tilted import tilted_outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.lands import Land, lands, summed
 from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
@@ -22,6 +25,7 @@ from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
+from frbcli.scene.tilt import gaps_at_ends
 
 Array = NDArray[np.float64]
 
@@ -44,7 +48,8 @@ class FilmField:
 @dataclass(frozen=True)
 class FilmMoment:
     """A film at one moment: its field, None of a bearing model, the loads on the whole bearing, the estimated relative
-    error of the force, and what it took; side_flow: m^3/s that leave through the open ends, where it was asked for."""
+    errors of force and moment, and what it took; side_flow: m^3/s that leave through the open ends, where it was asked
+    for. The field of a bearing whose lands differ is that of the land at z < 0."""
 
     field: FilmField | None
     loads: FilmLoads
@@ -52,6 +57,7 @@ class FilmMoment:
     unknowns: int
     iterations: int
     side_flow: float = math.nan
+    moment_error: float = math.nan
 
 
 def steady_film(
@@ -66,15 +72,22 @@ def steady_film(
     coarse, film = _films(section, law, motion, cells)
     first = FilmSolver(coarse).steady(motion)
     solution = FilmSolver(film).steady(motion, film.from_coarser(coarse, first.w))
-    found = loads(film, motion, solution, factor=factor)
+    found, rough = loads(film, motion, solution, factor=factor), loads(coarse, motion, first)
+    leaves = tilted_outflow if motion.tilts else outflow_of
     return FilmMoment(
         film_field(film, motion, solution),
         found,
-        estimate(found.force, loads(coarse, motion, first).force, law.order),
+        estimate(found.force, rough.force, law.order),
         int(np.count_nonzero(~film.grid.fixed)),
         first.iterations + solution.iterations,
-        outflow(film, motion.d, film.pressure(solution.state)) if flow else math.nan,
+        leaves(film, motion, solution) if flow else math.nan,
+        estimate(found.moment, rough.moment, law.order),
     )
+
+
+def outflow_of(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
+    """Outflow of a solution through the open ends of the whole bearing in m^3/s."""
+    return outflow(film, motion.d, film.pressure(solution.state))
 
 
 def settled(
@@ -94,7 +107,7 @@ def _films(
     """The film on half the cells each way, and on all; see steady_film."""
     around, along = cells[0], cells[1] // 2 if section.far == "symmetry" else cells[1]
     reference = reference_pressure(section, motion)
-    coarse, fine = (fitted_grid(section, motion.d, around // n, along // n) for n in (2, 1))
+    coarse, fine = (fitted_grid(section, motion.d, around // n, along // n, motion.tilts) for n in (2, 1))
     return VolumeFilm(section, coarse, law, reference), VolumeFilm(section, fine, law, reference)
 
 
@@ -104,7 +117,10 @@ def film_moment(
     """The film for a motion that lasts, by the modal film where that is known; flow: see steady_film. Raises
     NotConverged."""
     law = law_at(case, plan, math.hypot(*motion.d))
-    found = steady_film(plan.section, law, motion, cells, case.film.cavitation_factor, flow)
+    require_gap(plan.section, motion)
+    parts = lands(plan.section, motion, case.bearings[0].films[0].supply.mirrored)
+    factor = case.film.cavitation_factor
+    found = _whole([(land, steady_film(land.section, law, land.motion, cells, factor, flow)) for land in parts])
     if plan.rectangle is None or not plan.modal:
         return found
     place, velocity = _si(plan, motion)
@@ -112,6 +128,37 @@ def film_moment(
     top = largest_pressure(plan.rectangle, MODAL_MESH, place, velocity, motion.omega)
     told = replace(found.loads, force=force, p_max=top)
     return replace(found, loads=told, force_error=estimate(force, coarse))
+
+
+def require_gap(section: Section, motion: Motion) -> None:
+    """Raises NotConverged if a journal that tilts touches an end of its shell, as one that is warm may."""
+    least = min(gaps_at_ends(section, motion.d, motion.slope))
+    if motion.tilts and least <= 0.0:
+        size = 1e6 * section.clearance
+        raise NotConverged(f"the journal touches its shell at an end: the gap closes there at {size:.3g} um clearance.")
+
+
+def _whole(parts: Sequence[tuple[Land, FilmMoment]]) -> FilmMoment:
+    """The film of a bearing from those of its lands, whose errors add up at the worst."""
+    found = summed([(land, each.loads) for land, each in parts])
+    if len(parts) == 1:
+        return replace(parts[0][1], loads=found)
+    force_errors = [each.force_error * math.hypot(*each.loads.force) for _, each in parts]
+    moment_error = sum(
+        each.moment_error * math.hypot(*each.loads.moment) + abs(land.centre) * error
+        for (land, each), error in zip(parts, force_errors, strict=True)
+    )
+    force, moment = math.hypot(*found.force), math.hypot(*found.moment)
+    films = [each for _, each in parts]
+    return FilmMoment(
+        films[0].field,
+        found,
+        sum(force_errors) / force if force > 0.0 else 0.0,
+        sum(each.unknowns for each in films),
+        sum(each.iterations for each in films),
+        sum(each.side_flow for each in films),
+        moment_error / moment if moment > 0.0 else 0.0,
+    )
 
 
 def film_force(

@@ -16,6 +16,7 @@ from frbcli.film.grid import Array
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.warm import warm_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan
+from frbcli.scene.tilt import tilt_rate_of
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
 Placed = Callable[[Case, KinematicPlan], Motion]
@@ -41,6 +42,7 @@ def warm_resting_film(case: Case, plan: KinematicPlan, omega: float, place: Plac
         motion = place(alike, its_plan)
         found = film_moment(alike, its_plan, motion, its_plan.cells, flow=True)
         push = float(np.dot(found.loads.force, motion.v)) * its_plan.section.clearance
+        push += float(np.dot(found.loads.moment, tilt_rate_of(alike))) if motion.tilts else 0.0
         return -found.loads.torque.journal * omega - push, found.side_flow
 
     return _warm_film(case, plan, omega, dissipated, heat_of(case).start)

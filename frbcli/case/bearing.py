@@ -23,6 +23,7 @@ from frbcli.case.quantities import (
     SpecificHeat,
     Temperature,
     ThermalConductivity,
+    Tilt,
 )
 from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.support import Support
@@ -48,6 +49,9 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
+    misalignment: tuple[Tilt, Tilt] | None = Field(
+        default=None, description="tilt of the shell about x, y through the middle of the bearing; of a rotation"
+    )
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:

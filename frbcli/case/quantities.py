@@ -14,7 +14,17 @@ from pydantic import AfterValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity, readable
+from frbcli.units import (
+    ANGLE,
+    ANGULAR_RATE,
+    NUMBER,
+    SPEED,
+    TEMPERATURE_DIFFERENCE,
+    ValueFault,
+    display,
+    quantity,
+    readable,
+)
 
 _NUMBER_AND_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*\S.*$"
 _NUMBER_ONLY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*%?\s*$"
@@ -175,6 +185,9 @@ Hold = Annotated[float, Quantity("s", "0.5 s", least=0)]
 Eccentricity = Annotated[float, Quantity(NUMBER, "0.5", least=0, below=1)]
 Displacement = Annotated[float, Quantity(NUMBER, "-0.5", above=-1, below=1)]
 Fraction = Annotated[float, Quantity(NUMBER, "0.5", least=0, most=1)]
+Tilt = Annotated[float, Quantity(ANGLE, "0.1 mrad")]
+TiltRate = Annotated[float, Quantity(ANGULAR_RATE, "0.5 rad/s")]
+Velocity = Annotated[float, Quantity("m/s", "0.01 m/s")]
 Rate = Annotated[float, Quantity("1/s", "25 1/s")]
 Preload = Annotated[float, Quantity(NUMBER, "0.5", least=0, below=1)]
 RiseTime = Annotated[float, Quantity("s", "10 ms", least=0)]

@@ -36,6 +36,9 @@ from frbcli.case.quantities import (
     SignedSpeed,
     Speed,
     Stiffness,
+    Tilt,
+    TiltRate,
+    Velocity,
 )
 from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
@@ -132,10 +135,24 @@ class KinematicMotion(Model):
     speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is at rest")
     eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: rate of the eccentricity")
     whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: whirl speed of the displacement")
+    velocity: tuple[Velocity, Velocity] | None = Field(
+        default=None, description="of a rotation: of the journal along x, y, in place of the two before"
+    )
+    tilt: tuple[Tilt, Tilt] | None = Field(
+        default=None, description="of a rotation: of the journal about x, y through the middle of the bearing"
+    )
+    tilt_rate: tuple[TiltRate, TiltRate] | None = Field(
+        default=None, description="of a rotation: how fast the journal tilts about x, y"
+    )
     frequency: Speed | None = Field(default=None, description="of squeeze or whirl")
     periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = Field(
         default=3.0, description="of squeeze or whirl, that are computed"
     )
+
+    @property
+    def states_moment(self) -> bool:
+        """Whether a rotation states the moment of the film force, too."""
+        return any(given is not None for given in (self.velocity, self.tilt, self.tilt_rate))
 
 
 class Start(Model):

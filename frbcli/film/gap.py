@@ -10,6 +10,7 @@ import numpy as np
 
 from frbcli.film.grid import Array
 
+Displacement = tuple[float, float] | tuple[Array, Array]  # x, y over the clearance; along the axis if it tilts
 Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"
 ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
 SAMPLES = 3601
@@ -122,7 +123,7 @@ def ends_at_ambient(section: Section) -> Section:
     return replace(section, near=near, far=far)
 
 
-def gap_height(section: Section, d: tuple[float, float], phi: Array) -> Array:
+def gap_height(section: Section, d: Displacement, phi: Array) -> Array:
     """H at the angles phi (n,) for the displacement d over the clearance: (4.4), between lobes and journal
 
     H = 1 + m / (1 - m) (1 - cos(phi - phi_l)) + d_x sin(phi) - d_y cos(phi), phi_l being where the lobe is narrowest.
@@ -131,7 +132,7 @@ def gap_height(section: Section, d: tuple[float, float], phi: Array) -> Array:
     return plain if section.lobes is None else plain + lobe_depth(section.lobes, phi)
 
 
-def gap_rate(v: tuple[float, float], phi: Array) -> Array:
+def gap_rate(v: Displacement, phi: Array) -> Array:
     """dH/dt in 1/s at the angles phi (n,) for the velocity v over the clearance."""
     return np.asarray(v[0] * np.sin(phi) - v[1] * np.cos(phi), dtype=np.float64)
 

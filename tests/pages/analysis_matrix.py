@@ -96,6 +96,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "harmonic forces": ("jeffcott", (HARMONIC,)),
     "forces over time": ("jeffcott", (TABLE,)),
     "motion of the ground": ("jeffcott", (GROUND,)),
+    "shells that are not in line": ("jeffcott", ('bearing.misalignment=["0.1 mrad", "0 mrad"]',)),
     "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearings alone": ("thrust", ()),
 }

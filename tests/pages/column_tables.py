@@ -11,7 +11,7 @@ from pathlib import Path
 
 from paths import DOCS
 
-from frbcli.bearing_tests.columns import MOMENTS, RESULT
+from frbcli.bearing_tests.columns import MOMENT, MOMENTS, RESULT
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     cycle_columns,
@@ -69,6 +69,7 @@ TABLES: dict[str, Columns] = {
     "damped modes": DAMPED_MODES,
     "response": RESPONSE_POINTS,
     "kinematic tests": RESULT,
+    "moment of the force": MOMENT,
     "moments": MOMENTS,
     "accuracy": LADDER,
     "comparison": VARIANT,

@@ -177,6 +177,9 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
 def _motion(motion: Mapping[str, Any]) -> Iterator[Breach]:
     if "load" in motion and "eccentricity" in motion:
         yield Breach(("motion", "load"), "is given beside an eccentricity.", "Keep one of the two.")
+    for key in ("eccentricity_rate", "whirl_speed"):
+        if key in motion and "velocity" in motion:
+            yield Breach(("motion", "velocity"), f"is given beside motion.{key}.", "Keep one of the two.")
 
 
 def _films(path: Path, bearing: dict[str, Any]) -> Iterator[tuple[Path, dict[str, Any]]]:

@@ -60,7 +60,7 @@ def run_test(
     _report(found, terminal)
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
     whole = {} if found.complete else {"status": "interrupted"}
-    terminal.emit({**head, **whole, "results": list(map(_document, found.results))})
+    terminal.emit({**head, **whole, "results": [_document(found.case, result) for result in found.results]})
     if not _can_draw(found, terminal):
         outputs = replace(outputs, picture=None)
     outputs.write(terminal, found.to_pandas, lambda: _figure(found))
@@ -87,10 +87,12 @@ def _figure(found: KinematicTest) -> Picture:
 
 def _report(found: KinematicTest, terminal: Terminal) -> None:
     """Two tables: forces and oil."""
-    from frbcli.bearing_tests.columns import FORCES, OIL, RESULT, error_column, force_size
+    from frbcli.bearing_tests.columns import FORCES, OIL, error_column, force_size, result_columns
     from frbcli.columns import table_of
+    from frbcli.scene.tilt import states_moment
 
-    columns = (*RESULT, error_column(max(map(force_size, found.results), default=0.0)))
+    largest = max(map(force_size, found.results), default=0.0)
+    columns = (*result_columns(states_moment(found.case)), error_column(largest))
     table = table_of(columns, found.results)
     rows: dict[str, list[Sequence[str]]] = {FORCES: [], OIL: []}
     for result, forces, oil in zip(found.results, table.cells(FORCES), table.cells(OIL), strict=True):
@@ -112,11 +114,12 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
         terminal.result("Interrupted: the other models were not computed.")
 
 
-def _document(result: KinematicResult) -> dict[str, Any]:
+def _document(case: Case, result: KinematicResult) -> dict[str, Any]:
     """A result in JSON; null where there is no solution."""
-    from frbcli.bearing_tests.columns import HISTORY, RESULT
+    from frbcli.bearing_tests.columns import HISTORY, result_columns
     from frbcli.columns import document, named
+    from frbcli.scene.tilt import states_moment
 
     history = () if result.plan.test == "rotation" else named(HISTORY, "", attrgetter("history"))
-    found = document((*RESULT, *history), result)
+    found = document((*result_columns(states_moment(case)), *history), result)
     return found if result.heat is None else found | {"thermal": film_document(result.heat)}

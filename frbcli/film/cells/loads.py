@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from frbcli.film.cavitation.law import FRONTS
+from frbcli.film.cells.balance.plain import gap_on
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
-from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 from frbcli.film.parabola import summit
 
@@ -50,7 +51,8 @@ class Torque:
 
 @dataclass(frozen=True)
 class FilmLoads:
-    """Loads of the whole bearing. force: on the journal in N; p_max, p_min: absolute, Pa; oil_fraction: mean (4.46)."""
+    """Loads of the whole bearing. force: on the journal in N; p_max, p_min: absolute, Pa; oil_fraction: mean (4.46);
+    moment: of the force about the middle of the bearing in N m, NaN if not known."""
 
     force: tuple[float, float]
     torque: Torque
@@ -58,6 +60,7 @@ class FilmLoads:
     p_min: float
     oil_fraction: float
     oil: OilBalance
+    moment: tuple[float, float] = (math.nan, math.nan)
 
 
 def loads(
@@ -71,21 +74,35 @@ def loads(
 
     slip: omega_J - omega_S in rad/s, else that of a shell at rest; factor: how missing oil lowers the torque.
     """
-    pressure = film.pressure(solution.state)
+    pressure, mean = film.pressure(solution.state), film.mean_pressure(solution.state)
     ambient = film.section.ambient_pressure
     scale = film.section.pressure_scale
     return FilmLoads(
-        force=force(film, film.mean_pressure(solution.state)),
+        force=force(film, mean),
         torque=torque(film, motion, solution, motion.omega if slip is None else slip, factor),
         p_max=ambient + scale * peak(film, pressure),
         p_min=ambient + scale * float(np.min(pressure)),
         oil_fraction=oil_fraction(film, solution),
         oil=oil_balance(film, solution),
+        moment=moment(film, mean),
     )
 
 
 def force(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     """Force (3.13) in N of scaled gauge pressures (m, k) on the journal, that in grooves too, (4.8) to (4.10)."""
+    return _pushed(film, pressure)
+
+
+def moment(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
+    """Moments in N m of the force about the x- and y-axes through the middle of the bearing, M_x = -z F_y and
+    M_y = z F_x summed over the width; sections that are equal on both sides of it have none."""
+    if film.section.copies != 1:
+        return 0.0, 0.0
+    x, y = _pushed(film, film.section.width * (film.grid.height - 0.5) * pressure)
+    return -y, x
+
+
+def _pushed(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     grid, section = film.grid, film.section
     scale = section.copies * section.radius * section.width * section.pressure_scale
     along = scale * (force_weights(section, grid) * pressure).sum(axis=1)
@@ -104,10 +121,11 @@ def torque(
     theta = solution.state.fraction if factor == "local" else np.ones(grid.shape)
     pressure = film.mean_pressure(solution.state)
     area = section.copies * section.radius * section.width
-    shear = (1.0 - grid.cover) * grid.size * theta / gap_height(section, motion.d, grid.centre)[:, None]
+    shear = (1.0 - grid.cover) * grid.size * theta / gap_on(section, motion, grid.centre, grid.height)
     pushing = force_weights(section, grid) * pressure
     rise = np.roll(pushing, -1, axis=0) - pushing
-    face = gap_height(section, motion.d, grid.phi[1:])[:, None] * 0.5 * (theta + np.roll(theta, -1, axis=0))
+    at_faces = gap_on(section, motion, grid.phi[1:], grid.height)
+    face = at_faces * 0.5 * (theta + np.roll(theta, -1, axis=0))
     whole = oil_fraction(film, solution) if factor == "global" else 1.0
     couette = -(section.radius**2) * section.viscosity / section.clearance * slip * area * float(shear.sum())
     poiseuille = -0.5 * section.clearance * area * section.pressure_scale * float((face * rise).sum())

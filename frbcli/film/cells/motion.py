@@ -10,24 +10,49 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from frbcli.film.gap import Displacement
 from frbcli.film.grid import Array
+
+PARALLEL = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Motion:
     """Motion of the journal relative to the shell.
 
-    d: displacement over the clearance; v: its rate in 1/s; omega: omega_J + omega_S in rad/s.
+    d: displacement over the clearance in the middle of the section; v: its rate in 1/s; omega: omega_J + omega_S in
+    rad/s; slope, slope_rate: by how much d and v grow over the width of the section, for a journal that tilts.
     """
 
     d: tuple[float, float]
     v: tuple[float, float]
     omega: float
+    slope: tuple[float, float] = PARALLEL
+    slope_rate: tuple[float, float] = PARALLEL
+
+    @property
+    def tilts(self) -> bool:
+        """Whether the gap or its rate of change differs along the axis."""
+        return self.slope != PARALLEL or self.slope_rate != PARALLEL
 
     @property
     def rate(self) -> float:
         """Rate of change of the gap in 1/s, which drives pressure and flow."""
-        return max(0.5 * abs(self.omega), math.hypot(*self.v), 1e-3)
+        return max(0.5 * abs(self.omega), math.hypot(*self.v) + 0.5 * math.hypot(*self.slope_rate), 1e-3)
+
+    def displacement_at(self, z: Array) -> Displacement:
+        """Displacement over the clearance at positions z (k,) over the width of the section, linear in z."""
+        return _along(self.d, self.slope, z)
+
+    def velocity_at(self, z: Array) -> Displacement:
+        """Rate of the displacement in 1/s at positions z (k,) over the width of the section."""
+        return _along(self.v, self.slope_rate, z)
+
+
+def _along(middle: tuple[float, float], growth: tuple[float, float], z: Array) -> Displacement:
+    if growth == PARALLEL:
+        return middle
+    return middle[0] + (z - 0.5) * growth[0], middle[1] + (z - 0.5) * growth[1]
 
 
 class Storage(NamedTuple):

@@ -28,6 +28,7 @@ from frbcli.film.cells.balance.states import (
     STATES,
     cell_states,
 )
+from frbcli.film.cells.balance.tilted import tilted_balances
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
@@ -87,7 +88,8 @@ class FilmSolver:
         """
         grid, law = self.film.grid, self.film.law
         self._before = np.full(grid.shape, UPWIND)
-        storage = Storage(gap_rate(motion.v, grid.centre)[:, None], np.zeros(grid.shape))
+        rate = gap_rate(motion.velocity_at(grid.height), grid.centre[:, None])
+        storage = Storage(rate, np.zeros(grid.shape))
         solution = self._solve(motion, self.film.full() if start is None else start, storage)
         for _ in range(REPEATED if law.keeps_oil and not law.starves and not upwind else 0):
             self._before = before_upstream(solution.state.fraction, motion.omega)
@@ -158,6 +160,9 @@ class FilmSolver:
 
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""
+        if motion.tilts:
+            tilted_balances(self.film, motion, self._states, past, self._stencil, self._fields, self._flows)
+            return
         film, ring, width, cells = self._parts
         at = GridMotion(float(motion.d[0]), float(motion.d[1]), float(motion.omega))
         balances(

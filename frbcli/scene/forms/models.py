@@ -17,6 +17,7 @@ from frbcli.scene.forms.form import FilmForm, SolveCounts
 from frbcli.scene.gate.analysis import ALL, KINEMATIC, LADDER, RUN, SHEETS
 from frbcli.scene.gate.rule import Rule, motion_omega, oil_flow_signal, refusal, run_omega
 from frbcli.scene.keys import film_keys
+from frbcli.scene.tilt import tilt_refusal
 
 WHY = "set in the case; added from Python"
 TOLD = "the whole bearing by one function of displacement, velocity and speed; derivatives by {}"
@@ -111,6 +112,10 @@ RULES = (
         "has neither torque nor flow, which the balance of [thermal] needs", "Write finite, short or auto.",
     ),
     Rule(_key_faults, (RUN, *KINEMATIC)),
+    tilt_refusal(
+        "is not known to a bearing model: it has a force by one displacement and one velocity of the journal",
+        'Write film.theory = "finite", or leave the tilt out.',
+    ),
     refusal(
         (RUN, *KINEMATIC), "bearing.ring.spin", _turning_ring,
         "needs the torques of the films, which a bearing model does not give", 'Write spin = "blocked".',

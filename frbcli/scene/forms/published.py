@@ -16,6 +16,7 @@ from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
 from frbcli.scene.gate.analysis import ALL, KINEMATIC, RUN, SHEETS, SPEED_CYCLES, STABILITY, WHIRLS
 from frbcli.scene.gate.rule import Rule, refusal
 from frbcli.scene.planning.cell_choice import given_cells
+from frbcli.scene.tilt import tilt_refusal
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.film_choice import FilmChoice
@@ -95,6 +96,10 @@ RULES = (
     refusal(
         KINEMATIC, "bearing.supply.ramp", _ramp,
         "is a ramp of the pressure, which the elements of the published form do not follow", "Write 0 s.",
+    ),
+    tilt_refusal(
+        "changes the gap along the axis; the elements of the published form have one gap at each angle",
+        'Write film.two-phase.form = "conservative", or leave the tilt out.',
     ),
     refusal(
         (RUN,), "bearing.clearance_steps", _steps,

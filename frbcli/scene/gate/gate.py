@@ -28,6 +28,7 @@ from frbcli.scene.gate.analysis import (
     LADDER,
     LOADED,
     RANGE,
+    ROTATION,
     RUN,
     SHEETS,
     SPEED_CYCLES,
@@ -62,6 +63,9 @@ RULES = (
     Rule(_without_film("a linear machine has no limit cycle"), EVERY_CYCLE),
     *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
+    *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
+    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each != ROTATION)),
+    Rule(static.tilted_sheet_faults, SHEETS),
     Rule(_of_films(runs.theory_faults), (RUN,)),
     Rule(_of_films(runs.form_faults), (RUN,)),
     Rule(static.sheet_faults, SHEETS),
@@ -85,6 +89,7 @@ RULES = (
     Rule(cycles.speed_range_faults, EVERY_CYCLE, last=True),
     Rule(runs.number_faults, (RUN,), last=True),
     Rule(runs.speed_faults, (RUN,), last=True),
+    Rule(kinematic.end_faults, (ROTATION,), last=True),
 )
 
 

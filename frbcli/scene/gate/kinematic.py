@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.gate.analysis import ROTATION
+from frbcli.scene.keys import bearing_key
+from frbcli.scene.section import film_section
+from frbcli.scene.tilt import as_text, displacement_of, gaps_at_ends, slope_of, tilt_key, tilt_of, tilts
+
+SPARE = 0.1  # share of the least gap without tilt that a remedy leaves
 
 DAMPER_TEST = 'Write kind = "single-film", with the dimensions of its damper, and motion.speed = "0 Hz".'
 
@@ -20,7 +25,8 @@ def motion_faults(case: Case, test: str) -> Iterator[Fault]:
         yield Fault("motion", "", None, f"is missing; a {test} needs it.", remedy)
         return
     if test == ROTATION:
-        if motion.speed is None and motion.whirl_speed == 0.0 and motion.eccentricity_rate == 0.0:
+        moves = motion.whirl_speed or motion.eccentricity_rate or motion.velocity or motion.tilt_rate
+        if motion.speed is None and not moves:
             yield Fault("motion.speed", "", None, "is missing.", 'Add e.g. speed = "20 Hz" to [motion].')
         if motion.load is not None and not motion.speed:
             problem = "cannot be carried by a journal that does not turn."
@@ -73,3 +79,54 @@ def theory_faults(case: Case) -> Iterator[Fault]:
     if case.film.theory == "short":
         problem = "neglects the flow around that the pressure drives, with which a test computes torque and balance."
         yield Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".')
+
+
+def tilt_faults(case: Case, test: str) -> Iterator[Fault]:
+    """Motions in which a journal cannot tilt, and films that cannot follow it."""
+    motion = case.motion
+    if motion is None:
+        return
+    if test != ROTATION:
+        for key in ("velocity", "tilt", "tilt_rate"):
+            if getattr(motion, key) is not None:
+                problem = f"is of a rotation; a {test} moves the journal parallel to its shell, at its own velocity."
+                yield Fault(f"motion.{key}", as_text(getattr(motion, key)), None, problem, "Leave it out.")
+        return
+    if len(case.bearings) != 1 or not tilts(case):
+        return
+    key, value = tilt_key(case)
+    if motion.load is not None:
+        problem = "is given beside a load: a journal at rest takes the tilt at which the moment of its film vanishes."
+        yield Fault(key, value, None, problem, "Give an eccentricity in place of motion.load, or leave the tilt out.")
+
+
+def end_faults(case: Case) -> Iterator[Fault]:
+    """A tilt that closes the gap at an end of the bearing."""
+    section, d, tilt = film_section(case, case.bearings[0].films[0]), displacement_of(case), tilt_of(case)
+
+    def least(share: float) -> float:
+        return min(gaps_at_ends(section, d, slope_of((share * tilt[0], share * tilt[1]), section)))
+
+    gap = least(1.0)
+    if gap > 0.0:
+        return
+    key, value = tilt_key(case)
+    low, high = gaps_at_ends(section, d, slope_of(tilt, section))
+    end = "z < 0" if low <= high else "z > 0"
+    problem = (
+        f"closes the gap at the end {end} of the bearing: journal and shell would overlap by "
+        f"{-1e6 * section.clearance * gap:.3g} um there."
+    )
+    share = next((n / 100 for n in range(99, 0, -1) if least(n / 100) > SPARE * least(0.0)), 0.0)
+    tilted = f"at most {share:g} of this tilt against the shell" if share else "no tilt"
+    yield Fault(key, value, None, problem, f"Write {tilted}, or a smaller eccentricity.")
+
+
+def misalignment_faults(case: Case) -> Iterator[Fault]:
+    """Shells that are not in line, where journal and shell are taken to be parallel."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, SingleFilmBearing) and any(bearing.misalignment or ()):
+            assert bearing.misalignment is not None
+            problem = "is followed by frb rotation alone: elsewhere journal and shell are parallel."
+            key = f"{bearing_key(case, index)}.misalignment"
+            yield Fault(key, as_text(bearing.misalignment), None, problem, "Leave it out here.")

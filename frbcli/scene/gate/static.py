@@ -12,6 +12,7 @@ from frbcli.scene.channels import coupled
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain
 from frbcli.scene.keys import bearing_key, cavitation_keys
 from frbcli.scene.speeds import default_speeds, keeps_oil
+from frbcli.scene.tilt import as_text
 
 
 def sheet_faults(case: Case) -> Iterator[Fault]:
@@ -19,6 +20,15 @@ def sheet_faults(case: Case) -> Iterator[Fault]:
     if case.given_rotor is None and len(film_places(case)) != 1:
         problem = "has more than one film: their loads follow from a rotor, which is missing."
         yield Fault("bearing", f"{len(film_places(case))} films", None, problem, "Add [rotor] and [speed].")
+
+
+def tilted_sheet_faults(case: Case) -> Iterator[Fault]:
+    """A sheet is of a journal that is parallel to its shell, whatever [motion] says."""
+    for key in ("tilt", "tilt_rate"):
+        given = getattr(case.motion, key, None)
+        if given is not None and any(given):
+            problem = "is of a rotation: the films of a sheet have one gap along the axis."
+            yield Fault(f"motion.{key}", as_text(given), None, problem, "Leave it out here; frb rotation follows it.")
 
 
 def coefficient_faults(case: Case) -> Iterator[Fault]:

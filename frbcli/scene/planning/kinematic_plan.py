@@ -13,7 +13,7 @@ from frbcli.errors import Fault
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import label_of, law_named, names
-from frbcli.film.gap import Section, ends_at_ambient
+from frbcli.film.gap import Section, ends_at_ambient, whole_width
 from frbcli.nearest import did_you_mean
 from frbcli.scene.films import make_law
 from frbcli.scene.forms.cells import CELLS
@@ -28,11 +28,13 @@ from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Decision
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
+from frbcli.scene.tilt import displacement_of, gaps_at_ends, slope_of, tilt_of, tilts
 
 TESTS = KINEMATIC
 
 # around, along; of a section that is half the film half as many along
 STEADY_CELLS, FINE_CELLS = (128, 32), (240, 60)
+TILTED_CELLS, FINE_TILTED_CELLS = (192, 56), (240, 80)
 MOVING_CELLS = (64, 16)
 FINE_TARGET = 2e-4
 STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its force, hangs on the step
@@ -104,6 +106,7 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
     assert motion is not None
     film = bearing.films[0]
     section = film_section(case, film)
+    section = whole_width(section) if tilts(case) else section
     rectangle = film_rectangle(section)
     form = _form(case, rectangle)
     law = law_named(case.film.cavitation)
@@ -146,7 +149,7 @@ def _name_faults(case: Case, cavitation: str) -> Iterator[Fault]:
 def _form(case: Case, rectangle: Section | None) -> FilmForm:
     if (form := form_of(case)).same_in_tests:
         return form
-    return MODAL if rectangle is not None and law_named(case.film.cavitation).closed else CELLS
+    return MODAL if rectangle is not None and not tilts(case) and law_named(case.film.cavitation).closed else CELLS
 
 
 def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
@@ -155,6 +158,8 @@ def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
     if test != ROTATION:
         return MOVING_CELLS, "equal ones around, for the narrowest gap moves"
     fine = case.accuracy.target <= FINE_TARGET
+    if tilts(case):
+        return FINE_TILTED_CELLS if fine else TILTED_CELLS, "finer at the narrowest gap and at the ends"
     return FINE_CELLS if fine else STEADY_CELLS, "finer at the narrowest gap"
 
 
@@ -163,7 +168,8 @@ def _decisions(
 ) -> Iterator[Decision]:
     """Gap, form and cells of a film of the program."""
     law = law_named(case.film.cavitation)
-    yield _gap_decision(section, bearing)
+    yield _gap_decision(section, bearing, tilts(case))
+    yield from _tilt_decision(case, section)
     yield from _lobe_decision(section)
     yield Decision("film", *form.told_in_tests(law))
     if law.closed and bearing.ends == "free-to-air":
@@ -183,13 +189,26 @@ def _transport(case: Case, bearing: FilmGeometry, form: FilmForm) -> Iterator[De
         yield Decision("frame", "of the journal", "the feed holes turn with it and are at rest there")
 
 
-def _gap_decision(section: Section, bearing: FilmGeometry) -> Decision:
+def _gap_decision(section: Section, bearing: FilmGeometry, tilted: bool) -> Decision:
     if section.far == "groove" and section.copies == 2:
+        if tilted:
+            return Decision("gap", "2 sections", "a central circumferential groove parts two films, which differ")
         return Decision("gap", "1 of 2 sections", "a central circumferential groove parts two equal films")
     if section.far == "symmetry":
         reason = f"supply {bearing.supply.kind}: the film is symmetric about its middle"
         return Decision("gap", "half the width", reason)
+    if tilted:
+        return Decision("gap", "the whole width", "a film whose journal tilts is not symmetric about its middle")
     return Decision("gap", "the whole width", f"supply {bearing.supply.kind}: the film is not symmetric")
+
+
+def _tilt_decision(case: Case, section: Section) -> list[Decision]:
+    if not tilts(case):
+        return []
+    (x, y), size = tilt_of(case), 1e6 * section.clearance
+    low, high = gaps_at_ends(section, displacement_of(case), slope_of(tilt_of(case), section))
+    reason = f"the least gap is {size * low:.3g} um at the end z < 0 and {size * high:.3g} um at the other"
+    return [Decision("tilt", f"{1e3 * x:.4g}, {1e3 * y:.4g} mrad", reason)]
 
 
 def _lobe_decision(section: Section) -> list[Decision]:

@@ -78,18 +78,24 @@ class Fluxes(NamedTuple):
 def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conductances:
     """The conductances of a section. Into a groove or hole the distance counts to its edge."""
     dphi, dz = np.diff(grid.phi), np.diff(grid.z)
-    face, centre = gap_height(section, motion.d, grid.phi[1:]), gap_height(section, motion.d, grid.centre)
-    cube = centre[:, None] ** 3 * dphi[:, None] * section.aspect
-    through = face * centre * np.roll(centre, -1) if grid.has_bores else face**3
-    beside = gap_height(section, motion.d, grid.at.ravel()).reshape(grid.shape) ** 3
-    through = np.where(grid.at == grid.phi[1:, None], through[:, None], beside)
+    face, centre = (gap_on(section, motion, phi, grid.height) for phi in (grid.phi[1:], grid.centre))
+    cube = gap_on(section, motion, grid.centre, grid.z) ** 3 * dphi[:, None] * section.aspect
+    through = face * centre * np.roll(centre, -1, axis=0) if grid.has_bores else face**3
+    beside = gap_height(section, motion.displacement_at(grid.height), grid.at) ** 3
+    through = np.where(grid.at == grid.phi[1:, None], through, beside)
     around = np.where(grid.around > 0.0, through * dz / np.maximum(grid.around, NO_DISTANCE), 0.0)
-    along = np.where(grid.along > 0.0, cube / np.maximum(grid.along, NO_DISTANCE), 0.0)
+    along = np.where(grid.along > 0.0, cube[:, 1:-1] / np.maximum(grid.along, NO_DISTANCE), 0.0)
     first, last = end_slopes(grid.z)
-    near, far = cube[:, 0] * first.rise, cube[:, 0] * last.rise
-    carried = 0.5 * motion.omega * face[:, None]
+    near, far = cube[:, 0] * first.rise, cube[:, -1] * last.rise
+    carried = 0.5 * motion.omega * face
     rise = grid.excess * (carried - np.roll(carried, 1, axis=0))
     return Conductances(around, along, near, far, carried * dz[None, :], rise)
+
+
+def gap_on(section: Section, motion: Motion, phi: Array, z: Array) -> Array:
+    """(m, k) H at the angles phi (m,) and the positions z (k,) over the width of a section."""
+    gap = gap_height(section, motion.displacement_at(z), phi[:, None])
+    return np.broadcast_to(gap, (len(phi), len(z)))
 
 
 class CellBalances:

@@ -1,0 +1,168 @@
+"""Films whose journal tilts, on cells: their balances against the compiled ones, closed forms, symmetry, lands."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
+from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.penalty import Penalty
+from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion, balances
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
+from frbcli.film.cells.balance.tilted import tilted_balances
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.elimination.block_cyclic import ENTRIES
+from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.lands import lands, summed
+from frbcli.film.cells.loads import FilmLoads, loads
+from frbcli.film.cells.mesh.grid import volume_grid
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.gap import Hole, Section
+
+LAWS: dict[str, Law] = {
+    "half-sommerfeld": HalfSommerfeld(),
+    "reynolds": Reynolds(),
+    "penalty": Penalty(0.01, 30.0),
+    "elrod": Elrod(),
+    "two-phase": TwoPhase(0.9),
+}
+HOLES = (Hole(1.0, 0.005, 0.2, 0.0025, 1.5e5, True), Hole(-2.0, 0.0095, 0.15, 0.0012, 0.5e5, False))
+M, K = 30, 6
+R, B, C, ETA = 0.01, 0.012, 40e-6, 0.01
+PLAIN = Section(R, B, B, C, ETA, 1e5, 1e5, 1, "oil-bath", "oil-bath")
+MOVED = Motion((0.2, -0.35), (120.0, 40.0), 900.0, (0.4, 0.3), (-60.0, 90.0))
+
+
+def solved(section: Section, law: Law, motion: Motion, cells: tuple[int, int] = (64, 16)) -> FilmLoads:
+    grid = fitted_grid(section, motion.d, *cells, tilted=True)
+    film = VolumeFilm(section, grid, law, reference_pressure(section, motion))
+    return loads(film, motion, FilmSolver(film).steady(motion))
+
+
+def six(found: FilmLoads) -> np.ndarray:
+    return np.array([*found.force, *found.moment])
+
+
+@pytest.mark.parametrize("ends", [("oil-bath", "groove"), ("free-to-air", "oil-bath")])
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_balances_without_tilt_are_the_compiled_ones(law: Law, ends: tuple[str, str]) -> None:
+    section = Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 0.9e5, 2, *ends, 0.7e5, holes=HOLES)
+    grid = volume_grid(section, np.linspace(0, 2 * np.pi, M + 1), np.linspace(0, 1, K + 1))
+    film, motion = VolumeFilm(section, grid, law, 500.0), Motion((0.3, -0.5), (0.0, 0.0), 300.0)
+    data, random, numbers = volume_films([film]), np.random.default_rng(2), np.empty(LAW_NUMBERS)
+    w, past = random.uniform(-0.6, 0.6, (M, K)), random.uniform(0.0, 3e3, (M, K))
+    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    states = np.zeros((STATES, M, K))
+    follow_law(parts[0], *motion.d, 0.0, 0.0, motion.omega, numbers)
+    cell_states(parts[0], parts[3], numbers, 0.0, w, states)
+    states[BEFORE_UPSTREAM] = random.uniform(0.0, 1.0, (M, K))
+    first, second = ((np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + SIDES)), np.zeros(FLOWS)) for _ in range(2))
+    balances(*parts, states, GridMotion(*motion.d, motion.omega), past, *first)
+    tilted_balances(film, motion, states, past, *second)
+    for name, plain, compiled in zip(("stencil", "right", "flows"), second, first, strict=True):
+        own = np.s_[:, :, : K + 1] if name == "right" else np.s_[:]  # no derivatives by the journal
+        size = np.abs(compiled[own]).max()
+        assert np.allclose(plain[own], compiled[own], rtol=1e-10, atol=1e-11 * size), name
+
+
+def test_short_centred_film_in_tilt() -> None:
+    """M = -pi eta R L^5 / (60 C^3) of the tilt rate for a short full film; F = -pi eta R L^3 / C^3 of the velocity."""
+    short = replace(PLAIN, width=0.05 * R, bearing_width=0.05 * R)
+    rate = 2.0 / 3.0  # rad/s, about x
+    tilting = Motion((0.0, 0.0), (0.0, 0.0), 0.0, slope_rate=(0.0, -short.width / C * rate))
+    found = solved(short, Sommerfeld(), tilting)
+    damping = math.pi * ETA * R * short.width**5 / (60.0 * C**3)
+    assert found.moment[0] == pytest.approx(-damping * rate, rel=2e-2)
+    finer = solved(short, Sommerfeld(), tilting, (64, 48))
+    assert finer.moment[0] == pytest.approx(-damping * rate, rel=3e-3)
+    assert np.hypot(*found.force) < 1e-9 * damping * rate / short.width
+    assert abs(found.moment[1]) < 1e-9 * damping * rate
+    moved = solved(short, Sommerfeld(), Motion((0.0, 0.0), (1.0 / C, 0.0), 0.0, slope=(1e-9, 0.0)))
+    assert moved.force[0] == pytest.approx(-math.pi * ETA * R * short.width**3 / C**3, rel=3e-3)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_mirror_turns_the_moment_and_a_turn_turns_both(law: Law) -> None:
+    """A bearing that is seen from its other end has tilts and moments of the other sign; one that is turned about its
+    axis by a right angle has the same loads, turned."""
+    found = six(solved(PLAIN, law, MOVED))
+    size = np.abs(found).max()
+    mirrored = replace(MOVED, slope=(-0.4, -0.3), slope_rate=(60.0, -90.0))
+    assert six(solved(PLAIN, law, mirrored)) == pytest.approx(found * [1, 1, -1, -1], abs=1e-9 * size)
+    turned = Motion((0.35, 0.2), (-40.0, 120.0), 900.0, (-0.3, 0.4), (-90.0, -60.0))
+    x, y, mx, my = found
+    assert six(solved(PLAIN, law, turned)) == pytest.approx([-y, x, -my, mx], abs=1e-9 * size)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_no_moment_without_tilt(law: Law) -> None:
+    found = solved(PLAIN, law, replace(MOVED, slope=(1e-14, 0.0), slope_rate=(0.0, 0.0)))
+    assert np.hypot(*found.moment) < 1e-10 * B * np.hypot(*found.force)
+
+
+def test_damping_of_a_full_film_is_symmetric() -> None:
+    """Forces and moments by velocities and tilt rates about a tilted position: Onsager's relations, for Reynolds'
+    equation is self-adjoint. Derivatives are differences of a linear film."""
+    still = replace(MOVED, v=(0.0, 0.0), slope_rate=(0.0, 0.0))
+    base, rows = six(solved(PLAIN, Sommerfeld(), still)), []
+    for rates in np.eye(4):
+        v, (t_x, t_y) = rates[:2] / C, rates[2:]
+        slope_rate = (B / C * t_y, -B / C * t_x)
+        moved = replace(still, v=(float(v[0]), float(v[1])), slope_rate=slope_rate)
+        rows.append(base - six(solved(PLAIN, Sommerfeld(), moved)))
+    damping = np.array(rows).T
+    scale = np.sqrt(np.outer(np.diag(damping), np.diag(damping)))
+    assert (np.diag(damping) > 0.0).all()
+    assert np.abs(damping - damping.T)[np.triu_indices(4, 1)] == pytest.approx(0.0, abs=2e-3 * scale.max())
+    assert np.abs((damping - damping.T) / scale).max() < 2e-3
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_oil_balances(law: Law) -> None:
+    """What a law conserves flows in, flows out or is taken up by the gap."""
+    found = solved(replace(PLAIN, holes=HOLES), law, replace(MOVED, v=(0.0, 0.0), slope_rate=(0.0, 0.0)))
+    if law.conserves and not law.clips:
+        assert abs(found.oil.defect_relative) < 1e-10
+    else:
+        assert found.oil.out_m3_s > found.oil.in_m3_s  # oil appears in the cavity
+
+
+@pytest.mark.parametrize(("law", "near"), [(Sommerfeld(), 1e-9), (HalfSommerfeld(), 1e-3), (Reynolds(), 1e-9)])
+def test_lands_beside_a_groove_are_bearings_of_their_own(law: Law, near: float) -> None:
+    """A groove at ambient pressure parts two bearings of half the width whose middles lie a quarter of it away. Beside
+    a groove a clipped pressure is clipped cell by cell, which is less exact."""
+    grooved = Section(R, 0.5 * B, B, C, ETA, 1e5, 1e5, 2, "oil-bath", "groove")
+    parts = lands(grooved, MOVED, mirrored=False)
+    found = summed([(land, solved(land.section, law, land.motion)) for land in parts])
+    expected = np.zeros(4)
+    for side in (-1.0, 1.0):
+        half = replace(PLAIN, width=0.5 * B, bearing_width=0.5 * B)
+        z = 0.25 * side
+        motion = Motion(
+            (MOVED.d[0] + z * MOVED.slope[0], MOVED.d[1] + z * MOVED.slope[1]),
+            (MOVED.v[0] + z * MOVED.slope_rate[0], MOVED.v[1] + z * MOVED.slope_rate[1]),
+            MOVED.omega, (0.5 * MOVED.slope[0], 0.5 * MOVED.slope[1]),
+            (0.5 * MOVED.slope_rate[0], 0.5 * MOVED.slope_rate[1]),
+        )  # fmt: skip
+        x, y, mx, my = six(solved(half, law, motion))
+        expected += [x, y, mx - z * B * y, my + z * B * x]
+    assert six(found) == pytest.approx(expected, rel=near, abs=near * np.abs(expected).max())
+
+
+def test_groove_at_one_end_turns_with_the_bearing() -> None:
+    grooved = Section(R, B, B, C, ETA, 1e5, 1e5, 1, "oil-bath", "groove", 2e5)
+    mirrored = replace(MOVED, slope=(-0.4, -0.3), slope_rate=(60.0, -90.0))
+    found = []
+    for motion, turned in ((MOVED, False), (mirrored, True)):
+        (land,) = lands(grooved, motion, turned)
+        found.append(six(summed([(land, solved(land.section, Reynolds(), land.motion))])))
+    assert found[1] == pytest.approx(found[0] * [1, 1, -1, -1], rel=1e-12)
