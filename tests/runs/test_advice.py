@@ -13,7 +13,8 @@ from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved, NotConverged
-from frbcli.runs.advice import RunEnd, run_advice, run_end
+from frbcli.results.store import Run
+from frbcli.runs.advice import RunEnd, accuracy_advice, run_advice, run_end
 from frbcli.runs.run import runup
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
@@ -56,6 +57,33 @@ def test_end_of_a_run_is_read_from_its_last_sample_its_events_and_its_state() ->
     assert run_end(replace(run, events=[{**whirl, "film": "inner"}])).whirl is None
     none = run_end(as_run({name: values[:0] for name, values in columns.items()}, "not-converged"))
     assert (none.film, none.eccentricity, none.step_s) == ("", 0.0, None)
+
+
+# --- the eccentricity that the plan was made for ---
+
+
+def near_the_shell(eccentricity: float, stated: float | None = 2e-2) -> Run:
+    """A run that has an eccentricity before its whirl, and 0.99 in it."""
+    times, reached = np.arange(4.0), np.array([0.0, eccentricity, 0.5, 0.99])
+    columns = {"time_s": times, "speed_Hz": 10.0 * times, "eccentricity": reached}
+    return replace(as_run(columns), error={"eccentricity": stated, "quiet_until_s": 2.0})
+
+
+def test_a_run_that_comes_nearer_to_the_shell_than_expected_says_so() -> None:
+    case = load_case("rigid-two-phase", ["accuracy.target=1e-2"])
+    (sentence,) = accuracy_advice(case, near_the_shell(0.95))
+    assert "reached 0.95 where the plan expected 0.87" in sentence
+    assert "2.0e-02" in sentence
+    assert "accuracy.target = 0.0025" in sentence
+
+
+def test_nothing_is_said_where_the_error_is_small_or_the_run_as_expected() -> None:
+    case = load_case("rigid-two-phase", ["accuracy.target=1e-2"])
+    assert accuracy_advice(case, near_the_shell(0.88)) == ()
+    assert accuracy_advice(case, near_the_shell(0.95, stated=9e-3)) == ()
+    assert accuracy_advice(case, near_the_shell(0.95, stated=None)) == ()
+    assert accuracy_advice(load_case("rigid-two-phase", ["accuracy.mesh=[6, 48]"]), near_the_shell(0.95)) == ()
+    assert accuracy_advice(jeffcott(), near_the_shell(0.95)) == ()  # no cells
 
 
 # --- each status ---
