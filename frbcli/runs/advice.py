@@ -20,7 +20,7 @@ from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places
 from frbcli.scene.planning.cell_choice import gap_ratio
 from frbcli.scene.planning.eccentricity import expected_eccentricity
-from frbcli.scene.planning.film_choice import form_of
+from frbcli.scene.planning.film_choice import choose_films, form_of
 from frbcli.scene.remedies import film_remedies, remedies_sentence
 from frbcli.scene.supply import unfed_films
 from frbcli.solve.state import STEP
@@ -32,7 +32,7 @@ AT_ONCE = 1e-9  # s within which a run ends at a step of the clearance
 SHORTER = 10.0  # divisor of a macro step
 STIFFNESS = "1e9 N/m"  # suggested contact stiffness
 CLOSER = 1.5  # times the smallest gap that was reached, from which on the one that was expected is told
-FINER = 4.0  # divisor of the target
+FINER, SMALLER = 4.0, 0.7  # divisor of the target; error of the cells, if that is worth it
 
 
 @dataclass(frozen=True)
@@ -101,11 +101,14 @@ def accuracy_advice(case: Case, run: Run) -> tuple[str, ...]:
     reached = max(float(np.max(run[joined("eccentricity", name)][:quiet], initial=0.0)) for name in films(run.signals))
     if gap_ratio(expected, reached) < CLOSER:
         return ()
-    target, finer = case.accuracy.target, case.accuracy.target / FINER
-    return (
+    target = case.accuracy.target
+    told = (
         f"The eccentricity reached {reached:.2f} where the plan expected {expected:.2f}: the error of up to "
-        f"{stated:.1e} may be above the target of {target:g}. For less, accuracy.target = {finer:g}.",
+        f"{stated:.1e} may be above the target of {target:g}."
     )
+    finer = target / FINER
+    helps = choose_films(case, finer).error <= SMALLER * choose_films(case, target).error
+    return (f"{told} For less, accuracy.target = {finer:g}." if helps else told,)
 
 
 def _starved(case: Case) -> tuple[str, ...]:

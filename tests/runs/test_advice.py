@@ -77,6 +77,12 @@ def test_a_run_that_comes_nearer_to_the_shell_than_expected_says_so() -> None:
     assert "accuracy.target = 0.0025" in sentence
 
 
+def test_a_smaller_target_is_not_advised_where_it_takes_no_finer_cells() -> None:
+    case = load_case("rigid-two-phase", ["accuracy.target=1e-4"])
+    (sentence,) = accuracy_advice(case, near_the_shell(0.95))
+    assert sentence.endswith("above the target of 0.0001.")
+
+
 def test_nothing_is_said_where_the_error_is_small_or_the_run_as_expected() -> None:
     case = load_case("rigid-two-phase", ["accuracy.target=1e-2"])
     assert accuracy_advice(case, near_the_shell(0.88)) == ()
