@@ -89,14 +89,9 @@ def test_left_and_right_are_mirror_images() -> None:
     assert left.load == right.load
 
 
-@pytest.mark.parametrize(("settings", "words"), [
-    (["film.cavitation=elrod"], "without oil fractions and history"),
-    (['thermal={model="lumped", supply_temperature="70 degC"}', "oil.viscosity={grade='SAE 10W-40'}"],
-     "their films have one temperature"),
-])  # fmt: skip
-def test_models_that_pads_do_not_have_are_refused(settings: list[str], words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        frbcli.thrust_sheet(frbcli.load_case("thrust", settings), [15e-6], SPEED)
+def test_models_that_pads_do_not_have_are_refused() -> None:
+    with pytest.raises(InputError, match="without oil fractions and history"):
+        frbcli.thrust_sheet(frbcli.load_case("thrust", ["film.cavitation=elrod"]), [15e-6], SPEED)
 
 
 @pytest.mark.parametrize("analysis", ALL)

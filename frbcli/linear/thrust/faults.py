@@ -19,9 +19,6 @@ def require_sheet(case: Case, gaps: Sequence[float] = ()) -> None:
 def _faults(case: Case) -> Iterator[Fault]:
     if not case.thrust_bearings:
         yield Fault("thrust_bearing", "", None, "is missing.", "Add a table [[thrust_bearing]]; see docs/thrust.md.")
-    if case.heat is not None:
-        problem = "is not modelled in thrust bearings: their films have one temperature, that of [oil]."
-        yield Fault("thermal.model", "lumped", None, problem, 'Write thermal.model = "none" and oil.temperature.')
     if case.film.cavitation not in LAWS:
         problem = "is not modelled in thrust bearings, whose pressure is found without oil fractions and history."
         remedy = f"Write film.cavitation = {' or '.join(LAWS)}; in converging pads they agree."

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.thrust.columns import THRUST
 from frbcli.linear.thrust.faults import no_gap, require_sheet
@@ -20,6 +20,7 @@ from frbcli.linear.thrust.state import BOTH, ThrustFilms, ThrustState, thrust_fi
 Observer = Callable[[int, int], None]
 
 LEAST_GAP = 1e-7  # m, of a load that is searched: thinner films lie below the roughness of any pad
+WIDER = 1.2  # than a gap whose film becomes too hot
 WIDEST = 100.0  # gap over the taper
 POINTS = 10
 
@@ -76,7 +77,7 @@ def thrust_sheet(
         If the case has no thrust bearing or no speed, a model that its films do not have, a gap beyond the end play,
         or a load that no gap carries.
     NotConverged
-        If the cavity in a film by Reynolds' condition is not found.
+        If the cavity in a film by Reynolds' condition is not found, or, with heat, a film becomes too hot.
 
     Examples
     --------
@@ -106,7 +107,8 @@ def _gap_of(case: Case, films: ThrustFilms, load: float, omega: float) -> float:
     play = films.bearing.end_play
     wide = 0.5 * play if films.bearing.side == BOTH and play is not None else WIDEST * films.bearing.taper
     thin = min(LEAST_GAP, 0.01 * wide)
-    high, low = films.load(thin, omega), films.load(wide, omega)
+    thin, high = _thinnest(films, thin, wide, omega)
+    low = films.load(wide, omega)
     if not low <= load <= high:
         raise no_gap(case, load, (thin, high), (wide, low))
 
@@ -114,6 +116,18 @@ def _gap_of(case: Case, films: ThrustFilms, load: float, omega: float) -> float:
         return films.load(math.exp(logarithm), omega) / load - 1.0
 
     return math.exp(float(brentq(missing, math.log(thin), math.log(wide), xtol=1e-12, rtol=1e-12)))
+
+
+def _thinnest(films: ThrustFilms, thin: float, wide: float, omega: float) -> tuple[float, float]:
+    """The thinnest gap in m from `thin` on whose film does not become too hot, and its load in N."""
+    while thin < wide:
+        try:
+            return thin, films.load(thin, omega)
+        except NotConverged:
+            if films.heat is None:
+                raise
+        thin *= WIDER
+    return wide, films.load(wide, omega)
 
 
 def _gaps(films: ThrustFilms) -> list[float]:

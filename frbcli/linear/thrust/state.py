@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,18 +13,21 @@ from frbcli.case.schema import Case
 from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import COARSE, MESH, Pad
 from frbcli.film.pads.mesh import PadMesh, pad_mesh
+from frbcli.linear.thrust.heat import PadHeat
 
 Floats = NDArray[np.float64]
 
 BOTH = "both"
 COEFFICIENTS = "stiffness", "damping"
+OilAt = tuple[PadOil, float | None]  # of a film, and its temperature in K
 
 
 @dataclass(frozen=True, repr=False)
 class ThrustState:
     """The films of a thrust bearing. gap: over the lands in m, on the loaded side; load in N; torque in N m; flows in
     m^3/s; p_max: absolute in Pa; stiffness, damping: axial; tilt_stiffness, tilt_damping: 2 x 2 over x and y, in N m
-    and N m s per rad; pressure: absolute at the nodes of a pad of the loaded side in Pa; errors: relative."""
+    and N m s per rad; viscosity in Pa s, temperature in K: of the loaded side; pressure: absolute at the nodes of a pad
+    of the loaded side in Pa; errors: relative."""
 
     bearing: str
     speed_Hz: float
@@ -58,17 +61,21 @@ class ThrustFilms:
     oil: PadOil
     ambient_pressure: float
     temperature: float | None
+    heat: PadHeat | None = None
 
     def load(self, gap: float, omega: float) -> float:
-        """The load in N that the film carries at a gap in m and a speed in rad/s."""
-        return _sum(self._sides(self.mesh, gap, omega), lambda film: float(film.forces[0]), opposed=True)
+        """The load in N that the film carries at a gap in m and a speed in rad/s. Raises NotConverged as `state`."""
+        films = self._sides(self.mesh, gap, omega, self._oils(gap, omega))
+        return _sum(films, lambda film: float(film.forces[0]), opposed=True)
 
     def state(self, gap: float, omega: float) -> ThrustState:
-        """The state at a gap in m and a speed in rad/s. Raises NotConverged as `pad_film`."""
-        films = self._sides(self.mesh, gap, omega)
+        """The state at a gap in m and a speed in rad/s. Raises NotConverged as `pad_film`, and with heat where a film
+        becomes too hot."""
+        oils = self._oils(gap, omega)
+        films = self._sides(self.mesh, gap, omega, oils)
         torque = _sum(films, lambda film: film.torque)
         stiffness, damping = (np.sum([getattr(film, name) for film in films], axis=0) for name in COEFFICIENTS)
-        load_error, coefficient_error = _errors(films, self._sides(self.coarse, gap, omega))
+        load_error, coefficient_error = _errors(films, self._sides(self.coarse, gap, omega, oils))
         return ThrustState(
             bearing=self.bearing.name,
             speed_Hz=omega / (2.0 * np.pi),
@@ -84,21 +91,37 @@ class ThrustFilms:
             damping=float(damping[0, 0]),
             tilt_stiffness=stiffness[1:, 1:],
             tilt_damping=damping[1:, 1:],
-            viscosity=self.oil.viscosity,
-            temperature=self.temperature,
+            viscosity=oils[0][0].viscosity,
+            temperature=oils[0][1],
             load_error=load_error,
             coefficient_error=coefficient_error,
             pressure=self.ambient_pressure + films[0].pressure,
         )
 
-    def _sides(self, mesh: PadMesh, gap: float, omega: float) -> tuple[PadFilm, ...]:
+    def _sides(self, mesh: PadMesh, gap: float, omega: float, oils: Sequence[OilAt]) -> tuple[PadFilm, ...]:
         """The film of the loaded side, and that of the other one where pads stand there, too. A tilt changes the gaps
         of both by opposite amounts, and their forces are opposed, so that stiffness and damping add up."""
-        bearing, gaps = self.bearing, [gap]
-        if bearing.side == BOTH and bearing.end_play is not None:
-            gaps.append(bearing.end_play - gap)
-        depth = self.pad.depth(mesh.theta)
-        return tuple(ring_of_pads(pad_film(mesh, each + depth, self.oil, omega), bearing.pads) for each in gaps)
+        pairs = zip(self._gaps(gap), oils, strict=True)
+        return tuple(self._film(mesh, each, oil, omega) for each, (oil, _) in pairs)
+
+    def _film(self, mesh: PadMesh, gap: float, oil: PadOil, omega: float) -> PadFilm:
+        """All pads of a side."""
+        return ring_of_pads(pad_film(mesh, gap + self.pad.depth(mesh.theta), oil, omega), self.bearing.pads)
+
+    def _gaps(self, gap: float) -> tuple[float, ...]:
+        bearing = self.bearing
+        return (gap, bearing.end_play - gap) if bearing.side == BOTH and bearing.end_play is not None else (gap,)
+
+    def _oils(self, gap: float, omega: float) -> tuple[OilAt, ...]:
+        """The oil of each side, that of the case or, with heat, as warm as it becomes."""
+        return tuple(self._oil(each, omega) for each in self._gaps(gap))
+
+    def _oil(self, gap: float, omega: float) -> OilAt:
+        if self.heat is None:
+            return self.oil, self.temperature
+        mesh = self.mesh
+        inverse = self.bearing.pads * float(mesh.weights @ (mesh.r / (gap + self.pad.depth(mesh.theta))))
+        return self.heat.warm(self.oil, lambda oil: self._film(mesh, gap, oil, omega), omega, gap, inverse)
 
 
 def thrust_films(case: Case, bearing: ThrustBearing) -> ThrustFilms:
@@ -107,7 +130,8 @@ def thrust_films(case: Case, bearing: ThrustBearing) -> ThrustFilms:
     pressure = oil.cavitation_pressure - oil.ambient_pressure
     film_oil = PadOil(case.oil_viscosity, case.film.cavitation, pressure)
     meshes = pad_mesh(pad, *MESH), pad_mesh(pad, *COARSE)
-    return ThrustFilms(bearing, pad, *meshes, film_oil, oil.ambient_pressure, oil.temperature)
+    heat = None if case.heat is None else PadHeat(case, case.heat)
+    return ThrustFilms(bearing, pad, *meshes, film_oil, oil.ambient_pressure, oil.temperature, heat)
 
 
 def pad_of(bearing: ThrustBearing) -> Pad:

@@ -19,7 +19,13 @@ def thrust_plan(case: Case) -> tuple[Decision, ...]:
     return (
         *found,
         Decision("cavitation", case.film.cavitation, "only where the pressure falls below that of cavitation"),
-        Decision("viscosity", f"{1e3 * case.oil_viscosity:.4g} mPa*s", "of [oil], in the whole film"),
+        _viscosity(case),
         Decision("mesh", f"{radial} x {angular}", "quadratic elements of a pad, radius by angle"),
         Decision("error", f"from {COARSE[0]} x {COARSE[1]}", "stated with each state by `frb thrust`"),
     )
+
+
+def _viscosity(case: Case) -> Decision:
+    if case.heat is not None:
+        return Decision("heat", "lumped", "each side has the viscosity of the temperature at which its heat balances")
+    return Decision("viscosity", f"{1e3 * case.oil_viscosity:.4g} mPa*s", "of [oil], in the whole film")
