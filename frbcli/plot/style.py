@@ -17,7 +17,9 @@ import matplotlib as mpl
 import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from frbcli.errors import Fault, InputError, printable
 from frbcli.results.files.kinds import PICTURES
@@ -108,6 +110,13 @@ def name_of_key(key: str, unit: str = "") -> str:
     words = " ".join(word for word in re.split(r"[._]", key) if word)
     shown = re.sub(r"\bu(?=m\b)", "µ", unit.replace("*", " ").replace("degC", "°C"))
     return plain(f"{words} in {shown}" if shown else words)
+
+
+def plain_numbers(axis: Axis) -> None:
+    """Numbers on a logarithmic axis as they are, 1, 2, 5, 10, 20, in place of powers of ten with factors."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def mark_times(panels: Sequence[Axes], times_s: Sequence[float], labels: Sequence[str]) -> int:

@@ -15,9 +15,11 @@ from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.case.reading.load import load_case
 from frbcli.columns import table_of
 from frbcli.cycles.maps.stability_map import Growth, MapCurve, MapPoint, StabilityMap
+from frbcli.linear.thrust.sheet import thrust_sheet
 from frbcli.plot.machine.stability_map import stability_map_figure
 from frbcli.plot.run.summary import summary_figure
-from frbcli.plot.style import legend_below, name_of_key, new_figure, plain, styled, with_subscripts
+from frbcli.plot.style import legend_below, name_of_key, new_figure, plain, plain_numbers, styled, with_subscripts
+from frbcli.plot.thrust import thrust_figure
 from frbcli.results.columns import EVENTS
 
 
@@ -113,3 +115,36 @@ def test_labels_of_events_cover_neither_each_other_nor_the_rim(times: list[float
     assert len(lines) == len(times)
     told = str(figure.get_suptitle())
     assert ("have no room" in told) == (len(labels) < len(times))
+
+
+@pytest.mark.parametrize(
+    ("gaps", "speeds", "along", "words"),
+    [
+        ([12e-6], [900.0], [], "load"),
+        ([12e-6], [500.0, 900.0], ["speed in Hz"] * 2, "gap 12 µm"),
+        ([12e-6, 20e-6], [900.0], ["gap in µm"] * 2, "thrust bearing"),
+    ],
+)
+def test_curves_of_a_thrust_bearing_have_more_than_a_point(
+    gaps: list[float], speeds: list[float], along: list[str], words: str
+) -> None:
+    """A single state is the pressure on the pads and its load in the title."""
+    figure = thrust_figure(thrust_sheet(load_case("thrust"), gaps, speeds))
+    *panels, pads, _ = figure.axes
+    assert [panel.get_xlabel() for panel in panels] == along
+    assert all(len(line.get_xdata()) > 1 for panel in panels for line in panel.lines)
+    assert pads.get_xlabel() == "mm"
+    assert words in figure.get_suptitle()
+
+
+def test_numbers_on_a_logarithmic_axis_are_plain() -> None:
+    with styled():
+        figure = new_figure("title", "")
+        axes = figure.subplots()
+        axes.plot([1.0, 2.0], [20.0, 900.0])
+        axes.set_yscale("log")
+        plain_numbers(axes.yaxis)
+        figure.draw_without_rendering()
+    shown = {label.get_text() for label in axes.get_yticklabels() + axes.get_yticklabels(minor=True)}
+    assert {"20", "50", "100", "200", "500"} <= shown
+    assert not any("10^" in text for text in shown)
