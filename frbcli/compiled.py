@@ -11,6 +11,7 @@ import logging
 import os
 import re
 from collections.abc import Callable, Set
+from copy import copy
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -23,7 +24,10 @@ from numba.core.ccallback import CFunc
 from numba.core.sigutils import normalize_signature
 from numpy.typing import NDArray
 
+from frbcli.caches import KERNELS, take_shipped_kernels
+
 _PACKAGE = Path(__file__).parent
+_BRINGS_KERNELS = (_PACKAGE / KERNELS).exists()
 _IMPORTS = re.compile(r"^\s*from frbcli((?:\.\w+)*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 
 Array = NDArray[np.float64]
@@ -31,6 +35,8 @@ Indices = NDArray[np.int64]
 # Of numba.extending.overload, for functions chosen by the types of their arguments: what `compiled` has
 AS_KERNELS: Any = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+
+take_shipped_kernels(_PACKAGE)  # before the first kernel, for which numba chooses a kind of processor
 
 
 def compiled(
@@ -62,11 +68,24 @@ def compiled(
             **options,
         )
         kernel: Any = decorate(function)
-        _keep(kernel.enable_caching)
-        _follow(kernel, Path(function.__code__.co_filename))
+        kernel._cache = _Cache(kernel, Path(function.__code__.co_filename))
         return cast("Kernel", kernel)
 
     return decorated
+
+
+class _Cache:
+    """The cache on disk of a kernel, found when it is first asked. Most kernels are within others, and never are: for
+    each of them numba would try whether its folder can be written."""
+
+    def __init__(self, kernel: Any, source: Path) -> None:
+        self._kernel, self._source = kernel, source
+
+    def __getattr__(self, name: str) -> Any:
+        if self._kernel._cache is self:
+            _keep(self._kernel.enable_caching)
+            _follow(self._kernel, self._source)
+        return getattr(self._kernel._cache, name)
 
 
 def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> Any:
@@ -130,6 +149,11 @@ def _follow(made: Any, *sources: Path) -> None:
     """
     file, digest = made._cache._cache_file, sources_digest(*sources)
     file._version, file._source_stamp = f"{file._version} {digest}", digest
+    beside = sources[0].parent / "__pycache__"
+    if _BRINGS_KERNELS and Path(file._cache_path) != beside:
+        shipped, own = copy(file), file.load
+        shipped._cache_path, shipped._index_path = str(beside), str(beside / Path(file._index_path).name)
+        file.load = lambda key: own(key) or shipped.load(key)
 
 
 @cache

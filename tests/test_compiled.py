@@ -51,13 +51,15 @@ ASK = "from frbcli.film.outer import outer; print(outer(1.0), sum(outer.stats.ca
 
 def package(folder: Path, imported: str) -> Path:
     """A package of the program's name with its compiler of kernels and two kernels in two files."""
-    from frbcli import compiled
+    from frbcli import caches, compiled
 
     room = folder / "frbcli" / "film"
     room.mkdir(parents=True)
     for place in (room.parent, room):
         (place / "__init__.py").touch()
-    (room.parent / "compiled.py").write_text(Path(str(compiled.__file__)).read_text())
+    for module in (compiled, caches):
+        place = Path(str(module.__file__))
+        (room.parent / place.name).write_text(place.read_text())
     (room / "outer.py").write_text(KERNEL.format(imported=imported))
     (room / "inner.py").write_text(INNER.format(added="1.0"))
     return room
