@@ -108,8 +108,12 @@ def with_subscripts(text: str) -> str:
 def name_of_key(key: str, unit: str = "") -> str:
     """A key of the case file in words, for an axis, with its unit: oil viscosity in mPa s."""
     words = " ".join(word for word in re.split(r"[._]", key) if word)
-    shown = re.sub(r"\bu(?=m\b)", "µ", unit.replace("*", " ").replace("degC", "°C"))
-    return plain(f"{words} in {shown}" if shown else words)
+    return plain(f"{words} in {in_words(unit)}" if unit else words)
+
+
+def in_words(quantity: str) -> str:
+    """A quantity or unit of a case file as a picture shows it: 35 um and mPa*s become 35 µm and mPa s."""
+    return re.sub(r"\bu(?=m\b)", "µ", quantity.replace("*", " ").replace("degC", "°C"))
 
 
 def plain_numbers(axis: Axis) -> None:
@@ -174,6 +178,13 @@ def legend_below(figure: Figure, *panels: Axes, columns: int = 3) -> None:
         figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=columns, fontsize=size)
         rows = math.ceil(len(named) / columns)
         figure.set_figheight(figure.get_figheight() + LEGEND_ROW * max(0, rows - 2))
+
+
+def legend_above(axes: Axes) -> None:
+    """A legend above a panel in one row, where it hides no curve and takes no width; none for one curve."""
+    count = len(axes.get_legend_handles_labels()[0])
+    if count > 1:
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=count, fontsize="small", borderaxespad=0.2)
 
 
 def legend_beside(axes: Axes) -> None:

@@ -372,7 +372,7 @@ def test_map_and_curve_show_the_thresholds(case: Case, tmp_path: Path) -> None:
     drawn = np.ma.filled(figure.axes[0].collections[0].get_array(), np.nan)
     # across: viscosity, ascending; up: clearance, ascending, "1 m" beside the others' um: as written
     np.testing.assert_array_equal(drawn, speeds[::-1].T)
-    assert figure.axes[0].get_xlabel() == "oil.viscosity in mPa*s"
+    assert figure.axes[0].get_xlabel() == "oil viscosity in mPa s"
     assert [label.get_text() for label in figure.axes[0].get_xticklabels()] == ["8", "12"]
     assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["30 um", "35 um", "1 m"]
     curve = sweep(case, {"bearing.clearance": ["35 um", "30 um", "2000 um"]}, tmp_path / "c", "stability", workers=TWO)

@@ -7,12 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter
 
 from frbcli.film.cavitation.table import law_named
 from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
 from frbcli.linear.film_state import FilmState
-from frbcli.plot.style import COLOURS, legend_beside, new_figure, styled
+from frbcli.plot.style import COLOURS, legend_above, new_figure, plain_numbers, styled
 
 Reading = Callable[[FilmState], float]
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1, 1, 1)))  # of the films of a machine
@@ -45,10 +44,10 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
             panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
         for panel in panels[2]:
             panel.set_yscale("log")
-            panel.yaxis.set_major_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2.0, 0.5)))
-            panel.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2.0, 0.5)))
+            plain_numbers(panel.yaxis)
         if chart:
             panels[0, 0].set_yscale("log")
+            plain_numbers(panels[0, 0].yaxis)
             for panel in panels[1]:
                 panel.set_yscale("symlog")
         if len(sheet.films) > 1:
@@ -77,7 +76,7 @@ def _curves(axes: Axes, sheet: BearingSheet, label: str, readings: list[tuple[st
             axes.plot(x, [reading(state) for state in states], color=colour, linestyle=dash, label=shown)
     axes.set_ylabel(label)
     if len(readings) > 1:
-        legend_beside(axes)
+        legend_above(axes)
 
 
 def _entry(name: str, index: int, scale: float) -> Reading:

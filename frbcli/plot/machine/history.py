@@ -34,8 +34,8 @@ def history_figure(found: KinematicTest) -> Figure:
             above.plot(history.time_s, values, color=colour, linestyle=line, label=label)
             below.plot(history.time_s, history.gap_ratio, color=GREY)
         force = "vertical force on the journal in N"
-        above.set_ylabel("pressure at phi = 180°, z = B/4 in bar" if pressures else force)
-        below.set_ylabel("gap H at phi = 180°")
+        above.set_ylabel("pressure at φ = 180°, z = B/4 in bar" if pressures else force)
+        below.set_ylabel("gap H\nat φ = 180°")
         below.set_ylim(bottom=0.0)
         below.set_xlabel("time in s")
         below.margins(x=0.0)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from frbcli.analysis.orders.order_tracking import OrderTrack
 from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, Response, larger_semi_axis
-from frbcli.plot.style import BAND, BLACK, COLOURS, GREY, legend_beside, new_figure, styled
+from frbcli.plot.style import BAND, BLACK, COLOURS, GREY, legend_below, legend_beside, new_figure, styled
 
 Array = NDArray[np.float64]
 MICRO = 1e6
@@ -62,7 +62,7 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
             _orbits(panel, found, speed)
         if len(_orbit_speeds(found)) < 2:
             second.set_visible(False)
-        legend_beside(amplitude)
+        legend_below(figure, amplitude, columns=4)
         legend_beside(force)
     return figure
 

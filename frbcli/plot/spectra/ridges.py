@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from frbcli.analysis.spectra.ridges import Ridges
 from frbcli.plot.signals import MICRO
 from frbcli.plot.spectra.waterfall import draw_levels, level_label, run_spectra
-from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, legend_below, new_figure, styled
+from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, in_words, legend_below, name_of_key, new_figure, styled
 from frbcli.studies.against import AgainstMeasured
 from frbcli.studies.fit import Fit
 from frbcli.units import display
@@ -29,7 +29,8 @@ def fit_figure(found: Fit) -> Figure:
     first, and with those found."""
     case = found.case
     numbers = ", ".join(
-        f"{n.key} {display(n.value, n.unit) if n.unit else f'{n.value:.4g}'} ± {100.0 * n.error / n.value:.2g} %"
+        f"{name_of_key(n.key)} {in_words(display(n.value, n.unit)) if n.unit else f'{n.value:.4g}'} "
+        f"± {100.0 * n.error / n.value:.2g} %"
         for n in found.numbers
     )
     drawn: list[Drawn] = [

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.film.cavitation.table import label_of
-from frbcli.plot.style import BLACK, COLOURS, GREY, legend_below, new_figure, styled
+from frbcli.plot.style import BLACK, COLOURS, GREY, legend_below, new_figure, plain_numbers, styled
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungResult
 
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
@@ -35,6 +35,7 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
         axes = figure.subplots()
         axes.margins(x=0.08, y=0.08)
         axes.set_xscale("log")
+        plain_numbers(axes.xaxis)
         axes.set_yscale("log")
         groups = dict.fromkeys(_group(item.rung, several) for item in ladder.ladder)
         for index, group in enumerate(groups):

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.plot.style import BLUE, LEVEL_MAP, VERMILION, new_figure, styled
+from frbcli.plot.style import BLUE, LEVEL_MAP, VERMILION, name_of_key, new_figure, styled
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
 KINDS = {"runup": ("onset", "onset of the whirl"), "stability": ("threshold", "threshold of stability")}
@@ -32,8 +32,8 @@ class _Scale:
 
     @property
     def label(self) -> str:
-        own = f"{self.key} in {self.unit}" if self.unit else self.key
-        return f"{own}, with it {', '.join(self.others)}" if self.others else own
+        own = name_of_key(self.key, self.unit or "")
+        return f"{own}, with it {', '.join(map(name_of_key, self.others))}" if self.others else own
 
     @property
     def ticks(self) -> list[str]:
