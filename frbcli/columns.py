@@ -22,6 +22,8 @@ AXES = "xy"
 ENTRIES = ("xx", "xy", "yx", "yy")  # heads of a matrix
 ZERO_CELSIUS = 273.15
 TWO_DIGITS = 2.0  # an uncertainty that begins with 1 has two digits
+MINUS_ZERO = re.compile(r"^-(?=0(?:\.0*)?[^\d.]*$)")  # of round-off below zero, such as -0.0 or -0°
+LARGEST_PLAIN = 1e6  # below it, numbers with a number of digits have no powers of ten
 ROUND_OFF = 1e-9  # of a number that is rounded up
 SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6}  # over SI
 
@@ -54,11 +56,12 @@ class Shown:
     def cells(self, value: Any) -> tuple[str, ...]:
         """The cells of a value; "-" for a number that is not known."""
         if isinstance(self.head, str):
-            return (self._cell(value),)
-        if value is None:
-            return ("-",) * len(self.head)
-        cells = self.form(value) if callable(self.form) else map(self._cell, np.ravel(value).tolist())
-        return tuple(cells)
+            cells: Iterable[str] = (self._cell(value),)
+        elif value is None:
+            cells = ("-",) * len(self.head)
+        else:
+            cells = self.form(value) if callable(self.form) else map(self._cell, np.ravel(value).tolist())
+        return tuple(MINUS_ZERO.sub("", cell) for cell in cells)
 
     def _cell(self, value: Any) -> str:
         if value is None or (isinstance(value, float) and math.isnan(value)):
@@ -70,6 +73,8 @@ class Shown:
         elif self.unit in SCALES:
             value = SCALES[self.unit] * value
         text = format(value, self.form)
+        if self.form.endswith("g") and "e+" in text and abs(float(text)) < LARGEST_PLAIN:
+            return f"{float(text):.0f}"
         return text.replace("e-0", "e-") if self.form.endswith("e") else text
 
 

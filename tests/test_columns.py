@@ -79,6 +79,19 @@ def test_the_terminal_shows_numbers_in_their_units() -> None:
     assert legend(COLUMNS) == "Hz: rotor speed; p: largest pressure, bar; err.: error"
 
 
+@pytest.mark.parametrize(
+    ("value", "form", "cell"),
+    [
+        (-1e-17, ".1f", "0.0"), (-1e-17, ".3g", "-1e-17"), (-0.0, ".3g", "0"), (-0.06, ".1f", "-0.1"),
+        (-0.2, "{:.0f}°".format, "0°"), (-10.2, "{:.0f}°".format, "-10°"),
+        (2344.0, ".3g", "2340"), (-18334.0, ".4g", "-18330"), (2e6, ".3g", "2e+06"), (2e-7, ".0e", "2e-7"),
+    ],
+)  # fmt: skip
+def test_noise_is_zero_and_large_numbers_are_plain(value: float, form: Any, cell: str) -> None:
+    shown = Column("force", "N", "a force", value=lambda item: item, shown=(Shown("F", form),))
+    assert table_of((shown,), [value]).cells() == [(cell,)]
+
+
 def test_a_page_tells_names_units_and_meaning() -> None:
     rows = column_tables.page_table(COLUMNS).splitlines()
     assert len(rows) == 2 + len(COLUMNS)
