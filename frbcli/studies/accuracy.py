@@ -204,6 +204,10 @@ def _until(case: Case, until: float | None) -> Case:
     if until <= case.output.step:
         problem = f"is not above the output step of {case.output.step:g} s."
         raise InputError(case.name or "case", (Fault("--until", f"{until:g} s", None, problem, "Lengthen it."),))
+    if speed.times:
+        problem = "ends a ramp, and speed.points are no ramp."
+        remedy = "Leave the later points out of the case."
+        raise InputError(case.name or "case", (Fault("--until", f"{until:g} s", None, problem, remedy),))
     end = speed.start + (speed.end - speed.start) * until / speed.duration
     return _with(case, f"speed.to={end!r} Hz", f"speed.duration={until!r} s")
 

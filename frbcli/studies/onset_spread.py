@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, table_of
-from frbcli.errors import FrbError, InputError
+from frbcli.errors import Fault, FrbError, InputError
 from frbcli.html import Tabular
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
@@ -92,8 +92,13 @@ class OnsetSpread(Tabular):
 def onset_spread(case: Case, run: Run, observe: Watch | None = None) -> OnsetSpread | None:
     """The ensemble of a run-up; None if no whirl begins in it. observe: number of the run, all runs, its progress.
 
-    Each run goes as far as BEYOND of the onset. Raises KeyboardInterrupt when it is interrupted.
+    Each run goes as far as BEYOND of the onset. Raises KeyboardInterrupt when it is interrupted, and InputError for a
+    speed through points.
     """
+    if case.speed.times:
+        problem = "are followed as they are, and the spread of an onset is over ramps."
+        fault = Fault("speed.points", f"{len(case.speed.times)} points", None, problem, "Give from, to and duration.")
+        raise InputError(case.name or "case", (fault,))
     onset = onset_speed(run)
     if math.isnan(onset):
         return None

@@ -118,6 +118,8 @@ def _value(entry: dict[str, Any]) -> str:
         return f"list of {_value(entry['items'])}"
     if "enum" in entry.get("items", {}):
         return f"list of {_value(entry['items'])}"
+    if "prefixItems" in entry.get("items", {}):
+        return f"list of {_value(entry['items'])}"
     if "prefixItems" in entry:
         return f"[{', '.join(_value(item) for item in entry['prefixItems'])}]"
     forms = entry.get("anyOf", entry.get("oneOf", []))

@@ -22,6 +22,7 @@ from frbcli.case.rules.faults import objections, with_nearest_kinds
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.housing_rules import housing_breaches
 from frbcli.case.surroundings.places import base_breaches, force_breaches
+from frbcli.case.surroundings.speed_points import with_speed_points
 from frbcli.case.surroundings.time_tables import with_time_tables
 from frbcli.errors import Fault, InputError
 
@@ -191,7 +192,11 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data, unread = with_rotor_file(data, Path(folder))
     data, unknown = with_coefficient_files(data, Path(folder))
     data, unfit = with_time_tables(data, Path(folder))
+    data, wrong = with_speed_points(data, Path(folder))
+    unfit += wrong
     case, found = _validate(data)
+    if wrong:  # from, to and duration would follow
+        found = [breach for breach in found if breach.path[0] != "speed"]
     if case is not None and not (found or unfit):
         found = [*force_breaches(case), *base_breaches(case), *housing_breaches(case)]
     if unread:  # what the file would have completed is no fault of the case

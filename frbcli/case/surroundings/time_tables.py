@@ -26,7 +26,7 @@ FEWEST_EVEN = 20  # rows
 SUFFIX = re.compile(r"(.+)_([A-Za-z0-9]+)")  # of names such as time_s, as frb export writes them
 
 
-class _Unfit(Exception):
+class Unfit(Exception):
     """Problem and remedy of a file that cannot be taken."""
 
 
@@ -59,8 +59,8 @@ def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
                 found.append(Breach(key, "is given beside over_time.", "Keep one of the two."))
                 continue
             try:
-                numbers = _read(folder / name, wanted, MOST_NUMBERS - count)
-            except _Unfit as fault:
+                numbers = read_table(folder / name, wanted, MOST_NUMBERS - count)
+            except Unfit as fault:
                 found.append(Breach(key, *fault.args))
                 continue
             count += sum(map(len, numbers.values()))
@@ -73,7 +73,8 @@ def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
     return changed, found
 
 
-def _read(path: Path, wanted: TableKind, most: int) -> dict[str, list[float]]:
+def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[str, list[float]]:
+    """The columns time, x and, where there are two, y of a file, in SI. Raises Unfit."""
     from frbcli.results.measured.reading import read_columns
 
     try:
@@ -83,16 +84,44 @@ def _read(path: Path, wanted: TableKind, most: int) -> dict[str, list[float]]:
         values = {"x": _values(columns, x, wanted)} | ({"y": _values(columns, y, wanted)} if y else {})
     except InputError as error:
         (fault,) = error.faults
-        raise _Unfit(fault.problem, fault.remedy) from None
+        raise Unfit(fault.problem, fault.remedy) from None
     found = {"time": time, **values}
     shortest, longest = min(map(len, found.values())), max(map(len, found.values()))
     if shortest != longest:
-        raise _Unfit(f"has columns of {shortest} and of {longest} rows.", "Give all columns the same rows.")
+        raise Unfit(f"has columns of {shortest} and of {longest} rows.", "Give all columns the same rows.")
     if longest * len(found) > most:
         problem = f"has {longest} rows of {len(found)} columns; the tables of a case hold {MOST_NUMBERS} numbers."
-        raise _Unfit(problem, "Cut it, or sample it at fewer times.")
+        raise Unfit(problem, "Cut it, or sample it at fewer times.")
     _check_times(columns, time)
     return {name: column.tolist() for name, column in found.items()}
+
+
+def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
+    """Times in s and speeds x in Hz of a column with so many pulses per revolution, a row for each revolution. Raises
+    Unfit."""
+    import numpy as np
+
+    from frbcli.analysis.orders.tacho import tacho_speed
+    from frbcli.results.measured.reading import read_columns
+
+    if not isinstance(pulses, int) or pulses < 1:
+        raise Unfit(f"has {pulses} pulses per revolution.", "Write e.g. pulses = 1.")
+    try:
+        columns = read_columns(path)
+        signal, time = columns[name], _times(columns)
+    except InputError as error:
+        (fault,) = error.faults
+        raise Unfit(fault.problem, fault.remedy) from None
+    _check_times(columns, time)
+    try:
+        speed = tacho_speed(time, signal, pulses)
+    except ValueError as error:
+        raise Unfit(f'has a column "{name}" that {error}', "Give a signal with pulses as tacho.") from None
+    turned = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    rows = np.interp(np.arange(1.0, turned[-1]), turned, time)
+    inside = rows[(rows > time[0]) & (rows < time[-1])]
+    moments = np.concatenate([time[:1], inside, time[-1:]])
+    return {"time": moments.tolist(), "x": np.interp(moments, time, speed).tolist()}
 
 
 def _plain(columns: Columns) -> Iterator[tuple[str, str]]:
@@ -116,7 +145,7 @@ def _times(columns: Columns) -> Values:
     rates = [value for name, value in columns.numbers.items() if name.lower() in RATES]
     rate = columns.rate or (rates[0] if rates else None)
     if rate is None or not rate > 0.0:
-        raise _Unfit('has no column "time".', 'Call the column of its times "time" or "t"; a WAV needs none.')
+        raise Unfit('has no column "time".', 'Call the column of its times "time" or "t"; a WAV needs none.')
     return np.arange(max(map(len, columns.values.values()), default=0)) / rate
 
 
@@ -124,15 +153,17 @@ def _named(columns: Columns, wanted: TableKind) -> tuple[str, str]:
     """The columns of x and y; of a single one there is no y."""
     named = dict(_plain(columns))
     x, y = ([named[name] for name in names if name in named][:1] for names in (wanted.x, wanted.y))
-    if x and y:
-        return x[0], y[0]
+    if x and (y or not wanted.y):
+        return x[0], y[0] if y else ""
     others = [name for plain, name in _plain(columns) if name in columns.values and plain not in TIMES]
     single = [name for name in dict.fromkeys(others) if name not in {named.get(time) for time in TIMES}]
     if len(single) == 1:
         return single[0], ""
     listed = ", ".join(f'"{name}"' for name in columns.values)
+    if not wanted.y:
+        raise Unfit(f'has no column "{wanted.x[0]}".', f'Call it "{wanted.x[0]}". It has: {listed}.')
     remedy = f'Call them "{wanted.x[0]}" and "{wanted.y[0]}", or give one column beside the time. It has: {listed}.'
-    raise _Unfit("has no columns of the values in x and y.", remedy)
+    raise Unfit("has no columns of the values in x and y.", remedy)
 
 
 def _values(columns: Columns, name: str, wanted: TableKind) -> Values:
@@ -142,7 +173,7 @@ def _values(columns: Columns, name: str, wanted: TableKind) -> Values:
 
 
 def _unit(columns: Columns, name: str, si: str) -> float:
-    """SI value of 1 in a column. Raises _Unfit for a unit of something else."""
+    """SI value of 1 in a column. Raises Unfit for a unit of something else."""
     told = columns.unit(name) or ""
     suffix = SUFFIX.fullmatch(name)
     if not told.strip("-1 ") and suffix is None:
@@ -153,7 +184,7 @@ def _unit(columns: Columns, name: str, si: str) -> float:
         if not told.strip("-1 "):
             return 1.0  # the end of a name that is no unit
         problem = f'has "{told}" as unit of the column "{name}".'
-        raise _Unfit(problem, f"Give it in {si} or a unit like it.") from None
+        raise Unfit(problem, f"Give it in {si} or a unit like it.") from None
 
 
 def _check_times(columns: Columns, time: Values) -> None:
@@ -161,15 +192,15 @@ def _check_times(columns: Columns, time: Values) -> None:
     import numpy as np
 
     if len(time) < 2:
-        raise _Unfit("has fewer than two rows.", "Give the values at two times at least.")
+        raise Unfit("has fewer than two rows.", "Give the values at two times at least.")
     steps = np.diff(time)
     if not np.all(steps > 0.0):
         row = int(np.argmin(steps > 0.0)) + 1
         problem = f"has the time {time[row]:.6g} s in {columns.row(row)}, not later than the row before."
-        raise _Unfit(problem, "Order its rows by rising times, each once.")
+        raise Unfit(problem, "Order its rows by rising times, each once.")
     usual = float(np.median(steps))
     even = np.abs(steps - usual) <= EVEN * usual
     if len(time) >= FEWEST_EVEN and not np.all(even) and np.mean(even) >= MOSTLY and steps.max() > 1.5 * usual:
         row = int(np.argmax(steps > 1.5 * usual)) + 1
         problem = f"has a gap of {steps[row - 1]:.4g} s before {columns.row(row)}; other rows are {usual:.4g} s apart."
-        raise _Unfit(problem, "Fill the gap, or cut the table there.")
+        raise Unfit(problem, "Fill the gap, or cut the table there.")

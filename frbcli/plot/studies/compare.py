@@ -84,7 +84,7 @@ def _speed_axis(axes: Axes, comparison: Comparison) -> None:
     """The rotor speed above the time, where it rises from the beginning to the end."""
     speed = comparison.case.speed
     rate = (speed.end - speed.start) / speed.duration
-    if rate == 0.0:
+    if rate == 0.0 or speed.times:
         return
 
     def at_time(time_s: Any) -> Any:

@@ -5,20 +5,26 @@ from __future__ import annotations
 import math
 
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
+from frbcli.errors import Fault, InputError
 from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
 from frbcli.scene.machine.elements import table_faults, table_times
 
 
 def run_up_profile(case: Case) -> SpeedProfile:
-    """From the first to the last speed of the case. Raises InputError for a table over time that ends before."""
-    speed = case.speed
-    return _with_tables(case, [0.0, speed.duration], [speed.start, speed.end])
+    """From the first to the last speed of the case, or through its points. Raises InputError for a table over time that
+    ends before."""
+    times, speeds = case.speed.course
+    return _with_tables(case, list(times), list(speeds))
 
 
 def run_down_profile(case: Case) -> SpeedProfile:
-    """Up, hold, and back down (section 7.2.2). Raises InputError for a table over time that ends before."""
+    """Up, hold, and back down (section 7.2.2). Raises InputError for a speed through points, which tell the way down
+    themselves, and for a table over time that ends before."""
     speed = case.speed
+    if speed.times:
+        problem = "say how the speed goes down, too."
+        fault = Fault("speed.points", f"{len(speed.times)} points", None, problem, "Call `frb runup`.")
+        raise InputError(case.name or "case", (fault,))
     times, speeds = [0.0, speed.duration], [speed.start, speed.end]
     if speed.hold > 0.0:
         times.append(times[-1] + speed.hold)

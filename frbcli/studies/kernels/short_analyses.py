@@ -14,6 +14,7 @@ from frbcli.linear.stability import stability_points
 from frbcli.runs.run import runup
 from frbcli.scene.gate.analysis import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
 from frbcli.scene.gate.gate import faults
+from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
@@ -50,7 +51,8 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
     for analysis in found:
         decisions = kinematic_plan(case, test=analysis) if analysis in KINEMATIC else make_plan(case)
         chosen = tuple(made.value for made in decisions.decisions if made.choice in COMPILED_FOR)
-        kind = (analysis, *chosen, case.heat is not None, case.output.signals, case.film.bearing_model)
+        loaded = analysis not in KINEMATIC and bool(element_parts(case).loads)
+        kind = (analysis, *chosen, loaded, case.heat is not None, case.output.signals, case.film.bearing_model)
         on_cells = analysis in (BEARING, *KINEMATIC) or form_of(case).by_cells
         yield ShortAnalysis(case, analysis, kind, CELLS if on_cells else OTHERS)
 
@@ -58,7 +60,8 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
 def moment_of_run(case: Case) -> Case:
     """A case whose run takes a moment, at its last speed."""
     duration = max(MOMENT_s, 2 * case.output.step)
-    return case.with_settings(f"speed.from={case.speed.end!r}", f"speed.duration={duration!r}")
+    end = case.speed.end
+    return case.with_settings({"speed": {"from": end, "to": end, "duration": duration}})
 
 
 def _applies(case: Case, analysis: str) -> bool:
