@@ -272,7 +272,7 @@ def test_the_damper_may_have_any_cavitation_law_of_its_own(law: str, tmp_path: P
     supply = {"kind": "circumferential-groove", "pressure": "2 bar"}
     film: dict[str, object] = {law: LAWS[law]} if LAWS[law] else {}
     case = damped(
-        {"theory": "auto", **film}, ("accuracy.mesh=[12, 16]", "speed.duration=20 ms"), cavitation=law, supply=supply
+        {"theory": "auto", **film}, ("accuracy.mesh=[12, 16]", "speed.duration=6 ms"), cavitation=law, supply=supply
     )
     run = runup(case, tmp_path / "run.h5")
     assert run.status == "finished"
