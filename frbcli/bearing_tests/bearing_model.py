@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from frbcli.bearing_tests.history import Course, History
-from frbcli.bearing_tests.journal_path import Path
+from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.steady_film import Array, FilmMoment
 from frbcli.case.schema import Case
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque

@@ -76,8 +76,8 @@ RESULT = (
     Column("oil_defect_relative", "", "oil that is lost, or created (negative), over the flow",
            _loads("oil.defect_relative"), shown=(Shown("balance", ".0e", table=OIL),),
            key="oil_balance.defect_relative"),
-    Column("force_error_relative", "", "error of the force, from half the cells, over its size",
-           attrgetter("force_error"), key="error.force_relative"),
+    Column("force_error_relative", "", "error of the force over its size: from half the cells, of a short bearing from "
+           "the finite one", attrgetter("force_error"), key="error.force_relative"),
     Column("temperature", "K", "temperature of the film, with heat", lambda result: math.nan if result.heat is None
            else float(result.heat.temperatures[0]), key=""),
     Column("viscosity", "Pa s", "viscosity of its oil", attrgetter("plan.section.viscosity"), key=""),
@@ -126,7 +126,8 @@ def error_column(largest: float) -> Column:
     """The error of a force over the largest one of a table in N: one that nearly vanishes has a large error of its own,
     which is of no meaning beside the others."""
     return Column(
-        "error", "", "error of the force, from half the cells, over the largest |F| of the table",
+        "error", "", "error of the force over the largest |F| of the table: from half the cells, of a short bearing "
+        "from the finite one",
         lambda result: result.force_error * force_size(result) / largest if largest > 0.0 else math.nan,
         shown=(Shown("err.", ".0e", table=FORCES),), key="", flat=False,
     )  # fmt: skip

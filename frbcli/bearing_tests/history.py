@@ -10,8 +10,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.bearing_tests.journal_path import Path
-from frbcli.bearing_tests.march import FilmAt, Moment, march
+from frbcli.bearing_tests.march import FilmAt, Moment, Path, march
 from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged

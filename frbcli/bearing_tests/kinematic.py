@@ -11,7 +11,7 @@ import numpy as np
 
 from frbcli.bearing_tests.columns import MOMENTS, result_columns
 from frbcli.bearing_tests.history import History
-from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
+from frbcli.bearing_tests.march import squeeze_path, whirl_path
 from frbcli.bearing_tests.steady_film import FilmField
 from frbcli.bearing_tests.tested_film import tested_film
 from frbcli.bearing_tests.warm import warm_moved_film, warm_resting_film

@@ -1,19 +1,46 @@
-"""A film along a given motion of its journal, moment by moment."""
+"""A film along a given motion of its journal, squeeze (4.47) or whirl (4.48), (4.49), moment by moment."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from frbcli.bearing_tests.journal_path import Path
 from frbcli.errors import NotConverged
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
 
+Path = Callable[[float], Motion]  # of the time in s
+
+RISE_TIME = 0.01  # s, t_1 of (4.49)
 MOST_HALVINGS = 6  # of a step whose equations do not converge
 FilmAt = Callable[[float, Motion], VolumeFilm]
+
+
+def squeeze_path(eccentricity: float, frequency: float, omega: float) -> Path:
+    """D_y = -C eps sin(2 pi f t) (4.47)."""
+    rate = 2.0 * math.pi * frequency
+
+    def path(t: float) -> Motion:
+        y, v = -eccentricity * math.sin(rate * t), -eccentricity * rate * math.cos(rate * t)
+        return Motion((0.0, y), (0.0, v), omega)
+
+    return path
+
+
+def whirl_path(eccentricity: float, frequency: float, omega: float) -> Path:
+    """A circle (4.48) that is reached within some t_1 (4.49)."""
+    rate = 2.0 * math.pi * frequency
+
+    def path(t: float) -> Motion:
+        fading = math.exp(-t / RISE_TIME)
+        e, growth = eccentricity * (1.0 - fading), eccentricity * fading / RISE_TIME
+        c, s = math.cos(rate * t), math.sin(rate * t)
+        return Motion((e * c, e * s), (growth * c - e * rate * s, growth * s + e * rate * c), omega)
+
+    return path
 
 
 @dataclass(frozen=True)

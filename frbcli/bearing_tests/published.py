@@ -20,7 +20,7 @@ from frbcli.bearing_tests.history import (
     every_second,
     peak_error,
 )
-from frbcli.bearing_tests.journal_path import Path
+from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.steady_film import FilmField, FilmMoment, pressure_at
 from frbcli.case.schema import Case
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest

@@ -8,15 +8,18 @@ from dataclasses import dataclass
 
 from frbcli.bearing_tests.bearing_model import model_course, model_force, model_moment
 from frbcli.bearing_tests.history import Course, film_course
-from frbcli.bearing_tests.journal_path import Path
+from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.published import published_course, published_moment, resting_in_published
 from frbcli.bearing_tests.resting import resting_displacement
+from frbcli.bearing_tests.short import short_course, short_force, short_moment
 from frbcli.bearing_tests.steady_film import Array, FilmMoment, film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion
 from frbcli.film.published.solution import NodeState
+from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import GIVEN
 from frbcli.scene.forms.published import PUBLISHED
+from frbcli.scene.forms.tables import SHORT
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Tell = Callable[[int], None]
@@ -78,6 +81,22 @@ class PublishedTest(TestedFilm):
         return published_course(self.case, self.plan, path, times, tell)
 
 
+class ShortTest(TestedFilm):
+    """By the closed forms of the short bearing."""
+
+    def rest(self, load: float, omega: float) -> tuple[Array, NodeState | None]:
+        """See TestedFilm."""
+        return resting_displacement(self.case, self.plan, load, omega, short_force), None
+
+    def moment(self, motion: Motion, _: NodeState | None) -> FilmMoment:
+        """See TestedFilm."""
+        return short_moment(self.plan, motion)
+
+    def course(self, path: Path, times: Array, _: Tell | None) -> Course:
+        """See TestedFilm."""
+        return short_course(self.plan, path, times)
+
+
 class ModelFilm(TestedFilm):
     """By a bearing model."""
 
@@ -96,4 +115,6 @@ class ModelFilm(TestedFilm):
 
 def tested_film(case: Case, plan: KinematicPlan) -> TestedFilm:
     """The film of a planned test: here, and nowhere else, a form becomes a film."""
-    return {GIVEN: ModelFilm, PUBLISHED: PublishedTest}.get(plan.form, SolvedFilm)(case, plan)
+    kinds: dict[FilmForm, Callable[[Case, KinematicPlan], TestedFilm]]
+    kinds = {GIVEN: ModelFilm, PUBLISHED: PublishedTest, SHORT: ShortTest}
+    return kinds.get(plan.form, SolvedFilm)(case, plan)

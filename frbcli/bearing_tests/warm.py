@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.bearing_tests.history import mean_heat
-from frbcli.bearing_tests.journal_path import Path
+from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.steady_film import film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion

@@ -15,8 +15,8 @@ import pytest
 
 from frbcli import load_case, rotation
 from frbcli.bearing_tests.history import History, film_course
-from frbcli.bearing_tests.journal_path import squeeze_path, whirl_path
 from frbcli.bearing_tests.kinematic import KinematicResult
+from frbcli.bearing_tests.march import squeeze_path, whirl_path
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 FREQUENCY, PERIOD, STEPS, PERIODS = 10.0, 0.1, 100, 3

@@ -59,6 +59,7 @@ class FilmForm:
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
     same_in_tests: ClassVar[bool] = False  # whether kinematic tests have the same films
     modal: ClassVar[bool] = False  # whether kinematic tests take the pressure from the modal film
+    theory_in_tests: ClassVar[str] = "finite"
     parts: ClassVar[tuple[str, str]] = "cells", "around x along"  # of a film in kinematic tests, and what they count
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"

@@ -11,11 +11,13 @@ from frbcli.film.grid import CHAIN_MODES
 from frbcli.scene.forms.form import FilmForm, SolveCounts, mean_us
 
 if TYPE_CHECKING:
+    from frbcli.case.schema import Case
     from frbcli.scene.planning.planned import Plan
 
 TABLE_s, TABLE_MODES = 3.2e-5, 14  # per element around and mode along; modes that cost as much as the lines
 MODES_s = 3e-9  # of the axial modes, per cube of the elements along
 DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
+SHORT_POINTS = 96, 32  # around and along, in kinematic tests
 FIELD_ELEMENTS = 64  # around
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 
@@ -63,6 +65,22 @@ class ModalForm(FilmForm):
 
 
 @dataclass(frozen=True)
+class ShortForm(FilmForm):
+    """Films of the short bearing, of kinematic tests alone."""
+
+    theory_in_tests: ClassVar[str] = "short"
+    parts: ClassVar[tuple[str, str]] = "points", "around x along"
+
+    def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
+        """See FilmForm."""
+        return SHORT_POINTS, "at which the pressure is told; the force is exact"
+
+    def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
+        """See FilmForm."""
+        return self.name, f"{law.name} of the short bearing, set in the case; it has no state"
+
+
+@dataclass(frozen=True)
 class ChainForm(FilmForm):
     """Films between axial grooves, solved at every call."""
 
@@ -93,4 +111,5 @@ TABLE = TableForm("table over eccentricity and direction", SolveCounts(1.0, 1.0,
 FIELDS = FieldsForm("tabulated fields, clipped at every call", SolveCounts(1.0, 1.0, 2.2, (1.2, 2.5)), 10.5)
 CHAINS = ChainForm("solved between the grooves at every call", SolveCounts(1.0, 1.0, 1.7, (3.3, 2.4)), 17.5)
 MODAL = ModalForm("modal, quadratic elements", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 1e3)
+SHORT = ShortForm("closed form of the short bearing", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 1.0)
 MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)

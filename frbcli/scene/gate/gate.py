@@ -66,7 +66,7 @@ RULES = (
     *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each != ROTATION)),
     Rule(static.tilted_sheet_faults, SHEETS),
-    Rule(_of_films(runs.theory_faults), (RUN,)),
+    Rule(_of_films(runs.theory_faults), (RUN, *KINEMATIC)),
     Rule(_of_films(runs.form_faults), (RUN,)),
     Rule(static.sheet_faults, SHEETS),
     Rule(dampers.sheet_faults, SHEETS),

@@ -75,9 +75,14 @@ def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
 
 
 def theory_faults(case: Case) -> Iterator[Fault]:
-    """The short bearing neglects the flow around that the pressure drives."""
-    if case.film.theory == "short":
-        problem = "neglects the flow around that the pressure drives, with which a test computes torque and balance."
+    """Tests with heat follow the oil of a film of finite length, and the short bearing has the same gap along it."""
+    if case.film.theory != "short":
+        return
+    if case.heat is not None:
+        problem = "neglects the flow around that the pressure drives, whose heat a test with [thermal] follows."
+        yield Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".')
+    if case.motion is not None and len(case.bearings) == 1 and tilts(case):
+        problem = "is of a gap that is the same along the bearing, and this one tilts."
         yield Fault("film.theory", "short", None, problem, 'Write "finite" or "auto".')
 
 

@@ -19,7 +19,7 @@ from frbcli.scene.films import make_law
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import chosen_model, model_decisions
-from frbcli.scene.forms.tables import MODAL
+from frbcli.scene.forms.tables import MODAL, SHORT
 from frbcli.scene.gate.analysis import KINEMATIC, ROTATION
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import motion_omega
@@ -75,7 +75,7 @@ class KinematicPlan:
     @property
     def theory(self) -> str:
         """Of the film, or the name of its bearing model."""
-        return "finite" if self.model is None else self.model.name
+        return self.form.theory_in_tests if self.model is None else self.model.name
 
     @property
     def label(self) -> str:
@@ -149,6 +149,8 @@ def _name_faults(case: Case, cavitation: str) -> Iterator[Fault]:
 def _form(case: Case, rectangle: Section | None) -> FilmForm:
     if (form := form_of(case)).same_in_tests:
         return form
+    if case.film.theory == "short":
+        return SHORT
     return MODAL if rectangle is not None and not tilts(case) and law_named(case.film.cavitation).closed else CELLS
 
 
