@@ -124,7 +124,7 @@ def test_short_tests_are_of_films_that_clip_a_pressure() -> None:
     ("motion", "settings", "said"),
     [
         (", tilt=['0.1 mrad', '0 mrad']", [], "same along the bearing"),
-        ("", ["oil.viscosity={grade='SAE 10W-40'}", "thermal={model='lumped', supply_temperature='50 degC'}"], "heat a test"),
+        ("", ["oil.viscosity={grade='SAE 10W-40'}", "thermal.supply_temperature=50 degC"], "heat a test"),
     ],
 )  # fmt: skip
 def test_what_a_short_test_does_not_know(motion: str, settings: list[str], said: str) -> None:
