@@ -61,9 +61,9 @@ def _numbers(speed: dict[str, Any], folder: Path) -> tuple[list[float], list[flo
     elif TIMES in speed or SPEEDS in speed:
         times, speeds = (_column(speed.get(key), unit) for key, unit in ((TIMES, "s"), (SPEEDS, SPEED)))
     else:
-        points = speed["points"]
+        points = speed.get("points")
         if not isinstance(points, list) or any(not isinstance(each, list) or len(each) != 2 for each in points):
-            raise Unfit("is no list of times with speeds.", REMEDY)
+            raise Unfit("is no list of times with speeds, nor the name of a file.", REMEDY)
         times, speeds = (_column([each[place] for each in points], unit) for place, unit in ((0, "s"), (1, SPEED)))
     _check(times, speeds)
     return times, speeds
