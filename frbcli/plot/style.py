@@ -47,6 +47,7 @@ POINTS = 72.0  # of an inch
 BAND = 0.25  # opacity of a band of uncertainty
 MOST_MARKED = 50  # events in a picture, the first ones
 MOST_NAMED = 40  # curves in a legend
+BESIDE_ROW_pt, MOST_OF_PANEL = 12.0, 1.6  # of a legend beside a panel: a row, and its height over the panel's
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -188,9 +189,11 @@ def legend_above(axes: Axes) -> None:
 
 
 def legend_beside(axes: Axes) -> None:
-    """A legend to the right of a panel, where it hides no curve; none for one curve, or for more than there is room
-    for."""
-    if 1 < len(axes.get_legend_handles_labels()[0]) <= MOST_NAMED:
+    """A legend to the right of a panel, where it hides no curve; none for one curve, or for more than fit beside it:
+    a taller legend would leave the other panels no height."""
+    figure = axes.get_figure(root=True)
+    height_pt = axes.get_window_extent().height * POINTS / (figure.dpi if figure else POINTS)
+    if 1 < len(axes.get_legend_handles_labels()[0]) <= MOST_OF_PANEL * height_pt / BESIDE_ROW_pt:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
 
 

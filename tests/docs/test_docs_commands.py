@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 import shlex
 import shutil
@@ -30,6 +31,7 @@ PLACEHOLDERS = {
     "DIR": "study",
 }
 WRONG_ON_PURPOSE = ("bearing.clearnce",)
+EXTRAS = {"parquet": "pyarrow"}  # words of lines, and the library that these need
 NO_LINE = ("...", "KEY=")  # shows a form, not a line
 LONGEST_s = 60.0
 
@@ -58,7 +60,10 @@ def words_of(line: str) -> list[str]:
     ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
     # A run is a measurement, too: a long one, in which orders can be told.
     measured = {"RUN.h5": "jeffcott.h5", "FILE": "jeffcott.h5"} if "--measured" in words else {}
-    return [(PLACEHOLDERS | measured).get(word, word) for word in words[: min(ends, default=len(words))]]
+    listed = {"FILE": "measured.csv"} if "--list" in words else {}
+    supported = {"RUN.h5": "supported.h5"} if "support" in words else {}
+    known = PLACEHOLDERS | measured | listed | supported
+    return [known.get(word, word) for word in words[: min(ends, default=len(words))]]
 
 
 @pytest.fixture(scope="module")
@@ -82,8 +87,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     rings = frbcli.load_case_text(text, ["speed.duration=20 ms", "speed.to=100 Hz"], name="turbo")
     ringed = frbcli.runup(rings, folder / "turbo.h5").path
     shutil.copy(ringed, folder / "ring.h5")
+    on_supports = [f"bearing.support.{key}" for key in ("mass=1 kg", "stiffness=50 kN/mm", "damping=100 N*s/m")]
+    frbcli.runup(frbcli.load_case("jeffcott", [*settings, *on_supports]), folder / "supported.h5")
     named = {word for line in shown() for word in words_of(line) if word.endswith(".h5")}
-    for name in named - {"run.h5", "jeffcott.h5", "turbo.h5", "ring.h5"}:
+    for name in named - {"run.h5", "jeffcott.h5", "turbo.h5", "ring.h5", "supported.h5"}:
         shutil.copy(folder / "run.h5", folder / name)
     return folder
 
@@ -127,6 +134,9 @@ def heated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("line", [line for line in shown() if "dask" not in line])
 def test_a_line_runs(line: str, folder: Path, heated: Path, tmp_path: Path) -> None:
     """Each in a process; what takes longer than a minute is interrupted, and says so."""
+    for word, library in EXTRAS.items():
+        if word in line and importlib.util.find_spec(library) is None:
+            pytest.skip(f"{library} is not installed")
     place = shutil.copytree(folder, tmp_path / "here")
     shutil.copy(heated, place / heated.name)
     words = words_of(line)

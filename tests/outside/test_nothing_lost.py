@@ -34,7 +34,7 @@ TRIALS = int(os.environ.get("FRB_TRIALS", "5000"))
 PICTURE = {".png": b"\x89PNG" + bytes(500), ".pdf": b"%PDF" + bytes(500), ".svg": b"<?xml" + bytes(500)}
 COMPUTED = (
     "linear.bearing_sheet.bearing_sheet", "linear.response.response", "linear.stability.stability",
-    "studies.sweep.task.threshold_alone", "cycles.limit_cycles.limit_cycles", "cycles.threshold.threshold_kind",
+    "studies.sweep.task.threshold_alone", "cycles.limit_cycles.limit_cycles", "cycles.method.threshold.threshold_kind",
     "studies.fit.fit", "studies.accuracy.accuracy", "bearing_tests.kinematic.rotation", "report.page.report",
     "bearing_tests.kinematic.squeeze", "bearing_tests.kinematic.whirl",
 )  # fmt: skip
