@@ -189,7 +189,7 @@ def test_a_picture_of_linked_keys() -> None:
     found = Sweep(load_case("jeffcott"), "runup", points)
     assert can_draw(found)
     (axes,) = sweep_figure(found).axes
-    assert axes.get_xlabel() == "a in um, with it b"
+    assert axes.get_xlabel() == "a in µm, with it b"
 
 
 def test_the_command_samples_machines(
