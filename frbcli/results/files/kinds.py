@@ -36,7 +36,10 @@ ROSS = kind("a bearing of frb for ROSS", rb'\["BearingElement_')
 SWEEP_LOG = kind("the log of a sweep", rb"\{\"")
 # What the first line of a table says, which distinguishes those of frb from others
 COLUMNS = (
-    rb"film,|speed_Hz,point,|([^\n]*,)?branch,speed_Hz,|[^\n]*,unit,curve,kind,|point,[^\n]*status,|time_s,speed_Hz"
+    rb"film,|bearing,speed_Hz,|speed_Hz,(point|status|synchronous_x_m_computed),|time_s,speed_Hz"
+    rb"|cavitation,theory,(status|coupling),|theory,cavitation,mesh,|frequency_Hz,direction,|stiffness_N_m,forward_"
+    rb"|([^\n]*,)?branch,speed_Hz,|[^\n]*,unit,curve,kind,|point,[^\n]*status,|key,unit,start,|changed,onset_Hz,"
+    rb"|name,topic,expected"
 )
 TABLES = {
     "csv": kind("a table of frb", COLUMNS),
