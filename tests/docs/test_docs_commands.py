@@ -34,6 +34,21 @@ WRONG_ON_PURPOSE = ("bearing.clearnce",)
 EXTRAS = {"parquet": "pyarrow"}  # words of lines, and the library that these need
 NO_LINE = ("...", "KEY=")  # shows a form, not a line
 LONGEST_s = 60.0
+SHAKEN = """
+[[force]]
+at = "disk"
+force = ["1 N", "0 N"]
+
+[[force]]
+at = "disk"
+force = ["5 N", "0 N"]
+order = 2
+
+[base]
+acceleration = ["2 m/s^2", "0 m/s^2"]
+order = 1
+speed = "50 Hz"
+"""
 
 
 def lines_of(page: Path) -> Iterator[str]:
@@ -59,10 +74,11 @@ def words_of(line: str) -> list[str]:
     words = shlex.split(line, comments=True)[1:]
     ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
     # A run is a measurement, too: a long one, in which orders can be told.
-    measured = {"RUN.h5": "jeffcott.h5", "FILE": "jeffcott.h5"} if "--measured" in words else {}
+    measured = {"RUN.h5": "jeffcott.h5", "FILE": "jeffcott.h5"} if {"--measured", "--order"} & set(words) else {}
     listed = {"FILE": "measured.csv"} if "--list" in words else {}
     supported = {"RUN.h5": "supported.h5"} if "support" in words else {}
-    known = PLACEHOLDERS | measured | listed | supported
+    shaken = {"CASE": "shaken.toml"} if "--excitation" in words else {}
+    known = PLACEHOLDERS | measured | listed | supported | shaken
     return [known.get(word, word) for word in words[: min(ends, default=len(words))]]
 
 
@@ -73,6 +89,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     settings = ["film.theory=short", "speed.duration=50 ms"]
     case = frbcli.load_case("jeffcott", settings)
     (folder / "my.toml").write_text(case.source_text, encoding="utf-8")
+    (folder / "shaken.toml").write_text(case.source_text + SHAKEN, encoding="utf-8")
     page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
     text = "\n".join(re.findall(r"```toml\n(.*?)```", page, re.DOTALL))
     (folder / "turbo.toml").write_text(text, encoding="utf-8")
