@@ -18,13 +18,14 @@ from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
 from frbcli.cycles.diagram import Walk
 from frbcli.cycles.method.balance import Balance, harmonics_of, packed, through, unpacked
-from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, unit_vector
+from frbcli.cycles.method.continuation import Equations, Place, Unreachable
 from frbcli.cycles.method.equilibria import (
     Equilibrium,
     at_rest,
     equations,
     equilibrium,
     first_place,
+    place_between,
     resting_along,
 )
 from frbcli.cycles.method.floquet import TRIVIAL, Multipliers, multipliers
@@ -185,11 +186,7 @@ class WarmSpeed:
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
         """As EquilibriumCourse says."""
-        share = (value - low.value) / (high.value - low.value)
-        guess = np.append(low.u + share * (high.u - low.u), value / self.pace)
-        found = corrected(self.equations, guess, unit_vector(len(guess)))
-        if found is None:
-            raise Unreachable
+        found = place_between(self, low, high, value)
         settled = replace(self.equilibrium(found), omega=value, value=value)
         self._made[value] = self._warm(found.y).machine
         return settled

@@ -15,8 +15,16 @@ from numpy.typing import NDArray
 from frbcli.cycles.branch import Follower
 from frbcli.cycles.diagram import Walk
 from frbcli.cycles.method.balance import Balance, unpacked
-from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, unit_vector
-from frbcli.cycles.method.equilibria import Equilibrium, at_rest, equations, equilibrium, first_place, resting_along
+from frbcli.cycles.method.continuation import Equations, Place
+from frbcli.cycles.method.equilibria import (
+    Equilibrium,
+    at_rest,
+    equations,
+    equilibrium,
+    first_place,
+    place_between,
+    resting_along,
+)
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.result import SPEED
@@ -82,12 +90,7 @@ class ChangingSpeed:
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
         """As EquilibriumCourse says."""
-        share = (value - low.value) / (high.value - low.value)
-        guess = np.append(low.u + share * (high.u - low.u), value / self.pace)
-        found = corrected(self.equations, guess, unit_vector(len(guess)))
-        if found is None:
-            raise Unreachable
-        return replace(self.equilibrium(found), omega=value, value=value)
+        return replace(self.equilibrium(place_between(self, low, high, value)), omega=value, value=value)
 
 
 class ChangingFollower(Follower):

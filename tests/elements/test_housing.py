@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from series_rotors import assert_eigenvalues, in_series
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.errors import InputError
 from frbcli.linear.critical_map import critical_map
-from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.modes import natural_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
@@ -57,24 +57,9 @@ def housing_impedance(s: Any, axis: int) -> Any:
     return SPRINGS[axis] + s * DAMPERS[axis] + s**2 * HOUSING
 
 
-def in_series(one: Any, other: Any) -> Any:
-    return one * other / (one + other)
-
-
 def test_eigenvalues_of_a_rigid_rotor_in_a_housing_are_the_roots_of_the_closed_form() -> None:
-    """Each direction by itself: (m s^2 + b) (M s^2 + b + c) - b^2 with b = 2 (K + C s), c of the mount."""
-    case, expected = in_housing(RIGID), []
-    for axis in (0, 1):
-        b, own = np.array([2 * C, 2 * K]), np.array([HOUSING, DAMPERS[axis], SPRINGS[axis]])
-        both = np.polymul(np.polyadd([M, 0, 0], b), np.polyadd(own, b))
-        expected += np.roots(np.polysub(both, np.polymul(b, b))).tolist()
-    found = stability(case, [80.0]).points[0].eigenvalues
-    assert len(found) == len(expected) == 8
-    for value in expected:
-        assert np.abs(found - value).min() < 1e-9 * abs(value)
-    frequencies = sorted(mode.frequency_Hz for mode in damped_modes(case, 80.0).modes)
-    oscillating = sorted(abs(value.imag) / (2 * math.pi) for value in expected if value.imag > 0)
-    np.testing.assert_allclose(frequencies, oscillating, rtol=1e-9)
+    bodies = [[HOUSING, DAMPERS[axis], SPRINGS[axis]] for axis in (0, 1)]
+    assert_eigenvalues(in_housing(RIGID), M, [2 * C, 2 * K], bodies)
 
 
 def test_the_response_of_a_jeffcott_rotor_in_a_housing_is_the_closed_form() -> None:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from series_rotors import assert_eigenvalues, in_series
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
@@ -19,7 +20,6 @@ from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.errors import InputError
 from frbcli.linear.critical_map import critical_map
-from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.modes import natural_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
@@ -57,25 +57,9 @@ def support_impedance(s: Any, axis: int) -> Any:
     return 2.0 * (SPRINGS[axis] + s * DAMPERS[axis] + s**2 * SHELL)
 
 
-def in_series(one: Any, other: Any) -> Any:
-    return one * other / (one + other)
-
-
 def test_eigenvalues_of_a_rigid_rotor_on_supports_are_the_roots_of_the_closed_form() -> None:
-    """Each direction by itself: (m s^2 + b) (2 M s^2 + b + c) - b^2 with b = 2 (K + C s), c of the support."""
-    case = on_support(RIGID)
-    expected = []
-    for axis in (0, 1):
-        b, own = np.array([2 * C, 2 * K]), np.array([2 * SHELL, 2 * DAMPERS[axis], 2 * SPRINGS[axis]])
-        both = np.polymul(np.polyadd([M, 0, 0], b), np.polyadd(own, b))
-        expected += np.roots(np.polysub(both, np.polymul(b, b))).tolist()
-    found = stability(case, [80.0]).points[0].eigenvalues
-    assert len(found) == len(expected) == 8
-    for value in expected:
-        assert np.abs(found - value).min() < 1e-9 * abs(value)
-    frequencies = sorted(mode.frequency_Hz for mode in damped_modes(case, 80.0).modes)
-    oscillating = sorted(abs(value.imag) / (2 * math.pi) for value in expected if value.imag > 0)
-    np.testing.assert_allclose(frequencies, oscillating, rtol=1e-9)
+    bodies = [[2 * SHELL, 2 * DAMPERS[axis], 2 * SPRINGS[axis]] for axis in (0, 1)]
+    assert_eigenvalues(on_support(RIGID), M, [2 * C, 2 * K], bodies)
 
 
 def test_the_response_of_a_rigid_rotor_on_supports_is_the_closed_form() -> None:

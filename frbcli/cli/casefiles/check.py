@@ -79,18 +79,8 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         require_affordable(case, plan, cost)
     heat = None if kinematic or case.heat is None else _heat(case, terminal)
     terminal.emit(
-        {
-            "command": "check",
-            "case": case.name,
-            "title": case.title,
-            "status": "ok",
-            "values": _value_documents(listed),
-            "findings": _told_findings(found),
-            "bare_numbers": _value_documents(bare),
-            "films": documents(FILM_OPERATION, films),
-            "plan": _plan_documents(decisions),
-            "expected": expected,
-        }
+        _document(case, listed, bare, decisions)
+        | {"findings": _told_findings(found), "films": documents(FILM_OPERATION, films), "expected": expected}
         | ({} if heat is None else {"thermal": heat})
     )
 
@@ -106,17 +96,22 @@ def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, t
     require_sheet(case)
     plan = thrust_plan(case)
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
-    terminal.emit(
-        {
-            "command": "check",
-            "case": case.name,
-            "title": case.title,
-            "status": "ok",
-            "values": _value_documents(listed),
-            "bare_numbers": _value_documents(bare),
-            "plan": _plan_documents(plan),
-        }
-    )
+    terminal.emit(_document(case, listed, bare, plan))
+
+
+def _document(
+    case: Case, listed: Sequence[ListedValue], bare: Sequence[ListedValue], decisions: Sequence[Decision]
+) -> dict[str, object]:
+    """What the JSON of every case has."""
+    return {
+        "command": "check",
+        "case": case.name,
+        "title": case.title,
+        "status": "ok",
+        "values": _value_documents(listed),
+        "bare_numbers": _value_documents(bare),
+        "plan": _plan_documents(decisions),
+    }
 
 
 def _tell_bare(listed: Sequence[ListedValue], terminal: Terminal) -> list[ListedValue]:

@@ -194,6 +194,16 @@ def at_rest(machine: Machine, position: RestingPosition) -> Array:
     return np.concatenate([places, position.ring_speeds / machine.pace])
 
 
+def place_between(course: SpeedCourse, low: Equilibrium, high: Equilibrium, value: float) -> Place:
+    """The place of the resting position at a speed in rad/s between two. Raises Unreachable."""
+    share = (value - low.value) / (high.value - low.value)
+    guess = np.append(low.u + share * (high.u - low.u), value / course.pace)
+    found = corrected(course.equations, guess, unit_vector(len(guess)))
+    if found is None:
+        raise Unreachable
+    return found
+
+
 def at_speed(ask: Equations, near: Place, speed: float) -> Place:
     """The place at a speed over the pace. Raises Unreachable."""
     guess = near.y + (speed - near.y[-1]) / near.tangent[-1] * near.tangent

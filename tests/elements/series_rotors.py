@@ -1,0 +1,37 @@
+"""Closed forms of a rigid rotor whose bearings stand on a body of their own: each direction by itself, in series."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.linear.damped_modes import damped_modes
+from frbcli.linear.stability import stability
+
+
+def in_series(one: Any, other: Any) -> Any:
+    """The stiffness of two elements in series."""
+    return one * other / (one + other)
+
+
+def assert_eigenvalues(case: Case, mass: float, bearing: Sequence[float], bodies: Sequence[Sequence[float]]) -> None:
+    """Eigenvalues and damped modes are the roots of (m s^2 + b) (M s^2 + b + c) - b^2 in x and in y.
+
+    mass: m of the rotor, kg; bearing: b = C s + K of all bearings; bodies: M s^2 + c = M s^2 + C s + K of all bodies
+    under them, in x and in y; all coefficients with the highest power of s first.
+    """
+    expected: list[complex] = []
+    for own in bodies:
+        both = np.polymul(np.polyadd([mass, 0, 0], bearing), np.polyadd(own, bearing))
+        expected += np.roots(np.polysub(both, np.polymul(bearing, bearing))).tolist()
+    found = stability(case, [80.0]).points[0].eigenvalues
+    assert len(found) == len(expected) == 8
+    for value in expected:
+        assert np.abs(found - value).min() < 1e-9 * abs(value)
+    frequencies = sorted(mode.frequency_Hz for mode in damped_modes(case, 80.0).modes)
+    oscillating = sorted(abs(value.imag) / (2 * math.pi) for value in expected if value.imag > 0)
+    np.testing.assert_allclose(frequencies, oscillating, rtol=1e-9)
