@@ -71,13 +71,16 @@ class HousingElement(MachineElement):
             arm = (position or 0.0) - (given.position or 0.0)
             return np.hstack([np.eye(2), arm * np.eye(2)])[:, :size]
 
+        tilts = np.array([[0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 1.0, 0.0]])[:, :size]  # about x by -b, about y by a
+
         stiffness, damping = np.zeros((2, size, size))
         for mount in given.mounts:
             place = at(mount.position)
             stiffness += place.T @ np.diag(mount.stiffness) @ place
             damping += place.T @ np.diag(mount.damping) @ place
         carried = mass * np.eye(2, size)
-        nodes = ((NODE, at(given.position)), *((self.node(name), at(place)) for name, place in self.bearings))
+        places = ((NODE, given.position), *((self.node(name), place) for name, place in self.bearings))
+        nodes = tuple((name, np.vstack([at(place), tilts])) for name, place in places)
         return _body(np.diag([mass, mass, *inertia][:size]), damping, stiffness, gravity, nodes, carried)
 
     def _modal(self, gravity: float) -> Body:

@@ -13,7 +13,7 @@ from functools import reduce
 
 import numpy as np
 
-from frbcli.rotor.body import COORDINATES, Body
+from frbcli.rotor.body import COORDINATES, PLANE, Body
 from frbcli.rotor.linear import Array, LinearRotor
 from frbcli.rotor.loads import Load
 from frbcli.rotor.over_speed import LinearPart
@@ -29,7 +29,7 @@ class Link:
     inside: str
     outside: str = GROUND
     count: float = 1.0
-    sees: str = COORDINATES
+    sees: tuple[str, ...] = PLANE
 
 
 @dataclass(frozen=True)
@@ -71,28 +71,34 @@ def assembled(
         static_load=np.concatenate([body.static_load for body in bodies]),
         unbalance_cos=np.concatenate([body.unbalance_cos for body in bodies]),
         unbalance_sin=np.concatenate([body.unbalance_sin for body in bodies]),
-        journals=np.array([relative(film) for film in films]).reshape(len(films), 2, size),
+        journals=_stacked([relative(film) for film in films], size),
         multiplicity=np.array([film.count for film in films], dtype=np.float64),
-        points=tuple(nodes.items()),
+        points=tuple((name, place[: len(PLANE)]) for name, place in nodes.items()),
     )
     machine = machine.with_parts([part.seen_by(relative(link), link.count) for link, part in parts])
-    constant = (nodes[each.node].T @ np.array(each.force) for each in forces)
+    constant = (nodes[each.node][: len(PLANE)].T @ np.array(each.force) for each in forces)
     if all(body.inertia is not None for body in bodies):
         nodes[GROUND] = -np.concatenate([body.inertia for body in bodies if body.inertia is not None], axis=1)
-    varying = tuple(load.seen_by(nodes[node]) for node, load in loads)
+    varying = tuple(load.seen_by(nodes[node][: len(PLANE)]) for node, load in loads)
     return replace(machine, static_load=sum(constant, machine.static_load), loads=varying)
 
 
 def _nodes(bodies: Sequence[Body], size: int) -> dict[str, Array]:
-    """Names and (c, n) maps of all nodes of a machine with n degrees of freedom."""
+    """Names and maps of all nodes of a machine with n degrees of freedom, a row for each of the COORDINATES: nodes of
+    bodies that do not tilt have none there."""
     found: dict[str, Array] = {}
     first = 0
     for body in bodies:
         for name, place in body.nodes:
-            found[name] = np.zeros((len(place), size))
-            found[name][:, first : first + body.size] = place
+            found[name] = np.zeros((len(COORDINATES), size))
+            found[name][: len(place), first : first + body.size] = place
         first += body.size
     return found
+
+
+def _stacked(maps: Sequence[Array], size: int) -> Array:
+    """(films, c, n) maps of all films, which see the same coordinates."""
+    return np.array(maps) if maps else np.zeros((0, len(PLANE), size))
 
 
 def _bordered(matrix: Array, other: Array) -> Array:

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-COORDINATES = "xy"  # of a node, in the order of the rows of its map: the displacements along x and y
+# Of a node, in the order of the rows of its map: displacements along x and y, then small rotations about x and y.
+COORDINATES = ("x", "y", "tilt_x", "tilt_y")
+PLANE = COORDINATES[:2]
 
 
 @dataclass(frozen=True)
@@ -18,8 +20,9 @@ class Body:
 
     mass, damping, gyroscopic, stiffness: (n, n), see LinearRotor; static_load: (n,) N; unbalance_cos, unbalance_sin:
     (n,) kg m, see LinearRotor. nodes: names and (c, n) maps of the places at which elements act and which a run
-    records, with a row for each of the COORDINATES; inertia: (2, n) kg against accelerations of the ground in x and y,
-    the mass matrix times a displacement of the whole body, None where that is not known.
+    records, with rows for the first c of the COORDINATES: the two of the PLANE, or all four of a node that tilts;
+    inertia: (2, n) kg against accelerations of the ground in x and y, the mass matrix times a displacement of the whole
+    body, None where that is not known.
     """
 
     mass: Array

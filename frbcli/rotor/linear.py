@@ -28,7 +28,8 @@ class LinearRotor:
     mass, damping, gyroscopic, stiffness: (n, n); gyroscopic is multiplied by the rotor speed in rad/s.
     static_load: (n,) N. unbalance_cos, unbalance_sin: (n,) kg m: the unbalance pulls (2.3) with
     unbalance_cos (alpha'' cos alpha - alpha'^2 sin alpha) + unbalance_sin (alpha'' sin alpha + alpha'^2 cos alpha).
-    journals: (films, 2, n): P, the x- and y-displacement of each film's journal relative to its shell.
+    journals: (films, c, n): P, the first c of the COORDINATES of each film's journal relative to its shell: x and y,
+    and its tilts where films see them.
     multiplicity: (films,) how many equal bearings one film stands for (2 in a symmetric rotor).
     points: names and (2, n) maps of the points that a run records and whose error is controlled.
     over_speed: what elements add to mass, damping and stiffness at a speed, None where nothing depends on it.

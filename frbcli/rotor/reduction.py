@@ -37,19 +37,28 @@ class FreeModes:
     """The lowest n modes of a free rotor at rest, of one plane, with unit modal mass.
 
     positions: (k,) m; frequencies: (n,) rad/s, ascending, the first two zero; shapes: (k, n) displacements in
-    1/sqrt(kg): the first a translation, the second a tilt about the centre of mass; polar: (n, n) inertia about the
-    axis of rotation in these modes. weight: (n,) sqrt(kg), the modes' share of a uniform acceleration.
+    1/sqrt(kg): the first a translation, the second a tilt about the centre of mass; slopes: (k, n) in 1/(m sqrt(kg));
+    polar: (n, n) inertia about the axis of rotation in these modes. weight: (n,) sqrt(kg), the modes' share of a
+    uniform acceleration.
     """
 
     positions: Array
     frequencies: Array
     shapes: Array
+    slopes: Array
     polar: Array
     weight: Array
 
     def at(self, position: float) -> Array:
         """(n,) displacements of the modes at the node nearest to a position in m."""
-        return np.asarray(self.shapes[np.argmin(np.abs(self.positions - position))], dtype=np.float64)
+        return np.asarray(self.shapes[self._node(position)], dtype=np.float64)
+
+    def slope_at(self, position: float) -> Array:
+        """(n,) slopes of the modes at the node nearest to a position in m."""
+        return np.asarray(self.slopes[self._node(position)], dtype=np.float64)
+
+    def _node(self, position: float) -> int:
+        return int(np.argmin(np.abs(self.positions - position)))
 
     def lowest(self, count: int) -> FreeModes:
         """The lowest `count` modes."""
@@ -57,6 +66,7 @@ class FreeModes:
             self.positions,
             self.frequencies[:count],
             self.shapes[:, :count],
+            self.slopes[:, :count],
             self.polar[:count, :count],
             self.weight[:count],
         )
@@ -116,6 +126,7 @@ def free_modes(plane: Plane) -> FreeModes:
         plane.positions,
         frequencies,
         np.asarray(vectors[::2], dtype=np.float64),
+        np.asarray(vectors[1::2], dtype=np.float64),
         np.asarray(vectors.T @ (plane.polar @ vectors), dtype=np.float64),
         np.asarray(vectors.T @ (plane.mass @ uniform), dtype=np.float64),
     )

@@ -76,7 +76,13 @@ def turbocharger_rotor(
         cos, sin = wheel.unbalance * math.cos(wheel.phase), wheel.unbalance * math.sin(wheel.phase)
         unbalance_cos += np.outer([cos, sin], shape)
         unbalance_sin += np.outer([-sin, cos], shape)
-    nodes = [(f"journal_{journal.name}", _of(both, modes.at(journal.position))) for journal in journals]
+    nodes = [
+        (
+            f"journal_{journal.name}",
+            np.vstack([_of(both, modes.at(journal.position)), _of(-turned, modes.slope_at(journal.position))]),
+        )
+        for journal in journals
+    ]
     nodes += [(f"disk_{wheel.name}", _of(both, modes.at(wheel.position))) for wheel in wheels]
     return Body(
         mass=np.eye(2 * n),

@@ -42,6 +42,7 @@ from frbcli.linear.thrust.columns import THRUST
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS
 from frbcli.scene.machine.operating import FILM_OPERATION
+from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.comparison_columns import HEAT, VARIANT
 from frbcli.studies.fit_columns import FITTED
@@ -101,6 +102,7 @@ TABLES: dict[str, Columns] = {
     "warm rings": of_json(WARM_RINGS),
     "balance": of_json(HEAT_BALANCE),
     "loads": of_json(FILM_LOADS),
+    "tilts": of_json(FILM_TILTS),
     "operation": of_json(FILM_OPERATION),
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")

@@ -78,7 +78,7 @@ def test_damping_between_two_bodies_slows_none_that_moves_with_the_other() -> No
 
 def test_an_element_sees_the_coordinates_that_it_asks_for() -> None:
     one = LinearPart(np.zeros(1), np.array([[[7e5]]]), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)))
-    machine = assembled([point_mass("journal", 2.0, GRAVITY)], parts=[(Link("journal", sees="y"), one)])
+    machine = assembled([point_mass("journal", 2.0, GRAVITY)], parts=[(Link("journal", sees=("y",)), one)])
     assert machine.stiffness.tolist() == [[0.0, 0.0], [0.0, 7e5]]
 
 

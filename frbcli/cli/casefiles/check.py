@@ -149,12 +149,14 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
 
 def _told_findings(found: Findings) -> dict[str, object]:
     from frbcli.scene.machine.findings import FILM_LOADS
+    from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 
     return {
         "mass_kg": found.mass,
         "natural_frequencies_Hz": found.frequencies_Hz,
         "supported": found.supported,
         "films": documents(FILM_LOADS, found.films),
+        "tilts": documents(FILM_TILTS, found.tilts),
     }
 
 
@@ -183,6 +185,7 @@ def _expectations(
 
 def _show_findings(found: Findings, terminal: Terminal) -> None:
     from frbcli.scene.machine.findings import FILM_LOADS
+    from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 
     if found.mass is not None:
         frequencies = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
@@ -190,6 +193,14 @@ def _show_findings(found: Findings, terminal: Terminal) -> None:
         terminal.sentence(f"Rotor of {found.mass:.4g} kg{natural}.")
     if found.films:
         terminal.show("static loads, at the top speed", table_of(FILM_LOADS, found.films))
+    if found.tilts:
+        terminal.show("tilt of the journals", table_of(FILM_TILTS, found.tilts))
+    tilting = ", ".join(f"{film.film or 'the film'} by {film.change:.0%}" for film in found.tilts if film.matters)
+    if tilting:
+        terminal.sentence(
+            f"Note: as journals tilt, the gap at the ends changes, in {tilting}. Results take the gap as even along "
+            "the axis; `frb rotation` with motion.tilt shows what a tilt does to a film."
+        )
 
 
 def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:

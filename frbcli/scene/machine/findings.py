@@ -15,6 +15,7 @@ from frbcli.rotor.held import held_rotor
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.operating import operating_points
 from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.machine.shaft_tilt import FilmTilt, film_tilts
 from frbcli.scene.shafts.table import shaft_of
 
 
@@ -43,12 +44,13 @@ FILM_LOADS = (
 @dataclass(frozen=True)
 class Findings:
     """mass: of the rotor in kg, None without one; frequencies_Hz: natural ones, ascending, supported: how; films: empty
-    where no load is known."""
+    where no load is known; tilts: of the journals that tilt."""
 
     mass: float | None
     frequencies_Hz: tuple[float, ...]
     supported: str
     films: tuple[FilmLoad, ...]
+    tilts: tuple[FilmTilt, ...] = ()
 
 
 def findings(case: Case) -> Findings:
@@ -61,7 +63,7 @@ def findings(case: Case) -> Findings:
         return Findings(None, (), "", films)
     shaft = shaft_of(case)
     frequencies, supported = shaft.natural_frequencies
-    return Findings(shaft.mass, frequencies, supported, films)
+    return Findings(shaft.mass, frequencies, supported, films, film_tilts(case) if case.given_speed is not None else ())
 
 
 def static_loads(case: Case) -> tuple[float, ...]:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.rotor.assembly import Link, assembled
-from frbcli.rotor.body import point_mass, spin
+from frbcli.rotor.body import PLANE, point_mass, spin
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.elements import element_parts, site_of
 from frbcli.scene.shafts.table import shaft_of
 
 
-def make_rotor(case: Case) -> LinearRotor:
-    """The machine of a case, with its films in the order of film_places and the angles of its turning rings last.
+def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
+    """The machine of a case, with its films in the order of film_places and the angles of its turning rings last. sees:
+    the coordinates of their journals that films act on.
 
     Raises InputError if its shaft has no modes.
     """
@@ -25,9 +28,9 @@ def make_rotor(case: Case) -> LinearRotor:
         if isinstance(bearing, FloatingRingBearing):  # the rings of equal bearings move as one, with the mass of all
             ring = f"ring_{bearing.name}".rstrip("_")
             bodies.append(point_mass(ring, count * bearing.ring_mass, case.rotor.gravity))
-            films += [Link(journal, ring, count=count), Link(ring, shell, count=count)]
+            films += [Link(journal, ring, count, sees), Link(ring, shell, count, sees)]
         else:
-            films.append(Link(journal, shell, count=count))
-    films += [damper.link(site) for damper in DamperElement.of(case)]
+            films.append(Link(journal, shell, count, sees))
+    films += [replace(damper.link(site), sees=sees) for damper in DamperElement.of(case)]
     elements, spins = element_parts(case), [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
     return assembled([*bodies, *elements.bodies, *spins], films, elements.links, elements.forces, elements.loads)
