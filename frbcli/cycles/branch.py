@@ -36,6 +36,7 @@ from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 STRIDES = Strides(first=0.01, shortest=1e-6, longest=0.06, points=600)
 FIRST_HARMONICS, MOST_HARMONICS = 5, 80
@@ -83,8 +84,8 @@ AT_REST = "It ends at rest, in another Hopf point."
 
 
 class Follower:
-    """One branch while it is followed; omega: as in Balance; free: whether it is a whirl, which may shrink to rest;
-    tail, most_at_fold: see TAIL, MOST_AT_FOLD;
+    """One branch while it is followed. omega: as in Balance; scale, unit: the last unknown times `scale` is in the
+    unit; free: whether it is a whirl, which may shrink to rest; tail, most_at_fold: see TAIL, MOST_AT_FOLD;
     tail_of_folds: share of the tail that folds may have."""
 
     free = True
@@ -97,6 +98,7 @@ class Follower:
     ) -> None:
         self.machine = machine
         self.omega = omega
+        self.scale, self.unit = machine.pace / (2.0 * math.pi), "Hz"
         self.range = (slowest / machine.pace, fastest / machine.pace)
         self.asked = tuple(speed / machine.pace for speed in asked)
 
@@ -132,16 +134,14 @@ class Follower:
         """The machine whose cycle y is."""
         return self.machine
 
-    def told(self, y: Array) -> str:
-        """Where on the branch y is."""
-        return f"{y[-1] * self.machine.pace / (2.0 * math.pi):.4g} Hz"
-
     def equations(self, place: Place) -> Equations:
         """Those of the cycles about a place."""
+        return Balance(self.machine, self.reference(place), self.omega)
+
+    def reference(self, place: Place) -> Complex:
+        """The motion that the phase of cycles about a place is compared with."""
         moving = self.moves(place.y)  # at a Hopf point only the tangent has a phase
-        return Balance(
-            self.machine, unpacked((place.y if moving else place.tangent)[:-2], self.machine.size), self.omega
-        )
+        return unpacked((place.y if moving else place.tangent)[:-2], self.machine.size)
 
     def moves(self, y: Array) -> bool:
         """Whether y is more than rest."""
@@ -416,9 +416,8 @@ def _why_not(follower: Follower, place: Place) -> str:
     machine = follower.machine
     harmonics = (len(place.y) - 2) // machine.size // 2
     tail = left_out(follower.machine_at(place.y), follower.as_cycle(place.y))
-    told = (
-        f"It could not be followed beyond {follower.told(place.y)}, an eccentricity of {largest(machine, place.y):.4f}"
-    )
+    there = f"{place.y[-1] * follower.scale:.4g} {follower.unit}".rstrip()
+    told = f"It could not be followed beyond {there}, an eccentricity of {largest(machine, place.y):.4f}"
     if harmonics >= MOST_HARMONICS - 2:
         return f"{told}: {harmonics} harmonics leave {tail:.1g} of the clearance."
     return f"{told}: the steps became too short."

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, Follower, first_place, follow_branch
 from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.method.continuation import oriented
 from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
-from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint, Resting
+from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint, Resting, SpeedCourse
 from frbcli.cycles.method.seed import seed_cycle
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import (
+    SPEED,
     SUBCRITICAL,
     SUPERCRITICAL,
     Cost,
@@ -28,46 +31,66 @@ from frbcli.cycles.result import (
 )
 from frbcli.scene.films import film_places
 
+Array = NDArray[np.float64]
 Observer = Callable[[int, float, float], None]
 
 SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf point ends in it
 
 
+@dataclass
+class CycleCount:
+    """Counts cycles, and tells an observer their number, value and largest eccentricity."""
+
+    observe: Observer | None
+    count: int = 0
+
+    def __call__(self, value: float, eccentricity_max: Array) -> None:
+        self.count += 1
+        if self.observe is not None:
+            self.observe(self.count, value, float(eccentricity_max.max()))
+
+
 @dataclass(frozen=True)
 class Walk:
-    """What a diagram goes over. over, unit: name and unit of the number; films: names; course, resting: the resting
-    positions, whose values times `scale` are in the unit; follower: of its branches, whose last unknown times
-    `branch_scale` is in the unit."""
+    """What a diagram goes over. over: name of the number; course, resting: the resting positions, whose values times
+    `scale` are in the unit of the number; follower: of its branches."""
 
     over: str
-    unit: str
-    films: tuple[str, ...]
     course: EquilibriumCourse
     resting: Resting
     scale: float
     follower: Follower
-    branch_scale: float
+
+    @property
+    def unit(self) -> str:
+        """Unit of the number."""
+        return self.follower.unit
 
     def value(self, cycle: Cycle) -> float:
         """The number of a cycle in the unit."""
-        return float(cycle.place.y[-1]) * self.branch_scale
+        return float(cycle.place.y[-1]) * self.follower.scale
+
+    def last_unknown(self, here: Equilibrium) -> float:
+        """The number at a resting position as branches have it for their last unknown."""
+        return here.value * self.scale / self.follower.scale
 
     def branch_from(self, hopf: HopfPoint, tell: Callable[[Cycle], None]) -> Branch:
         """The branch from a Hopf point on."""
         machine = self.course.machine(hopf.equilibrium.value)
-        last = hopf.equilibrium.value * self.scale / self.branch_scale
-        return follow_branch(self.follower, first_place(machine, hopf, last), tell)
+        return follow_branch(self.follower, first_place(machine, hopf, self.last_unknown(hopf.equilibrium)), tell)
+
+
+def over_speed(course: SpeedCourse, resting: Resting, follower: Follower) -> Walk:
+    """A walk over the speed of the rotor in Hz."""
+    return Walk(SPEED, course, resting, 0.5 / math.pi, follower)
 
 
 def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], float]) -> LimitCycles:
     """The branches of all Hopf points of a walk. observe: see limit_cycles; cpu: gives the CPU time so far in s."""
-    resting, cycles = walk.resting, 0
+    resting, told = walk.resting, CycleCount(observe)
 
     def tell(cycle: Cycle) -> None:
-        nonlocal cycles
-        cycles += 1
-        if observe is not None:
-            observe(cycles, walk.value(cycle), float(cycle.eccentricity_max.max()))
+        told(walk.value(cycle), cycle.eccentricity_max)
 
     branches: list[Branch | None] = []
     for number, hopf in enumerate(resting.hopf):
@@ -80,22 +103,30 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
         seeded = _seeded(walk, tell)
         followed += [] if seeded is None else [(None, seeded)]
     special = [hopf_special(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
-    for number, (_, branch) in enumerate(followed):
-        special += [cycle_special(walk, cycle, number) for cycle in branch.cycles if cycle.kind in (FOLD, FLIP, TORUS)]
+    found = tuple(
+        CycleBranch(hopf, tuple(_cycle(walk, cycle) for cycle in branch.cycles), branch.note)
+        for hopf, branch in followed
+    )
     return LimitCycles(
         case=case,
         over=walk.over,
         unit=walk.unit,
-        films=walk.films,
+        films=walk.follower.machine.names,
         equilibria=tuple(_resting(walk, point) for point in resting.points),
-        branches=tuple(
-            CycleBranch(hopf, tuple(_cycle(walk, cycle) for cycle in branch.cycles), branch.note)
-            for hopf, branch in followed
-        ),
-        special=tuple(special),
+        branches=found,
+        special=(*special, *special_cycles(found)),
         notes=tuple(filter(None, notes)),
-        cost=Cost(cpu(), cycles),
+        cost=Cost(cpu(), told.count),
     )
+
+
+def special_cycles(branches: Sequence[CycleBranch]) -> Iterator[SpecialPoint]:
+    """The folds, flips and torus points of branches."""
+    for number, branch in enumerate(branches):
+        for point in branch.points:
+            if point.kind in (FOLD, FLIP, TORUS):
+                place = point.value, point.speed_Hz, point.frequency_Hz
+                yield SpecialPoint(point.kind, number, *place, point.eccentricity_max)
 
 
 def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s: float) -> LimitCycles:
@@ -131,7 +162,7 @@ def _seeded(walk: Walk, tell: Callable[[Cycle], None]) -> Branch | None:
     points = walk.resting.points
     for resting in (points[len(points) // 2], points[0], points[-1]):
         y = seed_cycle(walk.course.machine(resting.value), resting)
-        place = None if y is None else walk.follower.entered(y, resting.value * walk.scale / walk.branch_scale)
+        place = None if y is None else walk.follower.entered(y, walk.last_unknown(resting))
         if place is not None:
             break
     else:

@@ -8,13 +8,14 @@ import re
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.cycles.faults import check
-from frbcli.cycles.method.equilibria import Equilibrium, settled
+from frbcli.cycles.method.changing import kept
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.equilibria import Equilibrium, between, settled
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.errors import Fault, InputError
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
-KEPT = 64  # machines
 LONGEST_SHOWN = 40  # characters of a value in a fault
 REMEDY = 'Write e.g. "40 um".'
 NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)(.*)", re.DOTALL)
@@ -29,7 +30,7 @@ class Family:
     ) -> None:
         self.case, self.key, self.high, self.unit, self.omega = case, key, high, unit, omega
         self.settings = settings
-        self._made: dict[float, Machine] = {}
+        self.machine = kept(self._machine)
 
     def setting(self, share: float) -> str:
         """KEY=VALUE of a share of the largest value."""
@@ -45,18 +46,15 @@ class Family:
         check(case)
         return make_system(case, make_plan(case))
 
-    def machine(self, value: float) -> Machine:
-        """The machine at a share."""
-        if value not in self._made:
-            if len(self._made) >= KEPT:
-                self._made.pop(next(iter(self._made)))
-            self._made[value] = make_machine(self.system(value), self.omega)
-        return self._made[value]
+    def _machine(self, value: float) -> Machine:
+        """The machine at a share. Raises Unreachable where the number is not above zero."""
+        if not value > 0.0:
+            raise Unreachable
+        return make_machine(self.system(value), self.omega)
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
-        """As Course says."""
-        share = (value - low.value) / (high.value - low.value)
-        return settled(self.machine(value), low.u + share * (high.u - low.u), self.omega, value)
+        """As EquilibriumCourse says."""
+        return settled(self.machine(value), between(low, high, value), self.omega, value)
 
 
 def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:

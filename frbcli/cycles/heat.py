@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
-from frbcli.cycles.diagram import Walk
+from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.method.balance import Balance, harmonics_of, packed, through, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable
 from frbcli.cycles.method.equilibria import (
@@ -24,7 +24,6 @@ from frbcli.cycles.method.equilibria import (
     at_rest,
     equations,
     equilibrium,
-    first_place,
     place_between,
     resting_along,
 )
@@ -32,7 +31,6 @@ from frbcli.cycles.method.floquet import TRIVIAL, Multipliers, multipliers
 from frbcli.cycles.parts.film_heat import FilmHeats, film_heats
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
-from frbcli.cycles.result import SPEED
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.rotor.order import largest_first
@@ -186,9 +184,9 @@ class WarmSpeed:
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
         """As EquilibriumCourse says."""
-        found = place_between(self, low, high, value)
-        settled = replace(self.equilibrium(found), omega=value, value=value)
-        self._made[value] = self._warm(found.y).machine
+        place = place_between(self, low, high, value)
+        settled = replace(self.equilibrium(place), omega=value, value=value)
+        self._made[value] = self._warm(place.y).machine
         return settled
 
 
@@ -209,9 +207,7 @@ class WarmFollower(Follower):
 
     def equations(self, place: Place) -> Equations:
         """Those of the cycles about a place, with temperatures that follow."""
-        moving = place.y if self.moves(place.y) else place.tangent
-        reference = unpacked(moving[:-2], self.machine.size)
-        near = self._warm(place.y).temperatures
+        reference, near = self.reference(place), self._warm(place.y).temperatures
 
         def at(y: Array) -> tuple[Array, Array]:
             warm = self._warm(y, near)
@@ -263,14 +259,5 @@ def warm_walk(
         start=top.steady.temperatures,
     )
     course = WarmSpeed(motions)
-    start = first_place(course.equations, at_rest(machine, top.resting), fastest / machine.pace)
-    return Walk(
-        over=SPEED,
-        unit="Hz",
-        films=system.names,
-        course=course,
-        resting=resting_along(course, start, slowest, fastest),
-        scale=1.0 / (2.0 * np.pi),
-        follower=WarmFollower(motions, slowest, fastest, asked),
-        branch_scale=machine.pace / (2.0 * np.pi),
-    )
+    resting = resting_along(course, at_rest(machine, top.resting), slowest, fastest)
+    return over_speed(course, resting, WarmFollower(motions, slowest, fastest, asked))

@@ -9,20 +9,20 @@ from dataclasses import replace
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import Follower
-from frbcli.cycles.diagram import Observer, Walk, diagram, with_response
+from frbcli.cycles.diagram import Observer, diagram, over_speed, with_response
 from frbcli.cycles.faults import check
 from frbcli.cycles.heat import warm_walk
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.over_speed import changing_walk
-from frbcli.cycles.parts.machine import Machine, make_machine
-from frbcli.cycles.result import SPEED, LimitCycles, hertz
+from frbcli.cycles.parts.machine import make_machine
+from frbcli.cycles.result import LimitCycles, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.scene.gate.cycles import by_shooting
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
 
@@ -85,7 +85,8 @@ def limit_cycles(
             elif system.rotor.over_speed is not None:
                 walk = changing_walk(system, slowest, fastest, asked)
             else:
-                walk = _walk(system, machine, slowest, fastest, asked)
+                resting = resting_curve(system, machine, slowest, fastest)
+                walk = over_speed(OverSpeed(machine), resting, Follower(machine, slowest, fastest, asked))
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
@@ -96,20 +97,6 @@ def limit_cycles(
     if with_unbalance:
         found = whirls_with_unbalance(found, machine, observe)
     return with_response(found, walk, response, time.process_time() - begun)
-
-
-def _walk(system: System, machine: Machine, slowest: float, fastest: float, asked: Sequence[float]) -> Walk:
-    """What the diagram of a machine goes over, between two speeds in rad/s."""
-    return Walk(
-        over=SPEED,
-        unit="Hz",
-        films=system.names,
-        course=OverSpeed(machine),
-        resting=resting_curve(system, machine, slowest, fastest),
-        scale=1.0 / (2.0 * math.pi),
-        follower=Follower(machine, slowest, fastest, asked),
-        branch_scale=machine.pace / (2.0 * math.pi),
-    )
 
 
 def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:

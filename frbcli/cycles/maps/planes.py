@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.branch import FoldFollower
-from frbcli.cycles.diagram import Walk
+from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.family import Family
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.over_key import KeyFollower, resting_over
@@ -90,16 +90,8 @@ class SpeedPlane:
     def walk(self, share: float) -> Walk:
         """As Plane says."""
         machine = self.family.machine(share)
-        return Walk(
-            over=self.over,
-            unit=self.unit,
-            films=machine.names,
-            course=OverSpeed(machine),
-            resting=resting_curve(self.family.system(share), machine, *self.speeds),
-            scale=0.5 / math.pi,
-            follower=FoldFollower(machine, *self.speeds),
-            branch_scale=self.scale,
-        )
+        resting = resting_curve(self.family.system(share), machine, *self.speeds)
+        return over_speed(OverSpeed(machine), resting, FoldFollower(machine, *self.speeds))
 
 
 @dataclass(frozen=True)
@@ -153,16 +145,8 @@ class KeyPlane:
     def walk(self, share: float) -> Walk:
         """As Plane says."""
         family = self.family(share)
-        return Walk(
-            over=self.over,
-            unit=self.unit,
-            films=family.machine(1.0).names,
-            course=family,
-            resting=resting_over(family, self.lowest[0]),
-            scale=family.high,
-            follower=_KeyFoldFollower(family, self.lowest[0]),
-            branch_scale=family.high,
-        )
+        lowest = self.lowest[0]
+        return Walk(family.key, family, resting_over(family, lowest), family.high, _KeyFoldFollower(family, lowest))
 
 
 class _KeyFoldFollower(FoldFollower, KeyFollower):

@@ -238,7 +238,7 @@ def _row(plane: MapPlane, family: Family, share: float, begun: _Begun) -> MapRow
     special: list[SpecialPoint] = []
     for number, hopf in enumerate(walk.resting.hopf):
         here = hopf.equilibrium
-        machine, over = walk.course.machine(here.value), here.value * walk.scale / walk.branch_scale
+        machine, over = walk.course.machine(here.value), walk.last_unknown(here)
         begun.hopf.append(np.concatenate([here.u, [hopf.nu / machine.pace, over, share]]))
         special.append(hopf_special(walk, hopf, number))
         branch = walk.branch_from(hopf, _unwatched)

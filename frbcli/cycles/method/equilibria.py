@@ -124,9 +124,8 @@ class OverSpeed:
         return self.only
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
-        """As Course says."""
-        share = (value - low.value) / (high.value - low.value)
-        return settled(self.only, low.u + share * (high.u - low.u), value, value)
+        """As EquilibriumCourse says."""
+        return settled(self.only, between(low, high, value), value, value)
 
 
 @dataclass(frozen=True)
@@ -155,15 +154,13 @@ def equations(machine: Machine) -> Equations:
 
 def resting_curve(system: System, machine: Machine, slowest: float, fastest: float) -> Resting:
     """Resting positions between two speeds in rad/s, from the fastest on downwards. Raises NotConverged without one."""
-    course = OverSpeed(machine)
-    start = first_place(course.equations, at_rest(machine, resting_position(system, fastest)), fastest / machine.pace)
-    return resting_along(course, start, slowest, fastest)
+    return resting_along(OverSpeed(machine), at_rest(machine, resting_position(system, fastest)), slowest, fastest)
 
 
-def resting_along(course: SpeedCourse, start: Place, slowest: float, fastest: float) -> Resting:
-    """The same of a course, from the place of the fastest speed on."""
-    places = [start]
-    for place, _ in follow(course.equations, start, STRIDES):
+def resting_along(course: SpeedCourse, near: Array, slowest: float, fastest: float) -> Resting:
+    """The same of a course; near: (c,) u near to the resting position at the fastest speed. Raises Unreachable."""
+    places = [first_place(course.equations, near, fastest / course.pace)]
+    for place, _ in follow(course.equations, places[0], STRIDES):
         places.append(place)
         if not slowest < place.y[-1] * course.pace < 1.000001 * fastest:
             break
@@ -194,10 +191,15 @@ def at_rest(machine: Machine, position: RestingPosition) -> Array:
     return np.concatenate([places, position.ring_speeds / machine.pace])
 
 
+def between(low: Equilibrium, high: Equilibrium, value: float) -> Array:
+    """(c,) u on the straight line between two resting positions."""
+    share = (value - low.value) / (high.value - low.value)
+    return np.asarray(low.u + share * (high.u - low.u))
+
+
 def place_between(course: SpeedCourse, low: Equilibrium, high: Equilibrium, value: float) -> Place:
     """The place of the resting position at a speed in rad/s between two. Raises Unreachable."""
-    share = (value - low.value) / (high.value - low.value)
-    guess = np.append(low.u + share * (high.u - low.u), value / course.pace)
+    guess = np.append(between(low, high, value), value / course.pace)
     found = corrected(course.equations, guess, unit_vector(len(guess)))
     if found is None:
         raise Unreachable

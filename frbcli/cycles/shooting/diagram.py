@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import AT_REST, FLIP, FOLD, HOPF, TORUS
-from frbcli.cycles.diagram import SAME, Observer
+from frbcli.cycles.branch import AT_REST, HOPF
+from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles
 from frbcli.cycles.result import (
     SPEED,
     SUBCRITICAL,
@@ -50,13 +50,10 @@ def limit_cycles_by_shooting(
     if not rests:
         raise NotConverged(f"No resting position was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
     hopf = thresholds(shooting, rests)
-    told = 0
+    told = CycleCount(observe)
 
     def tell(shot: Shot) -> None:
-        nonlocal told
-        told += 1
-        if observe is not None:
-            observe(told, shooting.speed_Hz(shot), float(shot.eccentricity_max.max()))
+        told(shooting.speed_Hz(shot), shot.eccentricity_max)
 
     branches: list[CycleBranch] = []
     special: list[SpecialPoint] = []
@@ -70,8 +67,6 @@ def limit_cycles_by_shooting(
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(begin, len(branches), shots[0] if shots else None))
         branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_cells(flow, note, shots)))
-    for number, branch in enumerate(branches):
-        special += [_special(point, number) for point in branch.points if point.kind in (FOLD, FLIP, TORUS)]
     return LimitCycles(
         case=case,
         over=SPEED,
@@ -79,9 +74,9 @@ def limit_cycles_by_shooting(
         films=flow.system.names,
         equilibria=tuple(_rest(shooting, rest) for rest in rests),
         branches=tuple(branches),
-        special=tuple(special),
+        special=(*special, *special_cycles(branches)),
         notes=tuple(_notes(shooting, rests, hopf)),
-        cost=Cost(time.process_time() - begun, told),
+        cost=Cost(time.process_time() - begun, told.count),
     )
 
 
@@ -190,7 +185,3 @@ def _cycle(shooting: Shooting, shot: Shot) -> CyclePoint:
         harmonics=np.fft.rfft(shot.mean_displacements[:SAMPLES], axis=0)[: SAMPLES // 4] / SAMPLES,
         kind=shot.kind,
     )
-
-
-def _special(point: CyclePoint, branch: int) -> SpecialPoint:
-    return SpecialPoint(point.kind, branch, point.value, point.speed_Hz, point.frequency_Hz, point.eccentricity_max)
