@@ -198,9 +198,7 @@ def _test(
     case: Case, cavitations: Sequence[str], test: str,
     solve: Callable[[Case, KinematicPlan, Tell | None], KinematicResult], observe: Observer | None,
 ) -> KinematicTest:  # fmt: skip
-    own = None if case.film.bearing_model else case.film.cavitation
-    names: dict[str | None, None] = dict.fromkeys(cavitations or (own,))
-    plans = [kinematic_plan(case, name, test) for name in names]
+    plans = [kinematic_plan(case, name, test) for name in dict.fromkeys(cavitations or (None,))]
     results: list[KinematicResult] = []
     try:
         for number, plan in enumerate(plans):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -30,6 +30,8 @@ class DamperElement(MachineElement):
 
     bearing: str
     given: Damper
+
+    symbol: ClassVar[str] = "damper"
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

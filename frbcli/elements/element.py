@@ -49,7 +49,7 @@ class MachineElement(ABC):
 
     key: str
 
-    symbol: ClassVar[str] = ""  # how the sketch of a report draws it, a row of report/element_symbols.py
+    symbol: ClassVar[str] = ""  # how a sketch draws it at its bearing, a row of report/element_symbols.py
 
     @classmethod
     @abstractmethod

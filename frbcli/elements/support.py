@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -27,6 +27,8 @@ class SupportElement(MachineElement):
 
     bearing: str
     given: Support
+
+    symbol: ClassVar[str] = "spring"
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

@@ -23,3 +23,9 @@ ELEMENTS: tuple[type[MachineElement], ...] = (
 def elements_of(case: Case) -> Iterator[MachineElement]:
     """All elements of a case, by kind."""
     return (element for kind in ELEMENTS for element in kind.of(case))
+
+
+def symbols_at(case: Case, key: str) -> tuple[str, ...]:
+    """The symbols of the elements of a bearing by its key, from the shaft to the ground: they stand so in ELEMENTS."""
+    own = (each for each in elements_of(case) if f"{each.key}.".startswith(f"{key}."))
+    return tuple(each.symbol for each in own if each.symbol)

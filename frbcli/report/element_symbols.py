@@ -3,10 +3,8 @@ machine along its axis."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
-from frbcli.case.elements import Element
-from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.report.svg import box, curve, line
 
 WIDE, TURNS, END = 7.0, 4, 4.0  # half the width of a spring, its turns, and its straight ends, in the drawing's units
@@ -14,35 +12,21 @@ HIGH = 34.0  # of a symbol
 SHELL, FLAT = 22.0, 5.0  # width and height of a shell without dimensions
 
 
-def height(element: Element) -> float:
-    """Of the symbol of an element, with its damper and its support."""
-    return len(_layers(element)) * (HIGH + FLAT) - FLAT
+def height(symbols: Sequence[str]) -> float:
+    """Height of a stack of symbols with the bodies between them."""
+    return len(symbols) * (HIGH + FLAT) - FLAT
 
 
-def support_symbol(x: float, middle: float, radius: float) -> Iterator[str]:
-    """What carries a shell at x, above and below the axis at `middle`, from its radius outwards to the ground."""
+def stack(symbols: Sequence[str], x: float, middle: float, radius: float) -> Iterator[str]:
+    """Symbols at x, above and below the axis at `middle`, from a radius outwards to the ground, with the bodies between
+    them."""
     for sign in (-1.0, 1.0):
-        yield from _spring(x, middle + sign * radius, sign)
-        yield _ground(x, middle + sign * (radius + HIGH))
-
-
-def symbol(element: Element, x: float, middle: float, radius: float) -> Iterator[str]:
-    """An element at x, above and below the axis at `middle`, from the surface of the shaft outwards to the ground, with
-    the bodies that carry it; radius: of the shaft there in the drawing."""
-    layers = _layers(element)
-    for sign in (-1.0, 1.0):
-        for number, layer in enumerate(layers, start=1):
+        for number, symbol in enumerate(symbols, start=1):
             start = middle + sign * (radius + (number - 1) * (HIGH + FLAT))
             end = start + sign * HIGH
-            yield from SYMBOLS[layer](x, start, sign)
+            yield from SYMBOLS[symbol](x, start, sign)
             body = box(x - 0.5 * SHELL, min(end, end + sign * FLAT), SHELL, FLAT, "shell")
-            yield body if number < len(layers) else _ground(x, end)
-
-
-def _layers(element: Element) -> list[str]:
-    """The symbols from the shaft to the ground."""
-    damper = [] if element.damper is None else ["damper"]
-    return [GivenCoefficients.symbol, *damper, *([] if element.support is None else ["spring"])]
+            yield body if number < len(symbols) else _ground(x, end)
 
 
 def _spring(x: float, start: float, sign: float) -> Iterator[str]:

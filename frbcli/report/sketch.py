@@ -11,11 +11,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from frbcli.case.bearing import FilmBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.places import node_at
-from frbcli.report.element_symbols import FLAT, HIGH, height, support_symbol, symbol
+from frbcli.elements.damper import DamperElement
+from frbcli.elements.support import SupportElement
+from frbcli.elements.table import symbols_at
+from frbcli.report.element_symbols import FLAT, HIGH, height, stack
 from frbcli.report.svg import box, curve, drawing, element, line, text
 from frbcli.scene.films import HOUSING as STILL
 from frbcli.scene.films import film_places
@@ -70,22 +72,38 @@ def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
     )
 
 
-def _bearing_parts(case: Case, number: int, at: float, scale: _SketchScale) -> Iterator[str]:
-    """A bearing with its middle at z = at, in m; shells are as thick as they look."""
-    bearing = case.bearings[number]
-    if bearing.support is not None:
-        yield from support_symbol(scale.left + scale.per_m * at, scale.middle, scale.per_m * _shell_radius(bearing))
-    films = _films(bearing)
+@dataclass(frozen=True)
+class _Bearing:
+    """A bearing: its films from the journal outwards, with that of its damper, none of given coefficients; symbols of
+    what stands between it and the ground."""
+
+    name: str
+    position: float
+    films: tuple[FilmGeometry, ...]
+    symbols: tuple[str, ...]
+
+    @property
+    def shell_radius(self) -> float:
+        """Outer radius of what is around its films, m; 0 without films."""
+        return (1.0 + HOUSING) * (0.5 * self.films[-1].diameter + self.films[-1].clearance) if self.films else 0.0
+
+
+def _bearings(case: Case) -> Iterator[_Bearing]:
+    for key, bearing in zip(case.bearing_keys, case.given_bearings, strict=True):
+        films, symbols = bearing.films, symbols_at(case, key)
+        if films and bearing.damper is not None:  # which has the dimensions of a film around others
+            films, symbols = (*films, bearing.damper), tuple(each for each in symbols if each != DamperElement.symbol)
+        yield _Bearing(bearing.name, bearing.position or 0.0, films, symbols)
+
+
+def _film_parts(films: tuple[FilmGeometry, ...], at: float, scale: _SketchScale) -> Iterator[str]:
+    """The rings and the shell around films with their middle at z = at, in m; shells are as thick as they look."""
     for inner, outer in pairwise(films):
         half = 0.5 * max(inner.width, outer.width)
         yield scale.box(at - half, at + half, 0.5 * inner.diameter, 0.5 * outer.diameter, "ring")
         yield from _supply(inner, at, 0.5 * outer.diameter, scale)
-    yield from _shell(films[-1], at, scale)
-
-
-def _films(bearing: FilmBearing) -> tuple[FilmGeometry, ...]:
-    """The films of a bearing from the journal outwards, with that of its damper."""
-    return bearing.films if bearing.damper is None else (*bearing.films, bearing.damper)
+    for film in films[-1:]:
+        yield from _shell(film, at, scale)
 
 
 def _shell(film: FilmGeometry, at: float, scale: _SketchScale) -> Iterator[str]:
@@ -105,20 +123,15 @@ def _supply(film: FilmGeometry, at: float, outer: float, scale: _SketchScale) ->
 
 
 def _largest_radius(case: Case) -> float:
-    return max(map(_shell_radius, case.bearings), default=0.0)
-
-
-def _shell_radius(bearing: FilmBearing) -> float:
-    """Outer radius of what is around the films of a bearing, m."""
-    film = _films(bearing)[-1]
-    return (1.0 + HOUSING) * (0.5 * film.diameter + film.clearance)
+    return max((bearing.shell_radius for bearing in _bearings(case)), default=0.0)
 
 
 def _with_supports(case: Case, half: float, per_m: float, shaft: float) -> float:
     """Half the height of a drawing that has room for its supports. shaft: largest radius of the elements, m."""
-    shells = [per_m * _shell_radius(bearing) + HIGH for bearing in case.bearings if bearing.support is not None]
-    ends = [per_m * shaft + height(each) for each in case.elements if each.support is not None or each.damper]
-    return max([half, *shells, *ends])
+    return max(half, *(
+        per_m * (bearing.shell_radius or shaft) + height(bearing.symbols)
+        for bearing in _bearings(case) if len(bearing.symbols) > (0 if bearing.films else 1)
+    ), 0.0)  # fmt: skip
 
 
 def _housing(case: Case, scale: _SketchScale, inner: float, bearings: list[float]) -> Iterator[str]:
@@ -136,7 +149,7 @@ def _housing(case: Case, scale: _SketchScale, inner: float, bearings: list[float
             x = scale.left + scale.per_m * place
             yield line(x, scale.middle, x, scale.middle + sign * inner, "spring")
     for place in mounts:
-        yield from support_symbol(scale.left + scale.per_m * place, scale.middle, inner + FLAT)
+        yield from stack((SupportElement.symbol,), scale.left + scale.per_m * place, scale.middle, inner + FLAT)
 
 
 def _of_sections(case: Case) -> str:
@@ -157,14 +170,12 @@ def _of_sections(case: Case) -> str:
         bore = 0.5 * section.inner_diameter
         parts.append(scale.box(z, z + section.length, bore, 0.5 * section.diameter, "shaft"))
         z += section.length
-    for number, bearing in enumerate(case.bearings):
-        if bearing.position is not None:
-            parts += _bearing_parts(case, number, bearing.position, scale)
-            parts.append(_named(bearing.name, bearing.position, scale, half + 16.0))
-    for each in case.elements:
-        at = each.position or 0.0
-        parts += symbol(each, scale.left + per_m * at, scale.middle, per_m * _radius_at(case, at))
-        parts.append(_named(each.name, at, scale, half + 16.0))
+    for bearing in _bearings(case):
+        at = bearing.position
+        radius = bearing.shell_radius or _radius_at(case, at)
+        parts += stack(bearing.symbols, scale.left + per_m * at, scale.middle, per_m * radius)
+        parts += _film_parts(bearing.films, at, scale)
+        parts.append(_named(bearing.name, at, scale, half + 16.0))
     places = {f"disk_{disk.name or number}": disk.position for number, disk in enumerate(case.disks, start=1)}
     for given in case.given_bearings:
         places |= {f"{body}_{given.name}": given.position or 0.0 for body in ("journal", "ring", "shell", "support")}
@@ -178,7 +189,9 @@ def _symmetric(case: Case) -> str:
     width, journal = _journal(case)
     span = SPAN * width
     disk = max(DISK * journal, 1.1 * _largest_radius(case))
-    half_width = 0.5 * max(width, _outer_width(case))
+    bearings = list(_bearings(case))
+    half_width = 0.5 * max(width, *(bearing.films[-1].width for bearing in bearings if bearing.films), 0.0)
+    elements = [bearing for bearing in bearings if not bearing.films]
     per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
     inner = _with_supports(case, per_m * disk, per_m, journal)
     half = inner if case.housing is None else inner + FLAT + HIGH
@@ -189,11 +202,12 @@ def _symmetric(case: Case) -> str:
     parts += _housing(case, scale, inner, [0.0, span])
     for at in (0.0, span):
         parts.append(scale.box(at - half_width, at + half_width, 0.0, journal, "shaft"))
-        if case.bearings:
-            parts += _bearing_parts(case, 0, at, scale)
-        for number, each in enumerate(case.elements):
-            place = at + half_width * _place(case, number) * (1.0 if at else -1.0)
-            parts += symbol(each, scale.left + per_m * place, scale.middle, per_m * journal)
+        for bearing in bearings:
+            place, radius = at, bearing.shell_radius or journal
+            if not bearing.films:
+                place += half_width * _place(case, elements.index(bearing)) * (1.0 if at else -1.0)
+            parts += stack(bearing.symbols, scale.left + per_m * place, scale.middle, per_m * radius)
+            parts += _film_parts(bearing.films, at, scale)
         parts.append(_named("bearing", at, scale, half + 16.0))
     parts += _forces(case, scale, lambda node: (0.5 * span,) if node == "disk" else (0.0, span))
     parts.append(_named(f"{shaft_of(case).disk_mass:.4g} kg", 0.5 * span, scale, -per_m * disk - 6.0))
@@ -233,12 +247,6 @@ def _radius_at(case: Case, position: float) -> float:
         if position <= end:
             return 0.5 * section.diameter
     return 0.5 * case.shaft[-1].diameter
-
-
-def _outer_width(case: Case) -> float:
-    if not case.bearings:
-        return NO_WIDTH
-    return _films(case.bearings[0])[-1].width
 
 
 def _named(words: str, at: float, scale: _SketchScale, y: float) -> str:

@@ -21,8 +21,10 @@ from synthetic_run import CLEARANCE, Rotor, make_run
 import frbcli
 from frbcli.case.reading.shipped import shipped_cases
 from frbcli.cli.main import frb
+from frbcli.elements.table import ELEMENTS, symbols_at
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.spectra.levels import LOWEST_dB, STEP_dB
+from frbcli.report.element_symbols import SYMBOLS
 from frbcli.report.page import report
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.results.store import Run
@@ -157,6 +159,13 @@ def test_every_shipped_machine_is_drawn(name: str) -> None:
         assert "nan" not in drawing
         assert drawing.count('class="ground"') == 2 * len(case.elements) * (1 if case.shaft else 2)
     assert bool(film_sketches(case)) == bool(case.films)
+
+
+def test_symbols_of_elements_are_drawn() -> None:
+    """Every symbol is drawn, and none is left over; those of a bearing stand from the shaft to the ground."""
+    assert {kind.symbol for kind in ELEMENTS} - {""} == set(SYMBOLS)
+    case = frbcli.load_case("squeeze-film-damper")
+    assert [symbols_at(case, key) for key in case.bearing_keys] == [("spring", "damper")]
 
 
 def test_a_shaft_is_drawn_to_scale() -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from frbcli.analysis.orders.order_tracking import OrderTrack
     from frbcli.analysis.spectra.spectrum import Direction
     from frbcli.plot.spectra.waterfall import Over
+    from frbcli.results.store import Run
 
 MICRO = 1e6
 
@@ -92,40 +93,49 @@ def command(
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_outputs(picture=target)
     run = run_of(run_file, measurement, relative=orders is None and not view.linear)
-    told: dict[str, Any]
+    axis: Over = view.over or ("time" if orders is None else "speed")
     if orders is None:
-        from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure
-
-        axis: Over = view.over or "time"
-        found = run_spectra(run, signal, view.window, view.direction)
-        scale = LevelScale(view.linear, view.levels, view.lines)
-        draw_wanted(
-            terminal,
-            lambda: waterfall_figure(
-                run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale
-            ),
-            target,
-            "waterfall",
-        )
-        terminal.result(reading(found))
-        told = {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
+        told = _spectra(terminal, run, signal, axis, view, target)
     else:
-        from frbcli.analysis.orders.order_tracking import order_tracks
-        from frbcli.plot.spectra.orders import orders_figure
-
-        axis = view.over or "speed"
-        tracks = order_tracks(run, orders, signal)
-        draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, view.direction, view.log), target, "orders")
-        told = {"orders": [_largest(track, view.direction) for track in tracks]}
-        for row in told["orders"]:
-            most = f"{MICRO * row['amplitude_max_m']:.3g} um at {row['speed_Hz']:.1f} Hz"
-            terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
+        told = _orders(terminal, run, signal, orders, axis, view, target)
     if measurement is not None:
         told["events"] = run.events
         if run.events:
             terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
     terminal.emit({**document, "direction": view.direction, **told})
+
+
+def _spectra(terminal: Terminal, run: Run, signal: str, axis: Over, view: View, target: Path) -> dict[str, Any]:
+    """Draw spectra, and return their part of the JSON document."""
+    from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure
+
+    found = run_spectra(run, signal, view.window, view.direction)
+    scale = LevelScale(view.linear, view.levels, view.lines)
+    draw_wanted(
+        terminal,
+        lambda: waterfall_figure(run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale),
+        target,
+        "waterfall",
+    )
+    terminal.result(reading(found))
+    return {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
+
+
+def _orders(
+    terminal: Terminal, run: Run, signal: str, orders: tuple[float, ...], axis: Over, view: View, target: Path
+) -> dict[str, Any]:
+    """Draw amplitudes by order, and return their part of the JSON document."""
+    from frbcli.analysis.orders.order_tracking import order_tracks
+    from frbcli.plot.spectra.orders import orders_figure
+
+    tracks = order_tracks(run, orders, signal)
+    draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, view.direction, view.log), target, "orders")
+    rows = [_largest(track, view.direction) for track in tracks]
+    for row in rows:
+        most = f"{MICRO * row['amplitude_max_m']:.3g} um at {row['speed_Hz']:.1f} Hz"
+        terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
+    return {"orders": rows}
 
 
 def _largest(track: OrderTrack, direction: Direction) -> dict[str, float]:

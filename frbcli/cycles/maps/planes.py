@@ -5,10 +5,9 @@ Unknowns of curves end with the first number over its largest value and the seco
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Protocol
+from abc import ABC, abstractmethod
+from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,133 +18,87 @@ from frbcli.cycles.family import Family
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.over_key import KeyFollower, resting_over
 from frbcli.cycles.parts.machine import Machine
-from frbcli.cycles.result import SPEED
+from frbcli.cycles.result import SPEED, hertz
 
 Array = NDArray[np.float64]
 
 FAMILIES = 8  # that are kept, of values of the second number
 
 
-class MapPlane(Protocol):
-    """over, unit: name and unit of the first number, which times `scale` is in it; by_difference: places of the numbers
-    from the end that derivatives are differences by; shaded: values of the second number at which the growth at rest
-    is told."""
+class MapPlane(ABC):
+    """over, unit: name and unit of the first number, which times `scale` is in it; second: the machines over the second
+    number; corners: the lowest and the highest of both numbers; by_difference: places of the numbers from the end that
+    derivatives are differences by; shaded: values of the second number at which the growth at rest is told."""
 
-    @property
-    def over(self) -> str: ...
-    @property
-    def unit(self) -> str: ...
-    @property
-    def scale(self) -> float: ...
-    @property
-    def by_difference(self) -> tuple[int, ...]: ...
-    @property
-    def shaded(self) -> int: ...
+    by_difference: ClassVar[tuple[int, ...]]
+    shaded: ClassVar[int]
 
-    @property
-    def corners(self) -> tuple[Array, Array]:
-        """The lowest and the highest of both numbers."""
+    def __init__(
+        self, over: str, unit: str, scale: float, second: Family, corners: tuple[Array, Array]
+    ) -> None:
+        self.over, self.unit, self.scale, self.second, self.corners = over, unit, scale, second, corners
 
+    @abstractmethod
     def machine(self, y: Array) -> Machine:
         """The machine at unknowns that end with both numbers."""
 
+    @abstractmethod
     def cycle(self, y: Array) -> Array:
         """The unknowns with the speed of the rotor over the pace in place of both numbers."""
 
+    @abstractmethod
     def walk(self, share: float) -> Walk:
         """Over the first number at a value of the second. Raises NotConverged, Unreachable."""
 
 
-@dataclass(frozen=True)
-class SpeedPlane:
-    """family: over the second number; speeds: rad/s; shares: of the largest value of the second number."""
+class SpeedPlane(MapPlane):
+    """The speed of the rotor, between two in rad/s, and a number from a share of its largest value on."""
 
-    family: Family
-    speeds: tuple[float, float]
-    shares: tuple[float, float]
-    over: str = SPEED
-    unit: str = "Hz"
-    by_difference: tuple[int, ...] = (-1,)
-    shaded: int = 41
+    by_difference, shaded = (-1,), 41
 
-    @property
-    def scale(self) -> float:
-        """Hz."""
-        return self.family.omega / (2.0 * math.pi)
-
-    @property
-    def corners(self) -> tuple[Array, Array]:
-        """As Plane says."""
-        low, high = ((speed / self.family.omega, share) for speed, share in zip(self.speeds, self.shares, strict=True))
-        return np.array(low), np.array(high)
+    def __init__(self, second: Family, speeds: tuple[float, float], lowest: float) -> None:
+        slowest, fastest = (speed / second.omega for speed in speeds)
+        corners = np.array([slowest, lowest]), np.array([fastest, 1.0])
+        super().__init__(SPEED, "Hz", hertz(second.omega), second, corners)
+        self.speeds = speeds
 
     def machine(self, y: Array) -> Machine:
-        """As Plane says."""
-        return self.family.machine(float(y[-1]))
+        """See MapPlane."""
+        return self.second.machine(float(y[-1]))
 
     def cycle(self, y: Array) -> Array:
-        """As Plane says."""
+        """See MapPlane."""
         return y[:-1]
 
     def walk(self, share: float) -> Walk:
-        """As Plane says."""
-        machine = self.family.machine(share)
-        resting = resting_curve(self.family.system(share), machine, *self.speeds)
+        """See MapPlane."""
+        machine = self.second.machine(share)
+        resting = resting_curve(self.second.system(share), machine, *self.speeds)
         return over_speed(OverSpeed(machine), resting, FoldFollower(machine, *self.speeds))
 
 
-@dataclass(frozen=True)
-class KeyPlane:
-    """first: the machines over the first number at the largest value of the second; second: that number; lowest: of
+class KeyPlane(MapPlane):
+    """Two numbers at one speed. first: the machines over the first one at the largest value of the second; lowest: of
     both over their largest values."""
 
-    first: Family
-    second: Family
-    lowest: tuple[float, float]
-    by_difference: tuple[int, ...] = (-2, -1)
-    shaded: int = 15
-    _beside: dict[float, Family] = field(default_factory=dict)
+    by_difference, shaded = (-2, -1), 15
 
-    @property
-    def over(self) -> str:
-        """The first key."""
-        return self.first.key
-
-    @property
-    def unit(self) -> str:
-        """Of the first number."""
-        return self.first.unit
-
-    @property
-    def scale(self) -> float:
-        """The largest value of the first number."""
-        return self.first.high
-
-    @cached_property
-    def corners(self) -> tuple[Array, Array]:
-        """As Plane says."""
-        return np.array(self.lowest), np.ones(2)
-
-    def family(self, share: float) -> Family:
-        """The machines over the first number at a value of the second."""
-        if share not in self._beside:
-            if len(self._beside) >= FAMILIES:
-                self._beside.pop(next(iter(self._beside)))
-            self._beside[share] = self.first.beside(self.second.setting(share))
-        return self._beside[share]
+    def __init__(self, first: Family, second: Family, lowest: tuple[float, float]) -> None:
+        super().__init__(first.key, first.unit, first.high, second, (np.array(lowest), np.ones(2)))
+        self._omega, self._lowest = first.omega, lowest[0]
+        self._family = lru_cache(FAMILIES)(lambda share: first.beside(second.setting(share)))
 
     def machine(self, y: Array) -> Machine:
-        """As Plane says."""
-        return self.family(float(y[-1])).machine(float(y[-2]))
+        """See MapPlane."""
+        return self._family(float(y[-1])).machine(float(y[-2]))
 
     def cycle(self, y: Array) -> Array:
-        """As Plane says."""
-        return np.append(y[:-2], self.first.omega / self.machine(y).pace)
+        """See MapPlane."""
+        return np.append(y[:-2], self._omega / self.machine(y).pace)
 
     def walk(self, share: float) -> Walk:
-        """As Plane says."""
-        family = self.family(share)
-        lowest = self.lowest[0]
+        """See MapPlane."""
+        family, lowest = self._family(share), self._lowest
         return Walk(family.key, family, resting_over(family, lowest), family.high, _KeyFoldFollower(family, lowest))
 
 

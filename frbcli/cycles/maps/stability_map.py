@@ -168,40 +168,38 @@ def stability_map(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> found = frbcli.stability_map(case, "oil.viscosity", "8 mPa*s", "14 mPa*s")  # doctest: +SKIP
     """
-    plane, family = _plane(case, (key, low, high), across)
+    plane = _plane(case, (key, low, high), across)
     lowest = float(plane.corners[0][1])
     rows, begun = [], _Begun([], [])
     for number, share in enumerate(np.linspace(lowest, 1.0, count)):
-        rows.append(_row(plane, family, float(share), begun))
+        rows.append(_row(plane, float(share), begun))
         if observe is not None:
             observe(number + 1, count)
-    map_ = _Map(plane, family.high)
     curves: list[MapCurve] = []
     for hopf in begun.hopf:
-        curves += _new_curve(map_, curves, HOPF, hopf)
+        curves += _new_curve(plane, curves, HOPF, hopf)
     for fold in begun.folds:
-        curves += _new_curve(map_, curves, FOLD, fold)
+        curves += _new_curve(plane, curves, FOLD, fold)
     return StabilityMap(
         case=case,
         over=plane.over,
         over_unit=plane.unit,
         key=key,
-        unit=family.unit,
+        unit=plane.second.unit,
         films=plane.machine(plane.corners[1]).names,
         curves=tuple(curves),
         rows=tuple(rows),
-        growth=_growth(map_),
+        growth=_growth(plane),
     )
 
 
-def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> tuple[MapPlane, Family]:
-    """The plane, and the machines over its second number."""
+def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> MapPlane:
     slowest, fastest = check(case)
     key = second[0]
     low, high, unit = positive_range(case, *second)
     if across is None:
         family = Family(case, key, high, unit, fastest)
-        return SpeedPlane(family, (slowest, fastest), (low / high, 1.0)), family
+        return SpeedPlane(family, (slowest, fastest), low / high)
     if across.key == key:
         problem, remedy = "is both numbers of the map.", "Name another key."
         raise InputError(case.name or "case", (Fault(key, across.key, None, problem, remedy),))
@@ -209,15 +207,7 @@ def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> t
     omega = 2.0 * math.pi * across.speed_Hz
     family = Family(case, key, high, unit, omega)
     first = Family(case, across.key, most, other, omega)
-    return KeyPlane(first, family, (least / most, low / high)), family
-
-
-@dataclass(frozen=True)
-class _Map:
-    """high: the largest value of the second number."""
-
-    plane: MapPlane
-    high: float
+    return KeyPlane(first, family, (least / most, low / high))
 
 
 @dataclass(frozen=True)
@@ -228,9 +218,9 @@ class _Begun:
     folds: list[Array]
 
 
-def _row(plane: MapPlane, family: Family, share: float, begun: _Begun) -> MapRow:
+def _row(plane: MapPlane, share: float, begun: _Begun) -> MapRow:
     """The special points at a share, which are added to `begun`, too."""
-    value = share * family.high
+    value = share * plane.second.high
     try:
         walk = plane.walk(share)
     except (NotConverged, Unreachable) as error:
@@ -253,12 +243,12 @@ def _unwatched(_: Cycle) -> None:
     """Branches of a map are not told."""
 
 
-def _new_curve(map_: _Map, known: Sequence[MapCurve], kind: str, start: Array) -> list[MapCurve]:
+def _new_curve(plane: MapPlane, known: Sequence[MapCurve], kind: str, start: Array) -> list[MapCurve]:
     """The curve through a point, unless it is known or not found."""
-    plane, size = map_.plane, map_.plane.machine(start).size
+    size = plane.machine(start).size
     if kind == FOLD and (len(start) - 3) // size // 2 > MOST_HARMONICS:
         start = with_harmonics(start, size, MOST_HARMONICS)
-    if any(_lies_on(map_, curve, _point(map_, kind, start)) for curve in known if curve.kind == kind):
+    if any(_lies_on(plane, curve, _point(plane, kind, start)) for curve in known if curve.kind == kind):
         return []
 
     def equations(y: Array) -> Equations:
@@ -273,9 +263,9 @@ def _new_curve(map_: _Map, known: Sequence[MapCurve], kind: str, start: Array) -
         found = follow_both(equations, start, plane.corners, lambda place: fitted_fold(plane, place), met)
     if found is None:
         return []
-    points = [_point(map_, kind, place.y) for place in found.places]
+    points = [_point(plane, kind, place.y) for place in found.places]
     between = [
-        _special_between(map_, equations, kind, pair, ends)
+        _special_between(plane, equations, kind, pair, ends)
         for pair, ends in zip(itertools.pairwise(found.places), itertools.pairwise(points), strict=True)
     ]
     told = [points[0]]
@@ -284,10 +274,10 @@ def _new_curve(map_: _Map, known: Sequence[MapCurve], kind: str, start: Array) -
     return [MapCurve(kind, tuple(told), tuple(filter(None, found.notes)))]
 
 
-def _point(map_: _Map, kind: str, y: Array) -> MapPoint:
-    machine, here = map_.plane.machine(y), map_.plane.cycle(y)
+def _point(plane: MapPlane, kind: str, y: Array) -> MapPoint:
+    machine, here = plane.machine(y), plane.cycle(y)
     nu, omega = float(here[-2] * machine.pace), float(here[-1] * machine.pace)
-    told = (float(y[-2] * map_.plane.scale), float(y[-1] * map_.high), hertz(omega), hertz(nu))
+    told = (float(y[-2] * plane.scale), float(y[-1] * plane.second.high), hertz(omega), hertz(nu))
     if kind == FOLD:
         return MapPoint(*told, eccentricities(machine, here))
     rest = settled(machine, here[:-2], omega, omega)
@@ -297,7 +287,7 @@ def _point(map_: _Map, kind: str, y: Array) -> MapPoint:
 
 
 def _special_between(
-    map_: _Map,
+    plane: MapPlane,
     equations: Callable[[Array], Equations],
     kind: str,
     pair: tuple[Place, Place],
@@ -308,7 +298,7 @@ def _special_between(
     if kind == HOPF:
         if not ends[0].lyapunov * ends[1].lyapunov < 0.0:
             return []
-        found = _zero(equations, pair, lambda one: _point(map_, HOPF, one.y).lyapunov)
+        found = _zero(equations, pair, lambda one: _point(plane, HOPF, one.y).lyapunov)
         named = BAUTIN
     else:
         along = place.tangent[-2:]
@@ -318,7 +308,7 @@ def _special_between(
         named = CUSP
     if found is None:
         return []
-    return [replace(_point(map_, kind, found.y), criticality=None, lyapunov=math.nan, kind=named)]
+    return [replace(_point(plane, kind, found.y), criticality=None, lyapunov=math.nan, kind=named)]
 
 
 def _zero(
@@ -345,11 +335,11 @@ def _zero(
         return None
 
 
-def _lies_on(map_: _Map, curve: MapCurve, point: MapPoint) -> bool:
+def _lies_on(plane: MapPlane, curve: MapCurve, point: MapPoint) -> bool:
     """Whether a point is one of a curve, by its distance from the straight lines between its points."""
 
     def placed(one: MapPoint) -> Array:
-        return np.array([one.over / map_.plane.scale, one.value / map_.high, one.frequency_Hz / pace])
+        return np.array([one.over / plane.scale, one.value / plane.second.high, one.frequency_Hz / pace])
 
     pace = max(one.speed_Hz for one in (point, *curve.points))
     at = placed(point)
@@ -362,8 +352,8 @@ def _lies_on(map_: _Map, curve: MapCurve, point: MapPoint) -> bool:
     return False
 
 
-def _growth(map_: _Map) -> Growth:
-    plane, (low, high) = map_.plane, map_.plane.corners
+def _growth(plane: MapPlane) -> Growth:
+    low, high = plane.corners
     shares, over = np.linspace(low[1], high[1], plane.shaded), plane.scale * np.linspace(low[0], high[0], ACROSS)
     rate = np.full((len(shares), ACROSS), np.nan)
     for row, share in zip(rate, shares, strict=True):
@@ -374,4 +364,4 @@ def _growth(map_: _Map) -> Growth:
         known = [point.value * walk.scale for point in walk.resting.points]
         rates = [max(point.growth_of(0), -1e9) for point in walk.resting.points]
         row[:] = np.interp(over, known, rates, left=np.nan)
-    return Growth(shares * map_.high, over, rate)
+    return Growth(shares * plane.second.high, over, rate)
